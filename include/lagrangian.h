@@ -1,0 +1,95 @@
+/*
+ * What a generated system offers the runtime. lagc writes one `const struct Lagrangian lagrangian` a system;
+ * functions that a system does not need are NULL.
+ *
+ * State vector: coordinates q[n], velocities v[n], and last, where the system asks for it, the work of the
+ * non-conservative forces. All quantities are in SI units.
+ */
+#ifndef LAGRANGIAN_H
+#define LAGRANGIAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Where the equations are evaluated. */
+struct Point {
+  double time;
+  const double *state;
+  const double *input;
+  const double *parameter;
+  const double *prepared; /* what prepare() made of the parameters */
+};
+
+/* A direction of a directional derivative. */
+struct Seed {
+  double time;
+  const double *state;
+  const double *input;
+  const double *parameter;
+};
+
+enum VariableKind {
+  VARIABLE_TIME,
+  VARIABLE_STATE,
+  VARIABLE_DERIVATIVE, /* of the state with the same index */
+  VARIABLE_INPUT,
+  VARIABLE_PARAMETER,
+  VARIABLE_RESULT,   /* computed when read */
+  VARIABLE_STATISTIC /* Integer; the index is an enum Statistic */
+};
+
+enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_COUNT };
+
+/* A ScalarVariable; its value reference is its place in the table. */
+struct ScalarVariable {
+  const char *name;
+  enum VariableKind kind;
+  size_t index;    /* among the variables of its kind */
+  bool is_output;  /* causality is output */
+  double start, minimum, maximum;
+};
+
+/* A computed variable; acceleration holds dv/dt at the point, where it is used. */
+struct Result {
+  double (*value)(const struct Point *point, const double *acceleration);
+  /* Its derivative along seed, with the accelerations changing by acceleration_along; NULL unless an output. */
+  double (*along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
+                  const double *acceleration_along);
+  bool uses_acceleration;
+};
+
+struct Solver;
+
+struct Lagrangian {
+  const char *name, *guid;
+  size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
+  size_t variable_count, result_count;
+  const struct ScalarVariable *variables;
+  const struct Result *results;
+  const double *nominal; /* state_count: scales of the absolute tolerance */
+  /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */
+  const char *const *inertia_depends_on;
+  double tolerance; /* relative, where the environment gives none */
+  bool depends_on_time;
+  const struct Solver *solver; /* NULL for a system without coordinates */
+
+  /*
+   * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
+   * definite; results are then undefined.
+   */
+
+  /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
+  int (*prepare)(const double *parameter, double *prepared);
+  /* derivative[state_count] = d state / dt */
+  int (*derivatives)(const struct Point *point, double *derivative);
+  /* The derivative of derivatives() along seed. */
+  int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
+  /* d derivatives / d state, element (i, j) at jacobian[j * state_count + i] */
+  int (*jacobian)(const struct Point *point, double *jacobian);
+  /* d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
+  void (*linear)(const double *parameter, const double *prepared, double *matrix);
+};
+
+extern const struct Lagrangian lagrangian;
+
+#endif

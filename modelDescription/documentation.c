@@ -1,0 +1,140 @@
+#include "documentation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <libxml/xmlwriter.h>
+
+#include "../src/compiler/memory.h"
+#include "../src/compiler/print.h"
+#include "../src/compiler/simplify.h"
+#include "xml_output.h"
+
+static const char *const style =
+    "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
+    "code{display:block;background:#f4f4f4;padding:.5em;margin:.3em 0;white-space:pre-wrap;overflow-wrap:anywhere}"
+    "table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.2em .8em;text-align:left}";
+
+static void element(xmlTextWriterPtr writer, const char *name, const char *text) {
+  xmlTextWriterWriteElement(writer, BAD_CAST name, BAD_CAST text);
+}
+
+/* left = expression, on a line of its own. */
+static void write_equation(xmlTextWriterPtr writer, const struct Graph *graph, const char *left, Node right) {
+  char *expression = expression_text(graph, right), *text = format_text("%s = %s", left, expression);
+  element(writer, "code", text);
+  free(text);
+  free(expression);
+}
+
+/* Row i of M a = right side, or the acceleration itself. */
+static void write_motion(xmlTextWriterPtr writer, const struct Program *program, size_t i) {
+  const struct Equations *equations = program->equations;
+  struct Graph *graph = program->model->graph;
+  if (equations->explicit_form) {
+    char *left = format_text("der(%s)", program->model->velocities.items[i].name);
+    write_equation(writer, graph, left, equations->acceleration[i]);
+    free(left);
+    return;
+  }
+  Node inertia = ZERO;
+  for (size_t j = 0; j < equations->count; j++)
+    inertia = add(graph, inertia,
+                  multiply(graph, equations->mass[i * equations->count + j], program->model->accelerations[j]));
+  char *left = expression_text(graph, inertia);
+  write_equation(writer, graph, left, equations->right_side[i]);
+  free(left);
+}
+
+static void write_mechanics(xmlTextWriterPtr writer, const struct Program *program) {
+  const struct Equations *equations = program->equations;
+  struct Graph *graph = program->model->graph;
+  element(writer, "h2", "Energies");
+  write_equation(writer, graph, "K", equations->kinetic);
+  write_equation(writer, graph, "U", program->model->linearized ? equations->potential
+                                                               : program->model->potential.node);
+  element(writer, "p", "The Lagrangian is L = K - U.");
+  element(writer, "h2", "Equations of motion");
+  for (size_t i = 0; i < equations->count; i++) write_motion(writer, program, i);
+  if (!program->model->has_forces) return;
+  element(writer, "h2", "Power of the non-conservative forces");
+  write_equation(writer, graph, "P", equations->power);
+}
+
+static void write_outputs(xmlTextWriterPtr writer, const struct Model *model) {
+  if (model->outputs.count == 0) return;
+  element(writer, "h2", "Outputs");
+  for (size_t i = 0; i < model->outputs.count; i++)
+    write_equation(writer, model->graph, model->outputs.items[i].name, model->outputs.items[i].node);
+}
+
+static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
+  static const char *const kinds[] = {
+      [VARIABLE_TIME] = "time",           [VARIABLE_STATE] = "state",   [VARIABLE_DERIVATIVE] = "derivative",
+      [VARIABLE_INPUT] = "input",         [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "computed",
+      [VARIABLE_STATISTIC] = "statistic",
+  };
+  const struct ScalarVariable *entry = &variable->entry;
+  char start[NUMBER_LENGTH] = "";
+  if (!isnan(entry->start)) number_text(entry->start, start);
+  const char *kind = entry->is_output && entry->kind == VARIABLE_RESULT ? "output" : kinds[entry->kind];
+  xmlTextWriterStartElement(writer, BAD_CAST "tr");
+  element(writer, "td", entry->name);
+  element(writer, "td", kind);
+  element(writer, "td", variable->unit != NULL ? variable->unit : "");
+  element(writer, "td", start);
+  element(writer, "td", variable->description != NULL ? variable->description : "");
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
+  static const char *const headings[] = {"name", "kind", "unit", "start", "description"};
+  element(writer, "h2", "Variables");
+  xmlTextWriterStartElement(writer, BAD_CAST "table");
+  xmlTextWriterStartElement(writer, BAD_CAST "tr");
+  for (size_t i = 0; i < 5; i++) element(writer, "th", headings[i]);
+  xmlTextWriterEndElement(writer);
+  for (size_t i = 0; i < interface->count; i++) write_variable_row(writer, &interface->variables[i]);
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_solver(xmlTextWriterPtr writer, const struct Program *program) {
+  static const char *const solvers[] = {
+      [SOLVER_ERK] = "Co-simulation integrates with Dormand and Prince's method of order 5(4); a step depends only "
+                     "on the state that the FMU saves, so that a repeated step gives the same bits.",
+      [SOLVER_BDF] = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
+                     "history, so that a restored state goes on within the tolerance, not to the same bits.",
+      [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
+                       "time over the communication step.",
+  };
+  if (program->equations->count == 0) return;
+  element(writer, "h2", "Solver");
+  element(writer, "p", solvers[program->interface->method]);
+}
+
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {
+  const struct Model *model = program->model;
+  xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
+  if (writer == NULL) return false;
+  xmlTextWriterWriteDTD(writer, BAD_CAST "html", NULL, NULL, NULL);
+  xmlTextWriterStartElement(writer, BAD_CAST "html");
+  xmlTextWriterStartElement(writer, BAD_CAST "head");
+  xmlTextWriterStartElement(writer, BAD_CAST "meta");
+  write_attribute(writer, "charset", "utf-8");
+  xmlTextWriterEndElement(writer);
+  element(writer, "title", model->name);
+  element(writer, "style", style);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterStartElement(writer, BAD_CAST "body");
+  element(writer, "h1", model->name);
+  if (model->description != NULL) element(writer, "p", model->description);
+  if (program->equations->count > 0) write_mechanics(writer, program);
+  write_outputs(writer, model);
+  write_solver(writer, program);
+  write_variables(writer, program->interface);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+  bool written = xmlTextWriterEndDocument(writer) >= 0;
+  xmlFreeTextWriter(writer);
+  return written;
+}

@@ -1,0 +1,172 @@
+#include "model_description.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/xmlwriter.h>
+
+#include "../src/compiler/memory.h"
+#include "../src/compiler/print.h"
+#include "model_structure.h"
+#include "xml_output.h"
+
+static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
+                             const struct Interface *interface) {
+  static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
+                                             "providesDirectionalDerivative"};
+  bool moves = interface->state_count > 0;
+  bool uses_sundials = interface->method == SOLVER_ERK || interface->method == SOLVER_BDF;
+  xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
+  write_attribute(writer, "modelIdentifier", model->name);
+  write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
+  for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
+  write_attribute(writer, "modelIdentifier", model->name);
+  write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
+  if (model->inputs.count > 0 && moves) write_attribute(writer, "canInterpolateInputs", "true");
+  if (moves) write_attribute(writer, "maxOutputDerivativeOrder", "1");
+  /* SUNDIALS allocates with malloc. */
+  if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
+  for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_unit(xmlTextWriterPtr writer, const char *name) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(name, &dimension, &problem);
+  xmlTextWriterStartElement(writer, BAD_CAST "Unit");
+  write_attribute(writer, "name", name);
+  xmlTextWriterStartElement(writer, BAD_CAST "BaseUnit");
+  for (int i = 0; i < BASE_UNIT_COUNT; i++)
+    if (dimension.exponent[i] != 0)
+      xmlTextWriterWriteFormatAttribute(writer, BAD_CAST base_unit_names[i], "%g", dimension.exponent[i]);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+}
+
+static bool is_first_with_unit(const struct Interface *interface, size_t place) {
+  for (size_t i = 0; i < place; i++)
+    if (interface->variables[i].unit != NULL &&
+        strcmp(interface->variables[i].unit, interface->variables[place].unit) == 0)
+      return false;
+  return true;
+}
+
+static void write_units(xmlTextWriterPtr writer, const struct Interface *interface) {
+  bool open = false;
+  for (size_t i = 0; i < interface->count; i++) {
+    if (interface->variables[i].unit == NULL || !is_first_with_unit(interface, i)) continue;
+    if (!open) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");
+    open = true;
+    write_unit(writer, interface->variables[i].unit);
+  }
+  if (open) xmlTextWriterEndElement(writer);
+}
+
+static void write_log_categories(xmlTextWriterPtr writer) {
+  static const char *const categories[][2] = {
+      {"logEvents", "life cycle and communication steps"}, {"logStatusWarning", "warnings"},
+      {"logStatusDiscard", "steps that were not finished"}, {"logStatusError", "errors"},
+      {"logStatusFatal", "errors that end all instances"},  {"logAll", "all messages"}};
+  xmlTextWriterStartElement(writer, BAD_CAST "LogCategories");
+  for (size_t i = 0; i < sizeof categories / sizeof *categories; i++) {
+    xmlTextWriterStartElement(writer, BAD_CAST "Category");
+    write_attribute(writer, "name", categories[i][0]);
+    write_attribute(writer, "description", categories[i][1]);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_experiment(xmlTextWriterPtr writer, const struct Model *model) {
+  double start = isnan(model->start_time) ? 0.0 : model->start_time;
+  double stop = isnan(model->stop_time) ? start + 10.0 : model->stop_time;
+  xmlTextWriterStartElement(writer, BAD_CAST "DefaultExperiment");
+  write_number(writer, "startTime", start);
+  write_number(writer, "stopTime", stop);
+  write_number(writer, "tolerance", interface_tolerance(model));
+  write_number(writer, "stepSize", isnan(model->step_size) ? (stop - start) / 1000 : model->step_size);
+  xmlTextWriterEndElement(writer);
+}
+
+/* Causality, variability and initial by the tables of section 2.2.7. */
+static void write_classification(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
+  static const char *const causalities[] = {
+      [VARIABLE_TIME] = "independent",   [VARIABLE_STATE] = "local",   [VARIABLE_DERIVATIVE] = "local",
+      [VARIABLE_INPUT] = "input",        [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
+      [VARIABLE_STATISTIC] = "local",
+  };
+  static const char *const initials[] = {
+      [VARIABLE_STATE] = "exact",  [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
+      [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
+  };
+  write_attribute(writer, "causality", entry->is_output ? "output" : causalities[entry->kind]);
+  write_attribute(writer, "variability",
+                  entry->kind == VARIABLE_PARAMETER   ? "tunable"
+                  : entry->kind == VARIABLE_STATISTIC ? "discrete"
+                                                      : "continuous");
+  if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
+    write_attribute(writer, "initial", initials[entry->kind]);
+}
+
+static void write_real(xmlTextWriterPtr writer, const struct Interface *interface,
+                       const struct InterfaceVariable *variable) {
+  enum VariableKind kind = variable->entry.kind;
+  xmlTextWriterStartElement(writer, BAD_CAST "Real");
+  if (variable->unit != NULL) write_attribute(writer, "unit", variable->unit);
+  if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
+  if (!isnan(variable->entry.maximum)) write_number(writer, "max", variable->entry.maximum);
+  if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
+  if (kind == VARIABLE_STATE || kind == VARIABLE_INPUT || kind == VARIABLE_PARAMETER)
+    write_number(writer, "start", variable->entry.start);
+  if (kind == VARIABLE_DERIVATIVE)
+    xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
+                                      interface_find(interface, VARIABLE_STATE, variable->entry.index) + 1);
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
+  xmlTextWriterStartElement(writer, BAD_CAST "ModelVariables");
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    xmlTextWriterStartElement(writer, BAD_CAST "ScalarVariable");
+    write_attribute(writer, "name", variable->entry.name);
+    xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", i);
+    if (variable->description != NULL) write_attribute(writer, "description", variable->description);
+    write_classification(writer, &variable->entry);
+    if (variable->entry.kind == VARIABLE_STATISTIC) xmlTextWriterWriteElement(writer, BAD_CAST "Integer", NULL);
+    else write_real(writer, interface, variable);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+bool model_description_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
+                             const struct Interface *interface, const char *guid) {
+  xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
+  if (writer == NULL) return false;
+  xmlTextWriterSetIndent(writer, 1);
+  xmlTextWriterSetIndentString(writer, BAD_CAST "  ");
+  xmlTextWriterStartDocument(writer, NULL, "UTF-8", NULL);
+  xmlTextWriterStartElement(writer, BAD_CAST "fmiModelDescription");
+  write_attribute(writer, "fmiVersion", "2.0");
+  write_attribute(writer, "modelName", model->name);
+  write_attribute(writer, "guid", guid);
+  if (model->description != NULL) write_attribute(writer, "description", model->description);
+  write_attribute(writer, "generationTool", "lagrange-fmu");
+  write_attribute(writer, "variableNamingConvention", "structured");
+  write_attribute(writer, "numberOfEventIndicators", "0");
+  write_interfaces(writer, model, interface);
+  write_units(writer, interface);
+  write_log_categories(writer);
+  write_experiment(writer, model);
+  write_variables(writer, interface);
+  model_structure_write(writer, model, equations, interface);
+  xmlTextWriterEndElement(writer);
+  bool written = xmlTextWriterEndDocument(writer) >= 0;
+  xmlFreeTextWriter(writer);
+  return written;
+}

@@ -1,0 +1,13 @@
+/* Writes modelDescription.xml (FMI 2.0.4, sections 2.2, 3.3 and 4.3). */
+#ifndef MODEL_DESCRIPTION_H
+#define MODEL_DESCRIPTION_H
+
+#include <libxml/tree.h>
+
+#include "../src/compiler/interface.h"
+
+/* Appends the file's text to buffer. Returns false where libxml2 reports an error. */
+bool model_description_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
+                             const struct Interface *interface, const char *guid);
+
+#endif

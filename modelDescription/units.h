@@ -1,0 +1,36 @@
+/*
+ * Units of measurement as products of powers of the SI base units and the radian (FMI 2.0.4, section 2.2.2).
+ * Only coherent units are known: a quantity in one of them needs no conversion factor.
+ */
+#ifndef UNITS_H
+#define UNITS_H
+
+#include <stdbool.h>
+
+enum { KILOGRAM, METRE, SECOND, AMPERE, KELVIN, MOLE, CANDELA, RADIAN, BASE_UNIT_COUNT };
+
+/* The exponents of the base units; an unknown dimension agrees with every other one. */
+struct Dimension {
+  bool known;
+  double exponent[BASE_UNIT_COUNT];
+};
+
+extern const char *const base_unit_names[BASE_UNIT_COUNT];
+extern const struct Dimension dimension_unknown, dimension_one;
+
+/*
+ * Reads a unit such as "kg.m2/s2", "N.m/rad" or "N/(m.s)". Returns false and leaves an explanation in *problem
+ * (a static string) where the text is no coherent unit.
+ */
+bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
+
+/* The unit in base units, for example "kg.m2/s2"; "1" without any; to be freed with free(). */
+char *unit_text(struct Dimension dimension);
+
+/* first * second^power; unknown where either is. */
+struct Dimension dimension_multiply(struct Dimension first, struct Dimension second, double power);
+
+/* Whether both are the same quantity; the radian counts as 1, unknown agrees with all. */
+bool dimension_agrees(struct Dimension first, struct Dimension second);
+
+#endif

@@ -1,0 +1,72 @@
+#include "attributes.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+char *attribute(xmlNodePtr node, const char *name) {
+  xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
+  if (value == NULL) return NULL;
+  char *copy = copy_text((const char *)value);
+  xmlFree(value);
+  return copy;
+}
+
+bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
+  char *text = attribute(node, name);
+  if (text == NULL) return false;
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  bool right = *text != '\0' && parse_number(reader->model->scope, text, place, value);
+  free(text);
+  return right;
+}
+
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  char *text = attribute(node, name);
+  if (text == NULL) return NULL;
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  char *expanded = parse_name(reader->model->scope, text, place);
+  free(text);
+  return expanded;
+}
+
+bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
+                          struct Quantity *value) {
+  char *text = attribute(node, name);
+  if (text == NULL) return false;
+  char *what = format_text("%s of <%s>", name, (const char *)node->name);
+  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  if (*text != '\0') *value = parse_expression(reader->model->scope, text, place);
+  free(what);
+  free(text);
+  return true;
+}
+
+struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  xmlChar *text = xmlNodeGetContent(node);
+  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Quantity value =
+      parse_expression(reader->model->scope, text != NULL ? (const char *)text : "", place);
+  xmlFree(text);
+  return value;
+}
+
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
+  struct Dimension dimension = dimension_unknown;
+  const char *problem;
+  char *text = attribute(node, "unit");
+  if (text != NULL && !unit_parse(text, &dimension, &problem))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text, problem);
+  free(text);
+  return dimension;
+}
+
+void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
+                  struct Dimension expected) {
+  if (quantity.literal || dimension_agrees(quantity.dimension, expected)) return;
+  char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
+  report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
+               expected_unit);
+  free(actual_unit);
+  free(expected_unit);
+}

@@ -1,0 +1,28 @@
+#include "diagnostics.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void print_message(const char *file, long line, const char *kind, const char *format,
+                          va_list arguments) {
+  fprintf(stderr, "%s:", file);
+  if (line > 0) fprintf(stderr, "%ld:", line);
+  fprintf(stderr, " %s", kind);
+  vfprintf(stderr, format, arguments);
+  fputc('\n', stderr);
+}
+
+void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_message(diagnostics->file, line, "", format, arguments);
+  va_end(arguments);
+  diagnostics->errors++;
+}
+
+void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_message(diagnostics->file, line, "warning: ", format, arguments);
+  va_end(arguments);
+}

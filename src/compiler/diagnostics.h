@@ -1,0 +1,18 @@
+/* Messages for the person who wrote the file: "file:line: what is wrong, and what was expected". */
+#ifndef DIAGNOSTICS_H
+#define DIAGNOSTICS_H
+
+struct Diagnostics {
+  const char *file; /* the file being read, as named by the user */
+  int errors;
+};
+
+/* Prints an error to stderr and counts it; line 0 where no line can be named. */
+void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Prints a warning to stderr. */
+void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+#endif

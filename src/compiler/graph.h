@@ -1,0 +1,121 @@
+/*
+ * The expression graph. Every expression is a node; equal expressions are one node (hash-consing), so common
+ * sub-expressions are shared by construction. A node's operands always have smaller numbers than the node:
+ * numeric order is a topological order, and every sweep is a plain loop.
+ */
+#ifndef GRAPH_H
+#define GRAPH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef uint32_t Node;
+
+enum Operation {
+  CONSTANT,
+  SYMBOL,
+  ADD,
+  MULTIPLY,
+  POWER,
+  ATAN2,
+  MINIMUM,
+  MAXIMUM,
+  LESS, /* 1 where the left operand is less than the right one, else 0 */
+  SINE,
+  COSINE,
+  TANGENT,
+  ARCSINE,
+  ARCCOSINE,
+  ARCTANGENT,
+  SINH,
+  COSH,
+  TANH,
+  ARSINH,
+  ARCOSH,
+  ARTANH,
+  EXPONENTIAL,
+  LOGARITHM,
+  ABSOLUTE,
+  SIGN,
+  OPERATION_COUNT
+};
+
+/* What a symbol stands for. The seeds are the directions of directional derivatives. */
+enum SymbolKind {
+  PARAMETER,
+  TIME,
+  COORDINATE,
+  VELOCITY,
+  ACCELERATION,
+  INPUT,
+  SEED_PARAMETER,
+  SEED_TIME,
+  SEED_COORDINATE,
+  SEED_VELOCITY,
+  SEED_ACCELERATION,
+  SEED_INPUT,
+  SYMBOL_KIND_COUNT
+};
+
+struct Symbol {
+  enum SymbolKind kind;
+  int index; /* among the symbols of its kind */
+  char *name;
+  Node node;
+};
+
+struct Vertex {
+  enum Operation operation;
+  uint16_t kinds;   /* bit k: depends on a symbol of SymbolKind k */
+  Node left, right; /* operands; SYMBOL: left is the symbol's number; unary: right is 0 */
+  double value;     /* CONSTANT only */
+};
+
+struct Graph {
+  struct Vertex *vertices;
+  size_t count, capacity;
+  Node *buckets; /* hash table of node + 1, 0 where empty */
+  size_t bucket_count;
+  struct Symbol *symbols;
+  size_t symbol_count;
+  bool overflow; /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
+};
+
+enum { NODE_LIMIT = 4000000, ZERO = 0, ONE = 1 };
+
+struct Graph *graph_create(void);
+void graph_free(struct Graph *graph);
+
+/* The node of a new symbol; kind and index say what it stands for, name how it is printed. */
+Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name);
+
+/* The symbol that a SYMBOL node stands for. */
+const struct Symbol *graph_symbol_of(const struct Graph *graph, Node node);
+
+/* The node with these operands as they are, without simplification; see simplify.h for the algebra. */
+Node graph_node(struct Graph *graph, enum Operation operation, Node left, Node right);
+
+Node graph_constant(struct Graph *graph, double value);
+bool graph_is_constant(const struct Graph *graph, Node node);
+double graph_value(const struct Graph *graph, Node node);
+
+/* How many operands an operation has: 0, 1 or 2. */
+int operation_arity(enum Operation operation);
+
+/* The name of a function of C's math library, or of this project's expression language. */
+const char *operation_name(enum Operation operation);
+
+/* The value of an operation on numbers. */
+double operation_evaluate(enum Operation operation, double left, double right);
+
+/* Whether the node depends on a symbol of this kind. */
+bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind);
+
+/* Marks every node that the targets need, themselves included; flags has one element a node, zeroed here. */
+void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags);
+
+/* Evaluates all nodes; symbol_values in the order of graph->symbols; result is to be freed with free(). */
+double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
+
+#endif

@@ -1,0 +1,12 @@
+/* A GUID made from content: the same model gives the same GUID on every machine. */
+#ifndef GUID_H
+#define GUID_H
+
+#include <stddef.h>
+
+enum { GUID_LENGTH = 39 };
+
+/* Writes "{xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx}" for the concatenated texts. */
+void guid_of(const char *const *texts, size_t count, char guid[GUID_LENGTH]);
+
+#endif

@@ -1,0 +1,47 @@
+/*
+ * Lagrange's equation, d/dt (dL/dv_i) - dL/dq_i = Q_i, for a general L(q, v, t) = K - U:
+ *
+ *   M a = Q + dL/dq - (d2L/dv dq) v - d2L/dv dt,     M = d2L/dv dv
+ */
+#ifndef LAGRANGE_H
+#define LAGRANGE_H
+
+#include "model.h"
+
+/* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
+struct Pivot {
+  Node value;    /* D_i of M = L D L^T */
+  Node diagonal; /* M_ii */
+  Node scale;    /* the magnitude of the terms of M_ii, with |sin| and |cos| taken as 1 */
+  size_t coordinate;
+};
+
+struct Equations {
+  size_t count; /* coordinates */
+  bool explicit_form;  /* accelerations are given as such (linearised systems), there is no mass matrix */
+  Node *mass;          /* count x count, symmetric, both triangles */
+  Node *right_side;    /* M a = right_side */
+  Node *residual;      /* M a - right_side with the acceleration symbols for a */
+  size_t *block;       /* the number of the block of M that a coordinate belongs to, from 0 */
+  size_t block_count;
+  bool *unrolled;      /* for each block: factored symbolically, as straight-line code */
+  Node *lower, *diagonal; /* M = L D L^T of the unrolled blocks; lower is count x count */
+  Node *acceleration;  /* expressions in unrolled blocks, the acceleration symbols in others */
+  struct Pivot *pivots;
+  size_t pivot_count;
+  Node power;                           /* of the non-conservative forces, sum Q_i v_i */
+  Node kinetic, potential, total;       /* energies */
+};
+
+/* Blocks of M up to this size become straight-line code. */
+enum { UNROLL_LIMIT = 8 };
+
+/* Derives the equations of motion; reports errors (a coordinate without inertia, ...) to diagnostics. */
+struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);
+void equations_free(struct Equations *equations);
+
+/* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. */
+void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side,
+                     Node *solution);
+
+#endif

@@ -1,0 +1,130 @@
+/* lagc, the Lagrangian compiler: a mechanical system in XML becomes C and modelDescription.xml. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/parser.h>
+
+#include "lagrange.h"
+#include "linearize.h"
+#include "memory.h"
+#include "output.h"
+#include "program.h"
+#include "reader.h"
+
+static const char *const usage =
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [-D NAME=VALUE ...]\n"
+    "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
+    "\n"
+    "Writes system.c, modelDescription.xml and documentation/index.html into DIR, or prints the\n"
+    "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
+    "\n"
+    "  -o DIR           the directory for the files\n"
+    "  --solver METHOD  erk, bdf or exact in place of the system's own\n"
+    "  -D NAME=VALUE    the value of a <constant>\n"
+    "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
+
+struct Arguments {
+  const char *system, *directory, *solver;
+  const char **definitions;
+  size_t definition_count;
+  char **point;
+  size_t point_count;
+  bool linearize, help;
+};
+
+static void append_point(struct Arguments *arguments, const char *text) {
+  while (*text != '\0') {
+    size_t length = strcspn(text, ",");
+    arguments->point = reallocate(arguments->point, arguments->point_count + 1, sizeof *arguments->point);
+    arguments->point[arguments->point_count++] = format_text("%.*s", (int)length, text);
+    text += length + (text[length] == ',');
+  }
+}
+
+/* False where the words do not fit together. */
+static bool parse_arguments(int count, char **words, struct Arguments *arguments) {
+  for (int i = 1; i < count; i++) {
+    const char *word = words[i], *next = i + 1 < count ? words[i + 1] : NULL;
+    bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
+                       strcmp(word, "--at") == 0;
+    if (takes_value && next == NULL) return false;
+    i += takes_value;
+    if (strcmp(word, "-o") == 0) arguments->directory = next;
+    else if (strcmp(word, "--solver") == 0) arguments->solver = next;
+    else if (strcmp(word, "--at") == 0) append_point(arguments, next);
+    else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
+    else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
+    else if (strcmp(word, "-D") == 0) arguments->definitions[arguments->definition_count++] = next;
+    else if (word[0] == '-' || arguments->system != NULL) return false;
+    else arguments->system = word;
+  }
+  if (arguments->help) return true;
+  bool consistent = arguments->linearize ? arguments->directory == NULL && arguments->solver == NULL
+                                         : arguments->directory != NULL && arguments->point_count == 0;
+  return arguments->system != NULL && consistent;
+}
+
+/* A system without coordinates has no solver to replace. */
+static void override_solver(struct Model *model, const char *solver, struct Diagnostics *diagnostics) {
+  static const struct {
+    const char *name;
+    enum SolverMethod method;
+  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}};
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    if (strcmp(solver, methods[i].name) != 0) continue;
+    model->method = methods[i].method;
+    return;
+  }
+  report_error(diagnostics, 0, "--solver %s is not known; expected erk, bdf or exact", solver);
+}
+
+static void compile(struct Model *model, struct Equations *equations, const char *directory,
+                    struct Diagnostics *diagnostics) {
+  struct Interface *interface = interface_create(model, equations);
+  struct Program *program = program_create(model, equations, interface, diagnostics);
+  if (program != NULL) output_write(program, directory, diagnostics);
+  program_free(program);
+  interface_free(interface);
+}
+
+static void print_linearization(struct Model *model, const struct Equations *equations,
+                                struct Diagnostics *diagnostics) {
+  struct LinearSystem *system = linear_system_of(model, equations, diagnostics);
+  if (system != NULL) linear_system_print(model, system);
+  linear_system_free(system);
+}
+
+static int run(const struct Arguments *arguments) {
+  struct Diagnostics diagnostics = {.file = arguments->system};
+  struct ReaderOptions options = {.definitions = arguments->definitions,
+                                  .definition_count = arguments->definition_count,
+                                  .point = (const char *const *)arguments->point,
+                                  .point_count = arguments->point_count,
+                                  .linearize = arguments->linearize};
+  struct Model *model = model_read(arguments->system, &options, &diagnostics);
+  if (model != NULL && arguments->solver != NULL) override_solver(model, arguments->solver, &diagnostics);
+  struct Equations *equations =
+      model != NULL && diagnostics.errors == 0 ? equations_derive(model, &diagnostics) : NULL;
+  if (equations != NULL && diagnostics.errors == 0 && model->linearized) linearize(model, equations, &diagnostics);
+  if (equations != NULL && diagnostics.errors == 0) {
+    if (arguments->linearize) print_linearization(model, equations, &diagnostics);
+    else compile(model, equations, arguments->directory, &diagnostics);
+  }
+  equations_free(equations);
+  model_free(model);
+  return diagnostics.errors > 0 ? 1 : 0;
+}
+
+int main(int count, char **words) {
+  struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
+  int status = 1;
+  if (!parse_arguments(count, words, &arguments)) fputs(usage, stderr);
+  else if (arguments.help) status = fputs(usage, stdout) < 0;
+  else status = run(&arguments);
+  for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);
+  free(arguments.point);
+  free(arguments.definitions);
+  xmlCleanupParser();
+  return status;
+}

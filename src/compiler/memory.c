@@ -1,0 +1,45 @@
+#include "memory.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static _Noreturn void out_of_memory(void) {
+  fputs("lagc: out of memory\n", stderr);
+  exit(1);
+}
+
+void *allocate(size_t count, size_t size) {
+  void *block = calloc(count > 0 ? count : 1, size);
+  if (block == NULL) out_of_memory();
+  return block;
+}
+
+void *reallocate(void *block, size_t count, size_t size) {
+  if (size > 0 && count > SIZE_MAX / size) out_of_memory();
+  void *resized = realloc(block, count * size > 0 ? count * size : 1);
+  if (resized == NULL) out_of_memory();
+  return resized;
+}
+
+char *copy_text(const char *text) {
+  size_t bytes = strlen(text) + 1;
+  char *copy = allocate(bytes, 1);
+  memcpy(copy, text, bytes);
+  return copy;
+}
+
+char *format_text(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  va_list again;
+  va_copy(again, arguments);
+  int length = vsnprintf(NULL, 0, format, arguments);
+  va_end(arguments);
+  char *text = allocate((size_t)(length < 0 ? 0 : length) + 1, 1);
+  vsnprintf(text, (size_t)(length < 0 ? 0 : length) + 1, format, again);
+  va_end(again);
+  return text;
+}

@@ -1,0 +1,19 @@
+/* Memory for a compiler that runs once: an allocation that fails ends the program with a message. */
+#ifndef MEMORY_H
+#define MEMORY_H
+
+#include <stddef.h>
+
+/* count zeroed elements of size bytes; never NULL. Free with free(). */
+void *allocate(size_t count, size_t size);
+
+/* Resizes a block to count elements of size bytes; new bytes are not initialised; never NULL. */
+void *reallocate(void *block, size_t count, size_t size);
+
+/* A copy of text, to be freed with free(). */
+char *copy_text(const char *text);
+
+/* printf into a new string, to be freed with free(). */
+char *format_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+#endif

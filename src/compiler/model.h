@@ -1,0 +1,65 @@
+/* A mechanical system as its author wrote it: variables, energies, forces. The reader fills it. */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include "graph.h"
+#include "scope.h"
+
+struct Variable {
+  char *name, *description;
+  char *unit; /* as written, NULL where none was given */
+  struct Dimension dimension;
+  double start, minimum, maximum, nominal; /* NAN where none was given */
+  Node node;                               /* the symbol, or the value of an output */
+  long line;
+};
+
+struct VariableList {
+  struct Variable *items;
+  size_t count;
+};
+
+/* A particle or a planar rigid body. Components that were not given are ZERO and not present. */
+struct Body {
+  char *name;
+  struct Quantity mass, inertia;
+  struct Quantity position[3], angle;
+  bool has_position[3], has_angle;
+  long line;
+};
+
+enum SolverMethod { SOLVER_DEFAULT, SOLVER_ERK, SOLVER_BDF, SOLVER_EXACT, SOLVER_NONE };
+
+/* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
+struct LinearizationPoint {
+  Node *values;
+  bool *given;
+};
+
+struct Model {
+  char *name, *description;
+  struct Graph *graph;
+  struct Scope *scope;
+  struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct Body *bodies;
+  size_t body_count;
+  Node *accelerations; /* the symbol of each coordinate's acceleration */
+  Node time;
+  struct Quantity kinetic, potential, dissipation; /* J, J, W */
+  struct Quantity *forces;                         /* generalized force along each coordinate */
+  bool has_forces;  /* some force or dissipation was given */
+  bool wants_work;  /* nonConservativeWork is integrated along */
+  bool linearized;
+  struct LinearizationPoint point; /* where linearized */
+  enum SolverMethod method;
+  double tolerance;                      /* NAN where none was given */
+  double start_time, stop_time, step_size; /* NAN where none was given */
+  long solver_line;
+};
+
+void model_free(struct Model *model);
+
+/* The unit of a variable, for output: as written, else from its dimension; NULL where unknown. Free with free(). */
+char *variable_unit(const struct Variable *variable);
+
+#endif

@@ -1,0 +1,86 @@
+#include "output.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../../modelDescription/documentation.h"
+#include "../../modelDescription/model_description.h"
+#include "emit.h"
+#include "guid.h"
+#include "memory.h"
+
+enum { FILE_COUNT = 3 };
+
+static char *code_text(const struct Program *program, const char *guid) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *file = open_memstream(&text, &length);
+  if (file == NULL) return NULL;
+  emit_system(file, program, guid);
+  fclose(file);
+  return text;
+}
+
+/* Creates the directory and those above it. */
+static bool create_directory(const char *path) {
+  char *partial = copy_text(path);
+  for (char *slash = strchr(partial + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
+    *slash = '\0';
+    mkdir(partial, 0777);
+    *slash = '/';
+  }
+  free(partial);
+  struct stat status;
+  return mkdir(path, 0777) == 0 || (stat(path, &status) == 0 && S_ISDIR(status.st_mode));
+}
+
+static bool write_file(const char *path, const char *text) {
+  FILE *file = fopen(path, "w");
+  if (file == NULL) return false;
+  bool written = fputs(text, file) >= 0;
+  return fclose(file) == 0 && written;
+}
+
+static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
+  static const char *const names[FILE_COUNT] = {"system.c", "modelDescription.xml", "documentation/index.html"};
+  char *documentation = format_text("%s/documentation", directory), *paths[FILE_COUNT];
+  bool written = create_directory(directory) && create_directory(documentation);
+  for (int i = 0; i < FILE_COUNT; i++) {
+    paths[i] = format_text("%s/%s", directory, names[i]);
+    written = written && write_file(paths[i], texts[i]);
+  }
+  if (!written)
+    report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
+                 strerror(errno));
+  for (int i = 0; i < FILE_COUNT; i++) {
+    if (!written) remove(paths[i]);
+    free(paths[i]);
+  }
+  free(documentation);
+}
+
+void output_write(const struct Program *program, const char *directory, struct Diagnostics *diagnostics) {
+  xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), documentation = xmlBufferCreate();
+  const struct Model *model = program->model;
+  char guid[GUID_LENGTH];
+  char *code = code_text(program, "");
+  bool written = model_description_write(anonymous, model, program->equations, program->interface, "");
+  guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
+  free(code);
+  code = code_text(program, guid);
+  written = written && model_description_write(description, model, program->equations, program->interface, guid) &&
+            documentation_write(documentation, program);
+  if (written && code != NULL)
+    write_all(directory,
+              (const char *const[]){code, (const char *)xmlBufferContent(description),
+                                    (const char *)xmlBufferContent(documentation)},
+              diagnostics);
+  else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
+  free(code);
+  xmlBufferFree(anonymous);
+  xmlBufferFree(description);
+  xmlBufferFree(documentation);
+}

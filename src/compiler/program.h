@@ -1,0 +1,26 @@
+/* All expressions that the generated C computes: what derivation gave, differentiated once more where needed. */
+#ifndef PROGRAM_H
+#define PROGRAM_H
+
+#include "interface.h"
+#include "lagrange.h"
+#include "linearize.h"
+
+struct Program {
+  const struct Model *model;
+  const struct Equations *equations;
+  const struct Interface *interface;
+  struct LinearSystem *linear; /* NULL unless the solver is exact */
+  Node *along;                 /* derivative of the accelerations, or right sides for it in large blocks */
+  Node power_along;
+  Node *jacobian; /* count rows by state_count columns, as along for each state; NULL unless the solver asks */
+  Node *power_jacobian;
+  Node *result_along; /* one for each result; ZERO unless it is an output */
+};
+
+/* Reports errors where the chosen solver does not fit the system; NULL then. */
+struct Program *program_create(struct Model *model, const struct Equations *equations,
+                               const struct Interface *interface, struct Diagnostics *diagnostics);
+void program_free(struct Program *program);
+
+#endif

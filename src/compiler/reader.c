@@ -1,0 +1,151 @@
+#include "reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "attributes.h"
+#include "elements.h"
+#include "linearization_reader.h"
+#include "memory.h"
+#include "parser.h"
+#include "xml.h"
+
+enum { REPETITION_LIMIT = 10000 };
+
+static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass);
+
+static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  struct Scope *scope = reader->model->scope;
+  double from = 0, to = -1;
+  if (node->_private != NULL) return; /* refused in an earlier pass */
+  char *index = attribute(node, "index");
+  if (index == NULL || !number_attribute(reader, node, "from", &from) ||
+      !number_attribute(reader, node, "to", &to)) {
+    node->_private = node;
+    free(index);
+    return;
+  }
+  if (from != floor(from) || to != floor(to) || to - from >= REPETITION_LIMIT) {
+    if (pass == DECLARATIONS)
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "<for> from %g to %g; expected whole numbers and at most %d repetitions", from, to,
+                   REPETITION_LIMIT);
+  } else if (scope_find(scope, index) != NULL) {
+    if (pass == DECLARATIONS)
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "the index '%s' of <for> is already a name; expected a new one", index);
+  } else {
+    for (double i = from; i <= to && !reader->model->graph->overflow; i++) {
+      scope_set_number(scope, index, i);
+      read_children(reader, node, pass);
+    }
+    scope_remove(scope, index);
+  }
+  free(index);
+}
+
+static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    if (xmlStrEqual(node->name, (const xmlChar *)"for")) read_repetition(reader, node, pass);
+    else read_element(reader, node, pass);
+  }
+}
+
+/* Symbols for time and the accelerations; what der(...) makes of each symbol. */
+static void relate_to_time(struct Model *model) {
+  size_t n = model->coordinates.count;
+  model->accelerations = allocate(n, sizeof *model->accelerations);
+  model->forces = allocate(n, sizeof *model->forces);
+  scope_set_time_derivative(model->scope, model->time, ONE);
+  for (size_t i = 0; i < n; i++) {
+    char *name = format_text("der(%s)", model->velocities.items[i].name);
+    model->accelerations[i] =
+        scope_symbol(model->scope, ACCELERATION, (int)i, name, model->velocities.items[i].dimension, 0);
+    free(name);
+    scope_set_time_derivative(model->scope, model->coordinates.items[i].node, model->velocities.items[i].node);
+    scope_set_time_derivative(model->scope, model->velocities.items[i].node, model->accelerations[i]);
+  }
+}
+
+static void check_definitions_used(struct Reader *reader) {
+  for (size_t i = 0; i < reader->options->definition_count; i++)
+    if (!reader->definition_used[i])
+      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name",
+                   reader->options->definitions[i]);
+}
+
+/* Results that every system has; their names must stay free. */
+static void reserve_result_names(struct Scope *scope) {
+  static const char *const results[] = {"kineticEnergy",     "potentialEnergy",       "totalEnergy",
+                                        "nonConservativeWork", "solverSteps",           "derivativeEvaluations",
+                                        "jacobianEvaluations"};
+  for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
+}
+
+static struct Model *model_create(struct Diagnostics *diagnostics) {
+  struct Model *model = allocate(1, sizeof *model);
+  model->graph = graph_create();
+  model->scope = scope_create(model->graph, diagnostics);
+  model->kinetic = model->potential = model->dissipation = (struct Quantity){.node = ZERO};
+  model->tolerance = model->start_time = model->stop_time = model->step_size = NAN;
+  define_language(model->scope);
+  reserve_result_names(model->scope);
+  struct Dimension second;
+  const char *problem;
+  unit_parse("s", &second, &problem);
+  model->time = scope_symbol(model->scope, TIME, 0, "time", second, 0);
+  return model;
+}
+
+static void read_system(struct Reader *reader, xmlNodePtr root) {
+  reader->model->name = attribute(root, "name");
+  reader->model->description = attribute(root, "description");
+  read_children(reader, root, DECLARATIONS);
+  check_definitions_used(reader);
+  relate_to_time(reader->model);
+  read_children(reader, root, POSITIONS);
+  read_children(reader, root, EXPRESSIONS);
+  check_settings(reader);
+  if (reader->model->graph->overflow)
+    report_error(reader->diagnostics, 0, "the system is too large: more than %d operations", NODE_LIMIT);
+}
+
+/* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
+static struct Model *read_file(const char *path, const struct ReaderOptions *options,
+                               struct Diagnostics *diagnostics, int depth) {
+  struct Diagnostics local = {.file = path};
+  struct Model *model = NULL;
+  xmlDocPtr document = xml_load(path, &local);
+  xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
+  if (root != NULL && xmlStrEqual(root->name, (const xmlChar *)"linearization")) {
+    char *original = depth == 0 ? linearized_path(root, path) : NULL;
+    if (depth > 0)
+      report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
+    else if (original != NULL) {
+      model = read_file(original, options, &local, depth + 1);
+      if (model != NULL) read_linearization(model, root, &local);
+    }
+    free(original);
+  } else if (root != NULL) {
+    model = model_create(&local);
+    struct Reader reader = {.model = model, .diagnostics = &local, .options = options};
+    reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
+    read_system(&reader, root);
+    free(reader.definition_used);
+  }
+  if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
+    apply_point(model, options->point, options->point_count, &local);
+  xmlFreeDoc(document);
+  diagnostics->errors += local.errors;
+  if (model != NULL) model->scope->diagnostics = diagnostics;
+  if (local.errors == 0) return model;
+  model_free(model);
+  return NULL;
+}
+
+struct Model *model_read(const char *path, const struct ReaderOptions *options,
+                         struct Diagnostics *diagnostics) {
+  return read_file(path, options, diagnostics, 0);
+}

@@ -1,0 +1,121 @@
+#include "evaluate.h"
+
+#include <math.h>
+
+#include "log.h"
+
+void log_singularity(const struct Instance *instance, fmi2Status status, double time) {
+  if (instance->singular == 0) {
+    log_message(instance, status,
+                "time %g: the accelerations are not finite; try other parameters, inputs or start values", time);
+    return;
+  }
+  size_t coordinate = (size_t)instance->singular - 1;
+  const char *name = "";
+  for (size_t i = 0; i < lagrangian.variable_count; i++)
+    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == coordinate)
+      name = lagrangian.variables[i].name;
+  log_message(instance, status,
+              "time %g: the mass matrix is singular or not positive definite in coordinate '%s' (%s = %g); it depends "
+              "on %s: keep these away from values where the coordinate is not defined",
+              time, name, name, instance->state[coordinate], lagrangian.inertia_depends_on[coordinate]);
+}
+
+fmi2Status evaluate_prepare(struct Instance *instance) {
+  if (!instance->prepared_is_stale) return fmi2OK;
+  instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
+  if (instance->singular != 0) {
+    log_singularity(instance, fmi2Discard, instance->situation->time);
+    return fmi2Discard;
+  }
+  instance->prepared_is_stale = false;
+  return fmi2OK;
+}
+
+struct Point evaluate_point(const struct Instance *instance) {
+  return (struct Point){.time = instance->situation->time,
+                        .state = instance->state,
+                        .input = instance->input,
+                        .parameter = instance->parameter,
+                        .prepared = instance->prepared};
+}
+
+bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {
+  instance->singular = lagrangian.derivatives(point, derivative);
+  if (instance->singular != 0) return false;
+  double sum = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) sum += derivative[i] - derivative[i];
+  return sum == 0.0; /* infinities and NaN leave a NaN */
+}
+
+void evaluate_inputs(const struct Instance *instance, double time, double *input) {
+  double s = time - instance->situation->time;
+  for (size_t i = 0; i < lagrangian.input_count; i++) {
+    const double *d = instance->input_derivatives + i;
+    size_t n = lagrangian.input_count;
+    input[i] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
+  }
+}
+
+static fmi2Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable,
+                                  double *value) {
+  struct Point point = evaluate_point(instance);
+  const struct Result *result = &lagrangian.results[variable->index];
+  if (result->uses_acceleration && !evaluate_derivatives(instance, &point, instance->work)) {
+    log_singularity(instance, fmi2Discard, point.time);
+    return fmi2Discard;
+  }
+  *value = result->value(&point, instance->work + lagrangian.coordinate_count);
+  return fmi2OK;
+}
+
+static fmi2Status evaluate_derivative(struct Instance *instance, const struct ScalarVariable *variable,
+                                      double *value) {
+  struct Point point = evaluate_point(instance);
+  if (!evaluate_derivatives(instance, &point, instance->work)) {
+    log_singularity(instance, fmi2Discard, point.time);
+    return fmi2Discard;
+  }
+  *value = instance->work[variable->index];
+  return fmi2OK;
+}
+
+fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+  double result = 0.0;
+  fmi2Status status = fmi2OK;
+  switch (variable->kind) {
+  case VARIABLE_TIME: result = instance->situation->time; break;
+  case VARIABLE_STATE: result = instance->state[variable->index]; break;
+  case VARIABLE_INPUT: result = instance->input[variable->index]; break;
+  case VARIABLE_PARAMETER: result = instance->parameter[variable->index]; break;
+  case VARIABLE_DERIVATIVE:
+    status = evaluate_prepare(instance);
+    if (status == fmi2OK) status = evaluate_derivative(instance, variable, &result);
+    break;
+  case VARIABLE_RESULT:
+    status = evaluate_prepare(instance);
+    if (status == fmi2OK) status = evaluate_result(instance, variable, &result);
+    break;
+  case VARIABLE_STATISTIC: return fmi2Error; /* no Real */
+  }
+  if (status == fmi2OK && !isfinite(result)) {
+    log_message(instance, fmi2Discard, "time %g: '%s' has no finite value here; try other parameters or states",
+                instance->situation->time, variable->name);
+    status = fmi2Discard;
+  }
+  if (status == fmi2OK) *value = result;
+  return status;
+}
+
+double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
+                      const double *derivative, const double *derivative_along) {
+  switch (variable->kind) {
+  case VARIABLE_TIME: return seed->time;
+  case VARIABLE_STATE: return seed->state[variable->index];
+  case VARIABLE_DERIVATIVE: return derivative_along[variable->index];
+  case VARIABLE_RESULT:
+    return lagrangian.results[variable->index].along(point, seed, derivative + lagrangian.coordinate_count,
+                                                     derivative_along + lagrangian.coordinate_count);
+  default: return NAN;
+  }
+}

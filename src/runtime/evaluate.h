@@ -1,0 +1,35 @@
+/* Evaluation of the generated functions at the instance's situation. */
+#ifndef EVALUATE_H
+#define EVALUATE_H
+
+#include "instance.h"
+
+/* What prepare() makes of the parameters, brought up to date. Returns fmi2Discard after logging a singular matrix. */
+fmi2Status evaluate_prepare(struct Instance *instance);
+
+/* The point of the situation: its time, state, inputs and parameters. */
+struct Point evaluate_point(const struct Instance *instance);
+
+/*
+ * derivative[state_count] at a point whose prepared values are up to date. False where it is not finite or the mass
+ * matrix is singular, which instance->singular then tells.
+ */
+bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
+
+/* Logs why evaluate_derivatives() returned false, as a message of this status. */
+void log_singularity(const struct Instance *instance, fmi2Status status, double time);
+
+/* The inputs at time, as polynomials that start at situation->time; input[input_count]. */
+void evaluate_inputs(const struct Instance *instance, double time, double *input);
+
+/* The value of a Real variable. Returns fmi2Discard after logging where it is not finite. */
+fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value);
+
+/*
+ * The derivative of an output, a state or a state derivative along seed; derivative and derivative_along hold
+ * state_count values from derivatives() and directional().
+ */
+double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
+                      const double *derivative, const double *derivative_along);
+
+#endif

@@ -1,0 +1,132 @@
+/*
+ * Backward differentiation formulas of order 1 to 5, by CVODE of SUNDIALS, with the generated Jacobian. The solver
+ * goes on from one communication step to the next and starts anew only where something was changed from outside.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include <cvode/cvode.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include "log.h"
+#include "solver.h"
+#include "sundials_support.h"
+
+/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+static const double safety = 0.01;
+
+struct Bdf {
+  struct SundialsVectors vectors;
+  void *cvode;
+  SUNMatrix matrix;
+  SUNLinearSolver linear_solver;
+  double tolerance; /* the one that cvode works with */
+};
+
+static int right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
+  bool exists =
+      solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
+  return exists ? 0 : 1; /* recoverable: a shorter step may avoid the point */
+}
+
+static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data,
+                    N_Vector unused1, N_Vector unused2, N_Vector unused3) {
+  struct Instance *instance = data;
+  (void)derivative;
+  (void)unused1;
+  (void)unused2;
+  (void)unused3;
+  struct Point point = solver_point(instance, time, N_VGetArrayPointer(state));
+  instance->situation->statistics[STATISTIC_JACOBIANS]++;
+  instance->singular = lagrangian.jacobian(&point, SUNDenseMatrix_Data(matrix));
+  return instance->singular == 0 ? 0 : 1;
+}
+
+static void destroy(struct Instance *instance) {
+  struct Bdf *bdf = instance->solver_memory;
+  if (bdf->cvode != NULL) CVodeFree(&bdf->cvode);
+  if (bdf->linear_solver != NULL) SUNLinSolFree(bdf->linear_solver);
+  if (bdf->matrix != NULL) SUNMatDestroy(bdf->matrix);
+  sundials_vectors_destroy(&bdf->vectors);
+  instance->free(bdf);
+  instance->solver_memory = NULL;
+}
+
+static bool configure(struct Instance *instance, struct Bdf *bdf) {
+  sunindextype n = (sunindextype)lagrangian.state_count;
+  bdf->cvode = CVodeCreate(CV_BDF, bdf->vectors.context);
+  bdf->matrix = SUNDenseMatrix(n, n, bdf->vectors.context);
+  bdf->linear_solver = SUNLinSol_Dense(bdf->vectors.state, bdf->matrix, bdf->vectors.context);
+  if (bdf->cvode == NULL || bdf->matrix == NULL || bdf->linear_solver == NULL) return false;
+  bdf->tolerance = sundials_tolerances(instance, &bdf->vectors, safety);
+  return sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
+                            "CVodeSetErrHandlerFn") &&
+         sundials_succeeded(instance,
+                            CVodeInit(bdf->cvode, right_side, instance->situation->time, bdf->vectors.state),
+                            "CVodeInit") &&
+         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->tolerance, bdf->vectors.tolerance),
+                            "CVodeSVtolerances") &&
+         sundials_succeeded(instance, CVodeSetUserData(bdf->cvode, instance), "CVodeSetUserData") &&
+         sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, STEP_LIMIT), "CVodeSetMaxNumSteps") &&
+         sundials_succeeded(instance, CVodeSetMaxHnilWarns(bdf->cvode, -1), "CVodeSetMaxHnilWarns") &&
+         sundials_succeeded(instance, CVodeSetLinearSolver(bdf->cvode, bdf->linear_solver, bdf->matrix),
+                            "CVodeSetLinearSolver") &&
+         sundials_succeeded(instance, CVodeSetJacFn(bdf->cvode, jacobian), "CVodeSetJacFn");
+}
+
+static bool create(struct Instance *instance) {
+  struct Bdf *bdf = instance->allocate(1, sizeof *bdf);
+  if (bdf == NULL) {
+    log_message(instance, fmi2Error, "allocateMemory returned no memory for the solver");
+    return false;
+  }
+  instance->solver_memory = bdf;
+  if (sundials_vectors_create(instance, &bdf->vectors)) {
+    memcpy(N_VGetArrayPointer(bdf->vectors.state), instance->state, lagrangian.state_count * sizeof(double));
+    if (configure(instance, bdf)) return true;
+  }
+  destroy(instance);
+  return false;
+}
+
+static bool restart(struct Instance *instance, struct Bdf *bdf) {
+  memcpy(N_VGetArrayPointer(bdf->vectors.state), instance->state, lagrangian.state_count * sizeof(double));
+  bdf->tolerance = sundials_tolerances(instance, &bdf->vectors, safety);
+  return sundials_succeeded(instance, CVodeReInit(bdf->cvode, instance->situation->time, bdf->vectors.state),
+                            "CVodeReInit") &&
+         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->tolerance, bdf->vectors.tolerance),
+                            "CVodeSVtolerances");
+}
+
+/* Where inputs or time drive the system, a step longer than the communication step could pass over a pulse. */
+static bool limit_step(struct Instance *instance, struct Bdf *bdf, double step) {
+  if (lagrangian.input_count == 0 && !lagrangian.depends_on_time) return true;
+  return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, step), "CVodeSetMaxStep");
+}
+
+static enum StepResult step(struct Instance *instance, double length, double *reached) {
+  struct Bdf *bdf = instance->solver_memory;
+  struct Situation *situation = instance->situation;
+  double end = situation->time + length;
+  if (sundials_tiny_step(instance, end)) return STEP_DONE;
+  if (instance->solver_is_stale && !restart(instance, bdf)) return STEP_FAILED;
+  if (!limit_step(instance, bdf, length)) return STEP_FAILED;
+  instance->solver_is_stale = false;
+  realtype time = situation->time;
+  long before = 0, after = 0;
+  if (!sundials_succeeded(instance, CVodeGetNumSteps(bdf->cvode, &before), "CVodeGetNumSteps")) return STEP_FAILED;
+  int flag = CVode(bdf->cvode, end, bdf->vectors.state, &time, CV_NORMAL);
+  if (!sundials_succeeded(instance, CVodeGetNumSteps(bdf->cvode, &after), "CVodeGetNumSteps")) return STEP_FAILED;
+  situation->statistics[STATISTIC_STEPS] += (int32_t)(after - before);
+  memcpy(instance->state, N_VGetArrayPointer(bdf->vectors.state), lagrangian.state_count * sizeof(double));
+  if (flag >= 0) return STEP_DONE;
+  char *name = CVodeGetReturnFlagName(flag);
+  sundials_log_stop(instance, "CVODE", flag, name, time, end);
+  free(name);
+  instance->solver_is_stale = true;
+  *reached = time;
+  return STEP_PARTIAL;
+}
+
+const struct Solver solver_bdf = {.create = create, .destroy = destroy, .step = step};

@@ -1,0 +1,41 @@
+/* What the solvers of SUNDIALS share. */
+#ifndef SUNDIALS_SUPPORT_H
+#define SUNDIALS_SUPPORT_H
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+
+#include "instance.h"
+
+/* Vectors of a solver. */
+struct SundialsVectors {
+  SUNContext context;
+  N_Vector state, tolerance; /* tolerance: absolute, by state */
+};
+
+/* False after logging where SUNDIALS has no memory. */
+bool sundials_vectors_create(struct Instance *instance, struct SundialsVectors *vectors);
+void sundials_vectors_destroy(struct SundialsVectors *vectors);
+
+/* The relative tolerance for the solver: its local errors add up over a simulation. Sets vectors->tolerance. */
+double sundials_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety);
+
+/* Logs that a call of SUNDIALS failed unless flag tells success; returns whether it succeeded. */
+bool sundials_succeeded(const struct Instance *instance, int flag, const char *call);
+
+/*
+ * Advances by a step that is too short for the solver, a few units in the last place of the time, where Euler's
+ * method is exact to rounding. False where the step is longer or the derivative does not exist.
+ */
+bool sundials_tiny_step(struct Instance *instance, double end);
+
+/* Logs that the solver stopped before the end of a communication step, and what to try. */
+void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name,
+                       double reached, double end);
+
+/* An error handler for SUNDIALS that stays silent: the flags tell what happened, in this project's words. */
+void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data);
+
+enum { STEP_LIMIT = 10000000 }; /* internal steps in one communication step */
+
+#endif
