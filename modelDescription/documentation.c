@@ -2,11 +2,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <libxml/xmlwriter.h>
 
 #include "../src/compiler/memory.h"
 #include "../src/compiler/print.h"
+#include "../src/compiler/rational.h"
 #include "../src/compiler/simplify.h"
 #include "xml_output.h"
 
@@ -19,9 +21,17 @@ static void element(xmlTextWriterPtr writer, const char *name, const char *text)
   xmlTextWriterWriteElement(writer, BAD_CAST name, BAD_CAST text);
 }
 
+/* The expression as it is, or multiplied out where that is shorter. */
+static char *readable_text(struct Graph *graph, Node node) {
+  char *text = expression_text(graph, node), *expanded = expression_text(graph, simplify_fraction(graph, node));
+  bool shorter = strlen(expanded) < strlen(text);
+  free(shorter ? text : expanded);
+  return shorter ? expanded : text;
+}
+
 /* left = expression, on a line of its own. */
-static void write_equation(xmlTextWriterPtr writer, const struct Graph *graph, const char *left, Node right) {
-  char *expression = expression_text(graph, right), *text = format_text("%s = %s", left, expression);
+static void write_equation(xmlTextWriterPtr writer, struct Graph *graph, const char *left, Node right) {
+  char *expression = readable_text(graph, right), *text = format_text("%s = %s", left, expression);
   element(writer, "code", text);
   free(text);
   free(expression);
@@ -41,7 +51,7 @@ static void write_motion(xmlTextWriterPtr writer, const struct Program *program,
   for (size_t j = 0; j < equations->count; j++)
     inertia = add(graph, inertia,
                   multiply(graph, equations->mass[i * equations->count + j], program->model->accelerations[j]));
-  char *left = expression_text(graph, inertia);
+  char *left = readable_text(graph, inertia);
   write_equation(writer, graph, left, equations->right_side[i]);
   free(left);
 }

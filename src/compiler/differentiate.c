@@ -105,11 +105,19 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
 }
 
 void gradient_of(struct Graph *graph, Node target, const Node *symbols, size_t count, Node *gradient) {
+  const Node weight = ONE;
+  weighted_gradient_of(graph, &target, &weight, 1, symbols, count, gradient);
+}
+
+void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
+                          const Node *symbols, size_t count, Node *gradient) {
   bool *needed = allocate(graph->count, sizeof *needed);
-  graph_mark(graph, &target, 1, needed);
-  Node *adjoint = allocate((size_t)target + 1, sizeof *adjoint);
-  adjoint[target] = ONE;
-  for (Node node = target + 1; node-- > 0;) {
+  graph_mark(graph, targets, target_count, needed);
+  Node last = last_of(targets, target_count);
+  Node *adjoint = allocate((size_t)last + 1, sizeof *adjoint);
+  for (size_t k = 0; k < target_count; k++)
+    adjoint[targets[k]] = add(graph, adjoint[targets[k]], weights[k]);
+  for (Node node = last + 1; node-- > 0;) {
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
     if (!needed[node] || adjoint[node] == ZERO || arity == 0) continue;
@@ -122,7 +130,7 @@ void gradient_of(struct Graph *graph, Node target, const Node *symbols, size_t c
       adjoint[vertex.right] =
           add(graph, adjoint[vertex.right], multiply(graph, adjoint[node], by_right));
   }
-  for (size_t i = 0; i < count; i++) gradient[i] = symbols[i] <= target ? adjoint[symbols[i]] : ZERO;
+  for (size_t i = 0; i < count; i++) gradient[i] = symbols[i] <= last ? adjoint[symbols[i]] : ZERO;
   free(adjoint);
   free(needed);
 }

@@ -174,11 +174,13 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   model->bodies[model->body_count++] = body;
 }
 
-static void read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what,
+/* Adds the element's expression to a sum and returns it. */
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what,
                         unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, sum, term.node);
+  return term.node;
 }
 
 static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
@@ -302,7 +304,8 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
   if (strcmp(element, "kinetic") == 0)
-    read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
+    add_term(model, &model->explicit_kinetic,
+             read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J"));
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) {

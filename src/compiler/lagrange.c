@@ -36,30 +36,85 @@ static void derive_mass_matrix(struct Graph *graph, struct Equations *equations,
   free(column);
 }
 
-/* d p / dt splits into M a, along the accelerations, and the rest, along v and time. */
-static void derive_right_side(struct Model *model, struct Equations *equations, const Node *momentum,
-                              const Node *gradient, const Node *force) {
+/* Everything that moves with an inertia: coordinates of positions with masses, angles with moments of inertia. */
+struct Motions {
+  Node *position, *inertia;
+  size_t count;
+};
+
+static void append_motion(struct Motions *motions, Node position, Node inertia) {
+  if (position == ZERO) return;
+  motions->position[motions->count] = position;
+  motions->inertia[motions->count++] = inertia;
+}
+
+static struct Motions motions_of(const struct Model *model) {
+  struct Motions motions = {.position = allocate(4 * model->body_count, sizeof(Node)),
+                            .inertia = allocate(4 * model->body_count, sizeof(Node))};
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    for (int axis = 0; axis < 3; axis++) append_motion(&motions, body->position[axis].node, body->mass.node);
+    append_motion(&motions, body->angle.node, body->inertia.node);
+  }
+  return motions;
+}
+
+/* Directions in the space of all symbols: seeds of d/dt with accelerations, and without them. */
+static Node *time_seeds(const struct Model *model, bool with_accelerations) {
+  const struct Graph *graph = model->graph;
+  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
+  seeds[graph->vertices[model->time].left] = ONE;
+  for (size_t i = 0; i < model->coordinates.count; i++) {
+    seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
+    if (with_accelerations)
+      seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
+  }
+  return seeds;
+}
+
+/* sum m (d2r/dt2) . dr/dq_i, with the accelerations or with 0 for them. */
+static void inertial_forces(struct Model *model, const struct Motions *motions, const Node *coordinates,
+                            bool with_accelerations, Node *force) {
+  struct Graph *graph = model->graph;
+  Node *seeds = time_seeds(model, with_accelerations), *weight = allocate(motions->count, sizeof *weight);
+  derivative_along(graph, motions->position, motions->count, seeds, weight);
+  derivative_along(graph, weight, motions->count, seeds, weight);
+  for (size_t k = 0; k < motions->count; k++) weight[k] = multiply(graph, motions->inertia[k], weight[k]);
+  weighted_gradient_of(graph, motions->position, weight, motions->count, coordinates, model->coordinates.count,
+                       force);
+  free(weight);
+  free(seeds);
+}
+
+/* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
+static void derive_motion(struct Model *model, struct Equations *equations, const Node *coordinates,
+                          const Node *velocities, const Node *force) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
-  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
-  Node *rate = allocate(n, sizeof *rate), *inertia = allocate(n, sizeof *inertia);
-  seeds[graph->vertices[model->time].left] = ONE;
-  for (size_t i = 0; i < n; i++)
-    seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-  derivative_along(graph, momentum, n, seeds, rate);
-  free(seeds);
-  seeds = allocate(graph->symbol_count, sizeof *seeds);
-  for (size_t i = 0; i < n; i++)
-    seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
-  derivative_along(graph, momentum, n, seeds, inertia);
-  for (size_t i = 0; i < n; i++) {
-    Node right = add(graph, force[i], gradient[i]);
-    equations->right_side[i] = subtract(graph, right, rate[i]);
-    equations->residual[i] = subtract(graph, inertia[i], equations->right_side[i]);
+  struct Motions motions = motions_of(model);
+  Node lagrangian = subtract(graph, model->explicit_kinetic.node, model->potential.node);
+  Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
+  Node *rate = allocate(n, sizeof *rate), *inertial = allocate(n, sizeof *inertial);
+  gradient_of(graph, lagrangian, velocities, n, momentum);
+  gradient_of(graph, lagrangian, coordinates, n, gradient);
+  Node *const results[] = {equations->right_side, equations->residual};
+  for (int with_accelerations = 0; with_accelerations <= 1; with_accelerations++) {
+    Node *seeds = time_seeds(model, with_accelerations == 1);
+    derivative_along(graph, momentum, n, seeds, rate);
+    inertial_forces(model, &motions, coordinates, with_accelerations == 1, inertial);
+    for (size_t i = 0; i < n; i++) {
+      Node left = add(graph, inertial[i], rate[i]), right = add(graph, force[i], gradient[i]);
+      results[with_accelerations][i] =
+          with_accelerations ? subtract(graph, left, right) : subtract(graph, right, left);
+    }
+    free(seeds);
   }
-  free(seeds);
+  free(motions.position);
+  free(motions.inertia);
+  free(momentum);
+  free(gradient);
   free(rate);
-  free(inertia);
+  free(inertial);
 }
 
 /* What of U is stored energy: terms linear in the velocities (magnetic forces) store none. */
@@ -86,13 +141,10 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   symbols_of(&model->coordinates, q);
   symbols_of(&model->velocities, v);
 
-  Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
-  Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
-  gradient_of(graph, lagrangian, v, n, momentum);
-  gradient_of(graph, lagrangian, q, n, gradient);
-  Node *force = generalized_forces(model, v);
+  Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model, v);
+  gradient_of(graph, subtract(graph, model->kinetic.node, model->potential.node), v, n, momentum);
   derive_mass_matrix(graph, equations, momentum, v);
-  derive_right_side(model, equations, momentum, gradient, force);
+  derive_motion(model, equations, q, v, force);
   for (size_t i = 0; i < n; i++)
     equations->power = add(graph, equations->power, multiply(graph, force[i], v[i]));
   equations->kinetic = model->kinetic.node;
@@ -106,7 +158,6 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   free(q);
   free(v);
   free(momentum);
-  free(gradient);
   free(force);
   return equations;
 }

@@ -2,6 +2,9 @@
  * Lagrange's equation, d/dt (dL/dv_i) - dL/dq_i = Q_i, for a general L(q, v, t) = K - U:
  *
  *   M a = Q + dL/dq - (d2L/dv dq) v - d2L/dv dt,     M = d2L/dv dv
+ *
+ * For the bodies' share of K the left side is the same as d'Alembert's sum m (d2r/dt2) . dr/dq_i. This form is used
+ * for it, because the general one makes terms that only cancel each other.
  */
 #ifndef LAGRANGE_H
 #define LAGRANGE_H

@@ -94,37 +94,56 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
   free(symbols);
 }
 
+/* M0 solution = right for several right sides by rows, in fractions where they are not too large. */
+static void solve_at_point(const struct Expansion *point, const struct Equations *equations, size_t columns,
+                           const Node *right, Node *solution) {
+  struct Graph *graph = point->graph;
+  size_t n = equations->count;
+  Node *mass = allocate(n * n, sizeof *mass);
+  substitute(graph, equations->mass, n * n, point->replacements, mass);
+  if (!solve_fractions(graph, n, mass, columns, right, solution)) {
+    struct Equations at = *equations;
+    Node *column = allocate(n, sizeof *column);
+    at.lower = allocate(n * n, sizeof(Node));
+    at.diagonal = allocate(n, sizeof(Node));
+    substitute(graph, equations->lower, n * n, point->replacements, at.lower);
+    substitute(graph, equations->diagonal, n, point->replacements, at.diagonal);
+    for (size_t j = 0; j < columns; j++) {
+      for (size_t i = 0; i < n; i++) column[i] = right[i * columns + j];
+      equations_solve(graph, &at, column, column);
+      for (size_t i = 0; i < n; i++) solution[i * columns + j] = column[i];
+    }
+    free(at.lower);
+    free(at.diagonal);
+    free(column);
+  }
+  free(mass);
+}
+
 /* M0 da = -(d residual / d s) ds with the acceleration held at its value at the point. */
 static void linearize_accelerations(struct Model *model, struct Equations *equations) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
   struct Expansion states = expansion_create(model, NULL);
-  struct Equations at = *equations;
-  at.lower = allocate(n * n, sizeof(Node));
-  at.diagonal = allocate(n, sizeof(Node));
-  substitute(graph, equations->lower, n * n, states.replacements, at.lower);
-  substitute(graph, equations->diagonal, n, states.replacements, at.diagonal);
-  Node *value = allocate(n, sizeof *value), *column = allocate(n, sizeof *column);
-  substitute(graph, equations->acceleration, n, states.replacements, value);
-  for (size_t i = 0; i < n; i++) value[i] = simplify_fraction(graph, value[i]);
+  Node *value = allocate(n, sizeof *value), *slopes = allocate(n * states.count, sizeof *slopes);
+  substitute(graph, equations->right_side, n, states.replacements, value);
+  solve_at_point(&states, equations, 1, value, value);
   struct Expansion all = expansion_create(model, value);
-  for (size_t i = 0; i < n; i++) equations->acceleration[i] = value[i];
-  for (size_t j = 0; j < states.count; j++) {
-    for (size_t i = 0; i < n; i++)
-      column[i] =
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < states.count; j++)
+      slopes[i * states.count + j] =
           negate(graph, at_point(&all, derivative_by(graph, equations->residual[i], states.symbols[j])));
-    equations_solve(graph, &at, column, column);
-    for (size_t i = 0; i < n; i++)
-      equations->acceleration[i] =
-          add(graph, equations->acceleration[i],
-              multiply(graph, simplify_fraction(graph, column[i]), states.deviations[j]));
+  solve_at_point(&states, equations, states.count, slopes, slopes);
+  for (size_t i = 0; i < n; i++) {
+    equations->acceleration[i] = value[i];
+    for (size_t j = 0; j < states.count; j++)
+      equations->acceleration[i] = add(graph, equations->acceleration[i],
+                                       multiply(graph, slopes[i * states.count + j], states.deviations[j]));
   }
   for (size_t i = 0; i < model->outputs.count; i++)
     model->outputs.items[i].node = expand(&all, model->outputs.items[i].node, 1);
-  free(at.lower);
-  free(at.diagonal);
   free(value);
-  free(column);
+  free(slopes);
   expansion_free(&states);
   expansion_free(&all);
 }

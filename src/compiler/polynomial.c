@@ -72,6 +72,11 @@ void polynomial_scale(struct Polynomial *p, double coefficient, const uint8_t ex
   }
 }
 
+void polynomial_divide_by(struct Polynomial *p, double divisor, const uint8_t exponent[ATOM_LIMIT]) {
+  polynomial_scale(p, 1.0, exponent);
+  for (size_t i = 0; i < p->count; i++) p->terms[i].coefficient /= divisor;
+}
+
 struct Polynomial polynomial_multiply(const struct Polynomial *a, const struct Polynomial *b) {
   struct Polynomial product = with_capacity(0);
   product.overflow = a->overflow || b->overflow;

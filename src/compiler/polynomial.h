@@ -38,4 +38,7 @@ void polynomial_take_content(struct Polynomial *p, uint8_t exponent[ATOM_LIMIT])
 /* Multiplies by coefficient and the monomial of these exponents. */
 void polynomial_scale(struct Polynomial *p, double coefficient, const uint8_t exponent[ATOM_LIMIT]);
 
+/* The same with a divisor. */
+void polynomial_divide_by(struct Polynomial *p, double divisor, const uint8_t exponent[ATOM_LIMIT]);
+
 #endif

@@ -39,6 +39,34 @@ static void cancel_polynomials(struct Polynomial *a, struct Polynomial *b) {
   *b = below ? polynomial_constant(1.0) : quotient;
 }
 
+/* Euclid's algorithm for whole numbers. */
+static double greatest_common_divisor(double a, double b) {
+  while (b != 0.0) {
+    double rest = fmod(a, b);
+    a = b;
+    b = rest;
+  }
+  return fabs(a);
+}
+
+/*
+ * What to divide all coefficients by: it leaves whole numbers without a common divisor where the coefficients are
+ * binary fractions, so that rational coefficients stay exact, and a leading 1 below otherwise.
+ */
+static double common_divisor(const struct Polynomial *above, const struct Polynomial *below) {
+  const struct Polynomial *const parts[] = {above, below};
+  const double fraction = 1.0 / 1024, lead = below->terms[0].coefficient;
+  double divisor = 0.0;
+  for (int part = 0; part < 2; part++) {
+    for (size_t i = 0; i < parts[part]->count; i++) {
+      double whole = parts[part]->terms[i].coefficient / fraction;
+      if (whole != floor(whole) || fabs(whole) > 1e15) return lead;
+      divisor = greatest_common_divisor(divisor, whole);
+    }
+  }
+  return lead < 0 ? -divisor * fraction : divisor * fraction;
+}
+
 static void fraction_reduce(struct Fraction *fraction) {
   struct Polynomial *above = &fraction->above, *below = &fraction->below;
   if (above->overflow || below->overflow || below->count == 0) return;
@@ -56,9 +84,9 @@ static void fraction_reduce(struct Fraction *fraction) {
     b[atom] = (uint8_t)(b[atom] - common);
   }
   cancel_polynomials(above, below);
-  double lead = below->terms[0].coefficient;
-  polynomial_scale(above, 1.0 / lead, a);
-  polynomial_scale(below, 1.0 / lead, b);
+  double divisor = common_divisor(above, below);
+  polynomial_divide_by(above, divisor, a);
+  polynomial_divide_by(below, divisor, b);
 }
 
 static struct Fraction fraction_add(const struct Fraction *x, const struct Fraction *y) {
@@ -146,23 +174,95 @@ static Node polynomial_node(const struct Converter *converter, struct Polynomial
   return multiply(converter->graph, monomial_node(converter, lead, content), sum);
 }
 
-Node simplify_fraction(struct Graph *graph, Node node) {
-  struct Converter converter = {.graph = graph};
-  bool *needed = allocate(graph->count, sizeof *needed);
-  struct Fraction *known = allocate((size_t)node + 1, sizeof *known);
-  graph_mark(graph, &node, 1, needed);
-  for (Node i = 0; i <= node && !converter.overflow; i++) {
+/* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
+static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
+  const struct Graph *graph = converter->graph;
+  size_t size = graph->count;
+  bool *needed = allocate(size, sizeof *needed);
+  struct Fraction *known = allocate(size, sizeof *known);
+  graph_mark(graph, nodes, count, needed);
+  for (Node i = 0; i < size && !converter->overflow; i++) {
     if (!needed[i]) continue;
-    known[i] = convert(&converter, i, known);
-    converter.overflow = converter.overflow || known[i].above.overflow || known[i].below.overflow ||
-                         known[i].below.count == 0;
+    known[i] = convert(converter, i, known);
+    converter->overflow = converter->overflow || known[i].above.overflow || known[i].below.overflow ||
+                          known[i].below.count == 0;
   }
-  Node result = node;
-  if (!converter.overflow)
-    result = divide(graph, polynomial_node(&converter, &known[node].above),
-                    polynomial_node(&converter, &known[node].below));
-  for (Node i = 0; i <= node; i++) fraction_free(&known[i]);
+  for (size_t i = 0; i < count; i++) fractions[i] = fraction_copy(&known[nodes[i]]);
+  for (Node i = 0; i < size; i++) fraction_free(&known[i]);
   free(known);
   free(needed);
+  return !converter->overflow;
+}
+
+static Node fraction_node(const struct Converter *converter, struct Fraction *fraction) {
+  Node above = polynomial_node(converter, &fraction->above), below = polynomial_node(converter, &fraction->below);
+  return divide(converter->graph, above, below);
+}
+
+Node simplify_fraction(struct Graph *graph, Node node) {
+  struct Converter converter = {.graph = graph};
+  struct Fraction fraction;
+  Node result = convert_all(&converter, &node, 1, &fraction) ? fraction_node(&converter, &fraction) : node;
+  fraction_free(&fraction);
   return result;
+}
+
+/* x - factor * y in place of x */
+static void fraction_subtract(struct Fraction *x, const struct Fraction *factor, const struct Fraction *y) {
+  struct Fraction product = fraction_multiply(factor, y);
+  for (size_t i = 0; i < product.above.count; i++) product.above.terms[i].coefficient *= -1.0;
+  struct Fraction difference = fraction_add(x, &product);
+  fraction_free(&product);
+  fraction_free(x);
+  *x = difference;
+}
+
+static bool is_usable(const struct Fraction *fraction) {
+  return !fraction->above.overflow && !fraction->below.overflow && fraction->below.count > 0;
+}
+
+/* Gauss and Jordan's elimination of n rows of the matrix and its right sides, width fractions each. */
+static bool eliminate(size_t n, size_t width, struct Fraction *rows) {
+  for (size_t k = 0; k < n; k++) {
+    struct Fraction *pivot_row = rows + k * width;
+    if (pivot_row[k].above.count == 0) return false;
+    struct Fraction inverse = fraction_power(&pivot_row[k], -1);
+    for (size_t j = k; j < width; j++) {
+      struct Fraction scaled = fraction_multiply(&pivot_row[j], &inverse);
+      fraction_free(&pivot_row[j]);
+      pivot_row[j] = scaled;
+    }
+    fraction_free(&inverse);
+    for (size_t i = 0; i < n; i++) {
+      struct Fraction *row = rows + i * width, factor = fraction_copy(&row[k]);
+      bool usable = true;
+      for (size_t j = k; j < width && i != k && factor.above.count > 0; j++) {
+        fraction_subtract(&row[j], &factor, &pivot_row[j]);
+        usable = usable && is_usable(&row[j]);
+      }
+      fraction_free(&factor);
+      if (!usable) return false;
+    }
+  }
+  return true;
+}
+
+bool solve_fractions(struct Graph *graph, size_t n, const Node *matrix, size_t columns, const Node *right,
+                     Node *solution) {
+  size_t width = n + columns;
+  struct Converter converter = {.graph = graph};
+  Node *nodes = allocate(n * width, sizeof *nodes);
+  struct Fraction *rows = allocate(n * width, sizeof *rows);
+  for (size_t i = 0; i < n; i++) {
+    for (size_t j = 0; j < n; j++) nodes[i * width + j] = matrix[i * n + j];
+    for (size_t j = 0; j < columns; j++) nodes[i * width + n + j] = right[i * columns + j];
+  }
+  bool solved = convert_all(&converter, nodes, n * width, rows) && eliminate(n, width, rows);
+  for (size_t i = 0; i < n && solved; i++)
+    for (size_t j = 0; j < columns; j++)
+      solution[i * columns + j] = fraction_node(&converter, &rows[i * width + n + j]);
+  for (size_t i = 0; i < n * width; i++) fraction_free(&rows[i]);
+  free(rows);
+  free(nodes);
+  return solved;
 }

@@ -10,4 +10,12 @@
  */
 Node simplify_fraction(struct Graph *graph, Node node);
 
+/*
+ * Solves matrix * solution = right side by elimination in fractions, so that rational coefficients stay exact.
+ * matrix: n x n with nonzero leading minors; right and solution: n x columns; all by rows. False where the
+ * expressions are too large for fractions or the matrix is singular; solution is then undefined.
+ */
+bool solve_fractions(struct Graph *graph, size_t n, const Node *matrix, size_t columns, const Node *right,
+                     Node *solution);
+
 #endif

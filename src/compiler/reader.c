@@ -88,7 +88,6 @@ static struct Model *model_create(struct Diagnostics *diagnostics) {
   struct Model *model = allocate(1, sizeof *model);
   model->graph = graph_create();
   model->scope = scope_create(model->graph, diagnostics);
-  model->kinetic = model->potential = model->dissipation = (struct Quantity){.node = ZERO};
   model->tolerance = model->start_time = model->stop_time = model->step_size = NAN;
   define_language(model->scope);
   reserve_result_names(model->scope);
