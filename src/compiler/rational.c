@@ -28,9 +28,10 @@ static struct Fraction fraction_copy(const struct Fraction *fraction) {
   return (struct Fraction){polynomial_copy(&fraction->above), polynomial_copy(&fraction->below)};
 }
 
-/* Replaces a and b by their quotient and 1 where one divides the other. */
+/* Replaces a and b by their quotient and 1 where one divides the other. Single monomials have no factor left. */
 static void cancel_polynomials(struct Polynomial *a, struct Polynomial *b) {
   struct Polynomial quotient;
+  if (a->count == 1 || b->count == 1) return;
   bool below = polynomial_divide(a, b, &quotient);
   if (!below && !polynomial_divide(b, a, &quotient)) return;
   polynomial_free(a);
