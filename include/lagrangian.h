@@ -44,8 +44,8 @@ enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, ST
 struct ScalarVariable {
   const char *name;
   enum VariableKind kind;
-  size_t index;    /* among the variables of its kind */
-  bool is_output;  /* causality is output */
+  size_t index;   /* among the variables of its kind */
+  bool is_output; /* causality is output */
   double start, minimum, maximum;
 };
 

@@ -61,8 +61,8 @@ static void write_mechanics(xmlTextWriterPtr writer, const struct Program *progr
   struct Graph *graph = program->model->graph;
   element(writer, "h2", "Energies");
   write_equation(writer, graph, "K", equations->kinetic);
-  write_equation(writer, graph, "U", program->model->linearized ? equations->potential
-                                                               : program->model->potential.node);
+  write_equation(writer, graph, "U",
+                 program->model->linearized ? equations->potential : program->model->potential.node);
   element(writer, "p", "The Lagrangian is L = K - U.");
   element(writer, "h2", "Equations of motion");
   for (size_t i = 0; i < equations->count; i++) write_motion(writer, program, i);
@@ -80,7 +80,7 @@ static void write_outputs(xmlTextWriterPtr writer, const struct Model *model) {
 
 static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
   static const char *const kinds[] = {
-      [VARIABLE_TIME] = "time",           [VARIABLE_STATE] = "state",   [VARIABLE_DERIVATIVE] = "derivative",
+      [VARIABLE_TIME] = "time",           [VARIABLE_STATE] = "state",         [VARIABLE_DERIVATIVE] = "derivative",
       [VARIABLE_INPUT] = "input",         [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "computed",
       [VARIABLE_STATISTIC] = "statistic",
   };

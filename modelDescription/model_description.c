@@ -11,8 +11,7 @@
 #include "model_structure.h"
 #include "xml_output.h"
 
-static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
-                             const struct Interface *interface) {
+static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model, const struct Interface *interface) {
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
   bool moves = interface->state_count > 0;
@@ -68,7 +67,7 @@ static void write_units(xmlTextWriterPtr writer, const struct Interface *interfa
 
 static void write_log_categories(xmlTextWriterPtr writer) {
   static const char *const categories[][2] = {
-      {"logEvents", "life cycle and communication steps"}, {"logStatusWarning", "warnings"},
+      {"logEvents", "life cycle and communication steps"},  {"logStatusWarning", "warnings"},
       {"logStatusDiscard", "steps that were not finished"}, {"logStatusError", "errors"},
       {"logStatusFatal", "errors that end all instances"},  {"logAll", "all messages"}};
   xmlTextWriterStartElement(writer, BAD_CAST "LogCategories");
@@ -95,12 +94,12 @@ static void write_experiment(xmlTextWriterPtr writer, const struct Model *model)
 /* Causality, variability and initial by the tables of section 2.2.7. */
 static void write_classification(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
   static const char *const causalities[] = {
-      [VARIABLE_TIME] = "independent",   [VARIABLE_STATE] = "local",   [VARIABLE_DERIVATIVE] = "local",
-      [VARIABLE_INPUT] = "input",        [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
+      [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
+      [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
       [VARIABLE_STATISTIC] = "local",
   };
   static const char *const initials[] = {
-      [VARIABLE_STATE] = "exact",  [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
+      [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
       [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
   };
   write_attribute(writer, "causality", entry->is_output ? "output" : causalities[entry->kind]);

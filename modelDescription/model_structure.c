@@ -71,8 +71,8 @@ static void write_unknowns(const struct Structure *structure, const char *elemen
   if (open) xmlTextWriterEndElement(structure->writer);
 }
 
-void model_structure_write(xmlTextWriterPtr writer, const struct Model *model,
-                           const struct Equations *equations, const struct Interface *interface) {
+void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
+                           const struct Interface *interface) {
   struct Structure structure = {writer, interface, allocate(interface->count, sizeof *structure.of)};
   for (size_t i = 0; i < interface->count; i++)
     if (is_known(&interface->variables[i].entry, true) && interface->variables[i].node != ZERO)

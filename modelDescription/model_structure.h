@@ -6,7 +6,7 @@
 
 #include "../src/compiler/interface.h"
 
-void model_structure_write(xmlTextWriterPtr writer, const struct Model *model,
-                           const struct Equations *equations, const struct Interface *interface);
+void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
+                           const struct Interface *interface);
 
 #endif

@@ -45,8 +45,7 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
   xmlChar *text = xmlNodeGetContent(node);
   struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
-  struct Quantity value =
-      parse_expression(reader->model->scope, text != NULL ? (const char *)text : "", place);
+  struct Quantity value = parse_expression(reader->model->scope, text != NULL ? (const char *)text : "", place);
   xmlFree(text);
   return value;
 }

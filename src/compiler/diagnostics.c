@@ -3,8 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static void print_message(const char *file, long line, const char *kind, const char *format,
-                          va_list arguments) {
+static void print_message(const char *file, long line, const char *kind, const char *format, va_list arguments) {
   fprintf(stderr, "%s:", file);
   if (line > 0) fprintf(stderr, "%ld:", line);
   fprintf(stderr, " %s", kind);

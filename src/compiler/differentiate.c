@@ -22,8 +22,7 @@ static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, N
     return;
   case POWER:
     *by_left = multiply(graph, b, power(graph, a, subtract(graph, b, ONE)));
-    if (!graph_is_constant(graph, b))
-      *by_right = multiply(graph, function(graph, LOGARITHM, a, ZERO), node);
+    if (!graph_is_constant(graph, b)) *by_right = multiply(graph, function(graph, LOGARITHM, a, ZERO), node);
     return;
   case ATAN2: {
     Node square = add(graph, power_number(graph, a, 2.0), power_number(graph, b, 2.0));
@@ -43,9 +42,7 @@ static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, N
   case COSINE: *by_left = negate(graph, function(graph, SINE, a, ZERO)); return;
   case TANGENT: *by_left = one_minus_square(graph, node, 1.0); return;
   case ARCSINE: *by_left = power_number(graph, one_minus_square(graph, a, -1.0), -0.5); return;
-  case ARCCOSINE:
-    *by_left = negate(graph, power_number(graph, one_minus_square(graph, a, -1.0), -0.5));
-    return;
+  case ARCCOSINE: *by_left = negate(graph, power_number(graph, one_minus_square(graph, a, -1.0), -0.5)); return;
   case ARCTANGENT: *by_left = power_number(graph, one_minus_square(graph, a, 1.0), -1.0); return;
   case SINH: *by_left = function(graph, COSH, a, ZERO); return;
   case COSH: *by_left = function(graph, SINH, a, ZERO); return;
@@ -73,8 +70,7 @@ static Node last_of(const Node *targets, size_t count) {
   return last;
 }
 
-void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
-                      Node *derivatives) {
+void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   bool *needed = allocate(graph->count, sizeof *needed);
   graph_mark(graph, targets, count, needed);
   Node last = last_of(targets, count);
@@ -115,8 +111,7 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
   graph_mark(graph, targets, target_count, needed);
   Node last = last_of(targets, target_count);
   Node *adjoint = allocate((size_t)last + 1, sizeof *adjoint);
-  for (size_t k = 0; k < target_count; k++)
-    adjoint[targets[k]] = add(graph, adjoint[targets[k]], weights[k]);
+  for (size_t k = 0; k < target_count; k++) adjoint[targets[k]] = add(graph, adjoint[targets[k]], weights[k]);
   for (Node node = last + 1; node-- > 0;) {
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
@@ -124,19 +119,16 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
     if (!graph_is_constant(graph, vertex.left))
-      adjoint[vertex.left] =
-          add(graph, adjoint[vertex.left], multiply(graph, adjoint[node], by_left));
+      adjoint[vertex.left] = add(graph, adjoint[vertex.left], multiply(graph, adjoint[node], by_left));
     if (arity == 2 && !graph_is_constant(graph, vertex.right))
-      adjoint[vertex.right] =
-          add(graph, adjoint[vertex.right], multiply(graph, adjoint[node], by_right));
+      adjoint[vertex.right] = add(graph, adjoint[vertex.right], multiply(graph, adjoint[node], by_right));
   }
   for (size_t i = 0; i < count; i++) gradient[i] = symbols[i] <= last ? adjoint[symbols[i]] : ZERO;
   free(adjoint);
   free(needed);
 }
 
-void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements,
-                Node *results) {
+void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
   bool *needed = allocate(graph->count, sizeof *needed);
   graph_mark(graph, targets, count, needed);
   Node last = last_of(targets, count);

@@ -8,8 +8,7 @@
  * The derivative of each target along a direction: sum over symbols s of d target / d s * seeds[s].
  * seeds: one node for each symbol of the graph, ZERO where the direction has no part.
  */
-void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
-                      Node *derivatives);
+void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives);
 
 /* d target / d symbol; symbol is a SYMBOL node. */
 Node derivative_by(struct Graph *graph, Node target, Node symbol);
@@ -22,7 +21,6 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
                           const Node *symbols, size_t count, Node *gradient);
 
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
-void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements,
-                Node *results);
+void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);
 
 #endif

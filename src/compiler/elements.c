@@ -68,23 +68,21 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
     reader->definition_used[i] = true;
     right = parse_number(reader->model->scope, definition + length + 1, place, &value);
   }
-  struct Quantity number = {.node = graph_constant(reader->model->graph, value),
-                            .dimension = dimension_one,
-                            .literal = true};
+  struct Quantity number = {
+      .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
   if (name != NULL) scope_define(reader->model->scope, name, number, xmlGetLineNo(node));
   free(name);
 }
 
-static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list,
-                          enum SymbolKind kind) {
+static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
   variable.start = 0.0;
   number_attribute(reader, node, "start", &variable.start);
   number_attribute(reader, node, "min", &variable.minimum);
   number_attribute(reader, node, "max", &variable.maximum);
   check_range(reader, &variable);
-  variable.node = scope_symbol(reader->model->scope, kind, (int)list->count, variable.name, variable.dimension,
-                               variable.line);
+  variable.node =
+      scope_symbol(reader->model->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
   append_variable(list, variable);
 }
 
@@ -114,10 +112,8 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   position.nominal = nominal_attribute(reader, node, "nominal");
   velocity.nominal = nominal_attribute(reader, node, "velocityNominal");
   int index = (int)model->coordinates.count;
-  position.node =
-      scope_symbol(model->scope, COORDINATE, index, position.name, position.dimension, position.line);
-  velocity.node =
-      scope_symbol(model->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
+  position.node = scope_symbol(model->scope, COORDINATE, index, position.name, position.dimension, position.line);
+  velocity.node = scope_symbol(model->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
 }
@@ -153,8 +149,7 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3; axis++) {
-    body.has_position[axis] =
-        expression_attribute(reader, node, axes[axis], IN_POSITION, &body.position[axis]);
+    body.has_position[axis] = expression_attribute(reader, node, axes[axis], IN_POSITION, &body.position[axis]);
     if (!body.has_position[axis]) continue;
     require_unit(reader, body.line, axes[axis], body.position[axis], unit_of("m"));
     define_component(reader, &body, axes[axis], body.position[axis]);
@@ -167,16 +162,15 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (!body.has_position[0] && !body.has_position[1] && !body.has_position[2])
-    report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z",
-                 (const char *)node->name);
+    report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
   add_kinetic_energy(model, &body);
   model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
 
 /* Adds the element's expression to a sum and returns it. */
-static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what,
-                        unsigned kinds, const char *unit) {
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what, unsigned kinds,
+                        const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, sum, term.node);
@@ -193,8 +187,9 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
     add_term(model, &model->forces[i], force.node);
     return;
   }
-  report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; "
-                                                        "expected the name of a <coordinate>",
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "there is no coordinate '%s' for this force; "
+               "expected the name of a <coordinate>",
                coordinate);
 }
 
@@ -214,8 +209,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
     if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &force)) continue;
     require_unit(reader, xmlGetLineNo(node), axes[axis], force, unit_of("N"));
     for (size_t i = 0; i < model->coordinates.count; i++) {
-      Node lever =
-          derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
+      Node lever = derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
       add_term(model, &model->forces[i], multiply(model->graph, force.node, lever));
     }
   }
@@ -264,8 +258,7 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_ERK}};
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
-  if (reader->has_solver)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
+  if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
   for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
     if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
@@ -286,8 +279,8 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
   number_attribute(reader, node, "stepSize", &model->step_size);
   double start = isnan(model->start_time) ? 0.0 : model->start_time;
   if (model->stop_time <= start)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g",
-                 model->stop_time, start);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g", model->stop_time,
+                 start);
 }
 
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {

@@ -7,13 +7,11 @@
 #include "memory.h"
 
 static const char *const names[OPERATION_COUNT] = {
-    [ATAN2] = "atan2",      [MINIMUM] = "min",     [MAXIMUM] = "max",     [LESS] = "less",
-    [SINE] = "sin",         [COSINE] = "cos",      [TANGENT] = "tan",     [ARCSINE] = "asin",
-    [ARCCOSINE] = "acos",   [ARCTANGENT] = "atan", [SINH] = "sinh",       [COSH] = "cosh",
-    [TANH] = "tanh",        [ARSINH] = "asinh",    [ARCOSH] = "acosh",    [ARTANH] = "atanh",
-    [EXPONENTIAL] = "exp",  [LOGARITHM] = "log",   [ABSOLUTE] = "abs",    [SIGN] = "sign",
-    [POWER] = "pow",        [ADD] = "add",         [MULTIPLY] = "multiply", [CONSTANT] = "constant",
-    [SYMBOL] = "symbol",
+    [ATAN2] = "atan2",  [MINIMUM] = "min",     [MAXIMUM] = "max",       [LESS] = "less",         [SINE] = "sin",
+    [COSINE] = "cos",   [TANGENT] = "tan",     [ARCSINE] = "asin",      [ARCCOSINE] = "acos",    [ARCTANGENT] = "atan",
+    [SINH] = "sinh",    [COSH] = "cosh",       [TANH] = "tanh",         [ARSINH] = "asinh",      [ARCOSH] = "acosh",
+    [ARTANH] = "atanh", [EXPONENTIAL] = "exp", [LOGARITHM] = "log",     [ABSOLUTE] = "abs",      [SIGN] = "sign",
+    [POWER] = "pow",    [ADD] = "add",         [MULTIPLY] = "multiply", [CONSTANT] = "constant", [SYMBOL] = "symbol",
 };
 
 int operation_arity(enum Operation operation) {
@@ -87,10 +85,16 @@ void graph_free(struct Graph *graph) {
   free(graph);
 }
 
-static uint64_t hash(const struct Vertex *vertex) {
+/* Constants are told apart by their bits: -0 is not 0, and NaN is itself. */
+static uint64_t bits_of(double value) {
   uint64_t bits;
-  memcpy(&bits, &vertex->value, sizeof bits);
-  uint64_t key = bits ^ ((uint64_t)vertex->left << 32) ^ vertex->right ^ ((uint64_t)vertex->operation << 56);
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+static uint64_t hash(const struct Vertex *vertex) {
+  uint64_t key =
+      bits_of(vertex->value) ^ ((uint64_t)vertex->left << 32) ^ vertex->right ^ ((uint64_t)vertex->operation << 56);
   key ^= key >> 31;
   key *= 0x9e3779b97f4a7c15u;
   key ^= key >> 29;
@@ -100,7 +104,7 @@ static uint64_t hash(const struct Vertex *vertex) {
 
 static bool same(const struct Vertex *a, const struct Vertex *b) {
   return a->operation == b->operation && a->left == b->left && a->right == b->right &&
-         memcmp(&a->value, &b->value, sizeof a->value) == 0;
+         bits_of(a->value) == bits_of(b->value);
 }
 
 static void insert(struct Graph *graph, Node node) {
@@ -146,8 +150,8 @@ Node graph_constant(struct Graph *graph, double value) {
 Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name) {
   size_t number = graph->symbol_count++;
   graph->symbols = reallocate(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
-  Node node = intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number,
-                                            .kinds = (uint16_t)(1u << kind)});
+  Node node =
+      intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = (uint16_t)(1u << kind)});
   graph->symbols[number] = (struct Symbol){.kind = kind, .index = index, .name = copy_text(name), .node = node};
   return node;
 }
@@ -159,8 +163,7 @@ const struct Symbol *graph_symbol_of(const struct Graph *graph, Node node) {
 Node graph_node(struct Graph *graph, enum Operation operation, Node left, Node right) {
   uint16_t kinds = graph->vertices[left].kinds;
   if (operation_arity(operation) == 2) kinds |= graph->vertices[right].kinds;
-  return intern(graph,
-                (struct Vertex){.operation = operation, .left = left, .right = right, .kinds = kinds});
+  return intern(graph, (struct Vertex){.operation = operation, .left = left, .right = right, .kinds = kinds});
 }
 
 bool graph_is_constant(const struct Graph *graph, Node node) {

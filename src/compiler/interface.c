@@ -20,8 +20,7 @@ static void append_list(struct Interface *interface, const struct VariableList *
                         size_t first_index) {
   for (size_t i = 0; i < list->count; i++) {
     const struct Variable *source = &list->items[i];
-    struct InterfaceVariable *variable =
-        append(interface, kind, first_index + i, source->name, source->description);
+    struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
     variable->entry.is_output = kind == VARIABLE_STATE || kind == VARIABLE_RESULT;
     variable->entry.start = source->start;
     variable->entry.minimum = source->minimum;
@@ -32,8 +31,7 @@ static void append_list(struct Interface *interface, const struct VariableList *
   }
 }
 
-static void append_derivative(struct Interface *interface, const struct Variable *state, size_t index,
-                              Node node) {
+static void append_derivative(struct Interface *interface, const struct Variable *state, size_t index, Node node) {
   char *name = format_text("der(%s)", state->name), *text = format_text("time derivative of %s", state->name);
   struct InterfaceVariable *variable = append(interface, VARIABLE_DERIVATIVE, index, name, text);
   variable->node = node;
@@ -48,8 +46,7 @@ static void append_derivative(struct Interface *interface, const struct Variable
 
 static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
                           const char *description) {
-  struct InterfaceVariable *variable =
-      append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
+  struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
   variable->unit = copy_text(unit);
   variable->node = node;
 }
@@ -88,11 +85,9 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
   for (size_t i = 0; i < equations->count; i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
-  for (size_t i = 0; i < model->outputs.count; i++)
-    uses |= graph_depends_on(graph, model->outputs.items[i].node, TIME);
+  for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, model->outputs.items[i].node, TIME);
   for (size_t i = 0; i < model->body_count; i++) {
-    for (int axis = 0; axis < 3; axis++)
-      uses |= graph_depends_on(graph, model->bodies[i].position[axis].node, TIME);
+    for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, model->bodies[i].position[axis].node, TIME);
     uses |= graph_depends_on(graph, model->bodies[i].angle.node, TIME);
   }
   return uses;
@@ -117,8 +112,12 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   }
   append_list(interface, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, &model->velocities, VARIABLE_STATE, n);
-  struct Variable work = {.name = (char *)"nonConservativeWork", .line = 0, .minimum = NAN, .maximum = NAN,
-                          .nominal = NAN, .description = (char *)"work of the non-conservative forces"};
+  struct Variable work = {.name = (char *)"nonConservativeWork",
+                          .line = 0,
+                          .minimum = NAN,
+                          .maximum = NAN,
+                          .nominal = NAN,
+                          .description = (char *)"work of the non-conservative forces"};
   const char *problem;
   unit_parse("J", &work.dimension, &problem);
   if (model->wants_work) {

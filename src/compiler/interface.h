@@ -6,10 +6,10 @@
 #include "lagrange.h"
 
 struct InterfaceVariable {
-  struct ScalarVariable entry;   /* as in the generated table; the name belongs to this structure */
-  char *unit, *description; /* NULL where unknown */
-  double nominal;          /* NAN where none was given */
-  Node node;               /* the value; ZERO for statistics */
+  struct ScalarVariable entry; /* as in the generated table; the name belongs to this structure */
+  char *unit, *description;    /* NULL where unknown */
+  double nominal;              /* NAN where none was given */
+  Node node;                   /* the value; ZERO for statistics */
 };
 
 struct Interface {

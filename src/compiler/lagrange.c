@@ -66,8 +66,7 @@ static Node *time_seeds(const struct Model *model, bool with_accelerations) {
   seeds[graph->vertices[model->time].left] = ONE;
   for (size_t i = 0; i < model->coordinates.count; i++) {
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-    if (with_accelerations)
-      seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
+    if (with_accelerations) seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
   }
   return seeds;
 }
@@ -80,8 +79,7 @@ static void inertial_forces(struct Model *model, const struct Motions *motions, 
   derivative_along(graph, motions->position, motions->count, seeds, weight);
   derivative_along(graph, weight, motions->count, seeds, weight);
   for (size_t k = 0; k < motions->count; k++) weight[k] = multiply(graph, motions->inertia[k], weight[k]);
-  weighted_gradient_of(graph, motions->position, weight, motions->count, coordinates, model->coordinates.count,
-                       force);
+  weighted_gradient_of(graph, motions->position, weight, motions->count, coordinates, model->coordinates.count, force);
   free(weight);
   free(seeds);
 }
@@ -104,8 +102,7 @@ static void derive_motion(struct Model *model, struct Equations *equations, cons
     inertial_forces(model, &motions, coordinates, with_accelerations == 1, inertial);
     for (size_t i = 0; i < n; i++) {
       Node left = add(graph, inertial[i], rate[i]), right = add(graph, force[i], gradient[i]);
-      results[with_accelerations][i] =
-          with_accelerations ? subtract(graph, left, right) : subtract(graph, right, left);
+      results[with_accelerations][i] = with_accelerations ? subtract(graph, left, right) : subtract(graph, right, left);
     }
     free(seeds);
   }
@@ -145,8 +142,7 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   gradient_of(graph, subtract(graph, model->kinetic.node, model->potential.node), v, n, momentum);
   derive_mass_matrix(graph, equations, momentum, v);
   derive_motion(model, equations, q, v, force);
-  for (size_t i = 0; i < n; i++)
-    equations->power = add(graph, equations->power, multiply(graph, force[i], v[i]));
+  for (size_t i = 0; i < n; i++) equations->power = add(graph, equations->power, multiply(graph, force[i], v[i]));
   equations->kinetic = model->kinetic.node;
   equations->potential = stored_energy(model, v);
   equations->total = add(graph, equations->kinetic, equations->potential);

@@ -20,20 +20,20 @@ struct Pivot {
 };
 
 struct Equations {
-  size_t count; /* coordinates */
-  bool explicit_form;  /* accelerations are given as such (linearised systems), there is no mass matrix */
-  Node *mass;          /* count x count, symmetric, both triangles */
-  Node *right_side;    /* M a = right_side */
-  Node *residual;      /* M a - right_side with the acceleration symbols for a */
-  size_t *block;       /* the number of the block of M that a coordinate belongs to, from 0 */
+  size_t count;       /* coordinates */
+  bool explicit_form; /* accelerations are given as such (linearised systems), there is no mass matrix */
+  Node *mass;         /* count x count, symmetric, both triangles */
+  Node *right_side;   /* M a = right_side */
+  Node *residual;     /* M a - right_side with the acceleration symbols for a */
+  size_t *block;      /* the number of the block of M that a coordinate belongs to, from 0 */
   size_t block_count;
-  bool *unrolled;      /* for each block: factored symbolically, as straight-line code */
+  bool *unrolled;         /* for each block: factored symbolically, as straight-line code */
   Node *lower, *diagonal; /* M = L D L^T of the unrolled blocks; lower is count x count */
-  Node *acceleration;  /* expressions in unrolled blocks, the acceleration symbols in others */
+  Node *acceleration;     /* expressions in unrolled blocks, the acceleration symbols in others */
   struct Pivot *pivots;
   size_t pivot_count;
-  Node power;                           /* of the non-conservative forces, sum Q_i v_i */
-  Node kinetic, potential, total;       /* energies */
+  Node power;                     /* of the non-conservative forces, sum Q_i v_i */
+  Node kinetic, potential, total; /* energies */
 };
 
 /* Blocks of M up to this size become straight-line code. */
@@ -44,7 +44,6 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
 void equations_free(struct Equations *equations);
 
 /* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. */
-void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side,
-                     Node *solution);
+void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side, Node *solution);
 
 #endif

@@ -137,8 +137,8 @@ static void linearize_accelerations(struct Model *model, struct Equations *equat
   for (size_t i = 0; i < n; i++) {
     equations->acceleration[i] = value[i];
     for (size_t j = 0; j < states.count; j++)
-      equations->acceleration[i] = add(graph, equations->acceleration[i],
-                                       multiply(graph, slopes[i * states.count + j], states.deviations[j]));
+      equations->acceleration[i] =
+          add(graph, equations->acceleration[i], multiply(graph, slopes[i * states.count + j], states.deviations[j]));
   }
   for (size_t i = 0; i < model->outputs.count; i++)
     model->outputs.items[i].node = expand(&all, model->outputs.items[i].node, 1);
@@ -151,8 +151,7 @@ static void linearize_accelerations(struct Model *model, struct Equations *equat
 static void expand_positions(struct Model *model, const struct Expansion *expansion) {
   for (size_t i = 0; i < model->body_count; i++) {
     struct Body *body = &model->bodies[i];
-    for (int axis = 0; axis < 3; axis++)
-      body->position[axis].node = expand(expansion, body->position[axis].node, 1);
+    for (int axis = 0; axis < 3; axis++) body->position[axis].node = expand(expansion, body->position[axis].node, 1);
     body->angle.node = expand(expansion, body->angle.node, 1);
   }
 }
@@ -163,8 +162,8 @@ static bool depends_on_time(const struct Model *model, const struct Equations *e
   return false;
 }
 
-static bool is_singular_at(const struct Expansion *point, const struct Model *model,
-                           const struct Equations *equations, struct Diagnostics *diagnostics) {
+static bool is_singular_at(const struct Expansion *point, const struct Model *model, const struct Equations *equations,
+                           struct Diagnostics *diagnostics) {
   bool singular = false;
   for (size_t i = 0; i < equations->count; i++) {
     if (at_point(point, equations->mass[i * equations->count + i]) != ZERO) continue;
@@ -179,8 +178,7 @@ static bool is_singular_at(const struct Expansion *point, const struct Model *mo
 void linearize(struct Model *model, struct Equations *equations, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
   if (depends_on_time(model, equations)) {
-    report_error(diagnostics, 0,
-                 "the equations of motion depend on time; expected an autonomous system to linearise");
+    report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
     return;
   }
   if (equations->count == 0) {
@@ -227,8 +225,8 @@ static Node coefficient(struct Model *model, const struct Equations *equations, 
   return slope;
 }
 
-static void fill_accelerations(struct Model *model, const struct Equations *equations,
-                               struct LinearSystem *system, struct Diagnostics *diagnostics) {
+static void fill_accelerations(struct Model *model, const struct Equations *equations, struct LinearSystem *system,
+                               struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
   Node *zero = allocate(graph->symbol_count, sizeof *zero);
@@ -243,8 +241,7 @@ static void fill_accelerations(struct Model *model, const struct Equations *equa
       system->a[row * 2 * n + n + j] = coefficient(model, equations, i, v, diagnostics);
     }
     for (size_t j = 0; j < system->inputs; j++)
-      system->b[row * system->inputs + j] =
-          coefficient(model, equations, i, model->inputs.items[j].node, diagnostics);
+      system->b[row * system->inputs + j] = coefficient(model, equations, i, model->inputs.items[j].node, diagnostics);
     substitute(graph, &equations->acceleration[i], 1, zero, &system->c[row]);
     if (!is_constant_in_motion(graph, system->c[row]))
       report_error(diagnostics, model->solver_line,
@@ -280,8 +277,8 @@ void linear_system_free(struct LinearSystem *system) {
   free(system);
 }
 
-static void print_matrix(const struct Model *model, const char *name, const Node *matrix, size_t rows,
-                         size_t columns, const double *values) {
+static void print_matrix(const struct Model *model, const char *name, const Node *matrix, size_t rows, size_t columns,
+                         const double *values) {
   printf("%s =\n", name);
   for (size_t i = 0; i < rows; i++) {
     printf("  [");

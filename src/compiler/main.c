@@ -45,11 +45,11 @@ static void append_point(struct Arguments *arguments, const char *text) {
 /* False where the words do not fit together. */
 static bool parse_arguments(int count, char **words, struct Arguments *arguments) {
   for (int i = 1; i < count; i++) {
-    const char *word = words[i], *next = i + 1 < count ? words[i + 1] : NULL;
+    const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
     bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
                        strcmp(word, "--at") == 0;
-    if (takes_value && next == NULL) return false;
-    i += takes_value;
+    if (takes_value && i + 1 == count) return false;
+    if (takes_value) i++;
     if (strcmp(word, "-o") == 0) arguments->directory = next;
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
@@ -104,8 +104,7 @@ static int run(const struct Arguments *arguments) {
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
   if (model != NULL && arguments->solver != NULL) override_solver(model, arguments->solver, &diagnostics);
-  struct Equations *equations =
-      model != NULL && diagnostics.errors == 0 ? equations_derive(model, &diagnostics) : NULL;
+  struct Equations *equations = model != NULL && diagnostics.errors == 0 ? equations_derive(model, &diagnostics) : NULL;
   if (equations != NULL && diagnostics.errors == 0 && model->linearized) linearize(model, equations, &diagnostics);
   if (equations != NULL && diagnostics.errors == 0) {
     if (arguments->linearize) print_linearization(model, equations, &diagnostics);

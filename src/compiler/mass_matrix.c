@@ -29,8 +29,7 @@ static long singular_coordinate(const struct Equations *equations, const double 
   return result;
 }
 
-bool mass_matrix_check(const struct Model *model, const struct Equations *equations,
-                       struct Diagnostics *diagnostics) {
+bool mass_matrix_check(const struct Model *model, const struct Equations *equations, struct Diagnostics *diagnostics) {
   const struct Graph *graph = model->graph;
   size_t n = equations->count;
   bool regular = true;
@@ -118,10 +117,8 @@ static Node pivot_scale(struct Graph *graph, Node diagonal) {
 
 static void add_pivot(struct Graph *graph, struct Equations *equations, size_t i) {
   Node diagonal = equations->mass[i * equations->count + i];
-  equations->pivots[equations->pivot_count++] = (struct Pivot){.value = equations->diagonal[i],
-                                                               .diagonal = diagonal,
-                                                               .scale = pivot_scale(graph, diagonal),
-                                                               .coordinate = i};
+  equations->pivots[equations->pivot_count++] = (struct Pivot){
+      .value = equations->diagonal[i], .diagonal = diagonal, .scale = pivot_scale(graph, diagonal), .coordinate = i};
 }
 
 /* D_j = M_jj - sum_k L_jk^2 D_k,  L_ij = (M_ij - sum_k L_ik L_jk D_k) / D_j */
@@ -146,8 +143,7 @@ static void factor_block(struct Graph *graph, struct Equations *equations, size_
   }
 }
 
-void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side,
-                     Node *solution) {
+void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side, Node *solution) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
     solution[i] = equations->unrolled[equations->block[i]] ? right_side[i] : ZERO;

@@ -45,16 +45,16 @@ struct Model {
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
   Node time;
-  struct Quantity kinetic;                         /* J: of the bodies and of the <kinetic> terms */
-  struct Quantity explicit_kinetic;                /* J: of the <kinetic> terms alone */
-  struct Quantity potential, dissipation;          /* J, W */
-  struct Quantity *forces;                         /* generalized force along each coordinate */
-  bool has_forces;  /* some force or dissipation was given */
-  bool wants_work;  /* nonConservativeWork is integrated along */
+  struct Quantity kinetic;                /* J: of the bodies and of the <kinetic> terms */
+  struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
+  struct Quantity potential, dissipation; /* J, W */
+  struct Quantity *forces;                /* generalized force along each coordinate */
+  bool has_forces;                        /* some force or dissipation was given */
+  bool wants_work;                        /* nonConservativeWork is integrated along */
   bool linearized;
   struct LinearizationPoint point; /* where linearized */
   enum SolverMethod method;
-  double tolerance;                      /* NAN where none was given */
+  double tolerance;                        /* NAN where none was given */
   double start_time, stop_time, step_size; /* NAN where none was given */
   long solver_line;
 };

@@ -21,8 +21,8 @@ struct Parser {
 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
-    [PARAMETER] = "parameters", [TIME] = "time",         [COORDINATE] = "coordinates",
-    [VELOCITY] = "velocities",  [INPUT] = "inputs",      [ACCELERATION] = "accelerations",
+    [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
+    [VELOCITY] = "velocities",  [INPUT] = "inputs", [ACCELERATION] = "accelerations",
 };
 
 static const struct Quantity nothing = {.node = ZERO};
@@ -37,10 +37,10 @@ static long current_line(const struct Parser *parser) {
 }
 
 /* Reports the first error of an expression; later ones would only follow from it. */
-#define FAIL(parser, ...)                                                                                    \
-  do {                                                                                                       \
-    if (!(parser)->failed) report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);    \
-    (parser)->failed = true;                                                                                 \
+#define FAIL(parser, ...)                                                                                              \
+  do {                                                                                                                 \
+    if (!(parser)->failed) report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);              \
+    (parser)->failed = true;                                                                                           \
   } while (0)
 
 /* Recursion is bounded here, so that no input exhausts the stack. */
@@ -94,8 +94,8 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
   if (b.literal) return a.dimension;
   if (!dimension_agrees(a.dimension, b.dimension)) {
     char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
-    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first,
-         second, where);
+    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
+         where);
     free(first);
     free(second);
   }
@@ -165,8 +165,7 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
 
 static void report_unknown_name(struct Parser *parser, const char *name) {
   const char *similar = scope_similar_name(parser->scope, name);
-  if (similar != NULL)
-    FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
+  if (similar != NULL) FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else
     FAIL(parser, "%s: unknown name '%s'; expected a parameter, coordinate, velocity, input, definition or time",
          parser->place.what, name);
@@ -198,8 +197,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   long last = parse_whole(parser, "the last index of sum(...)");
   expect(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
-         index);
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
   /* An empty sum still reads its body once, to find where it ends; the result is dropped. */
@@ -222,8 +220,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
 
 static struct Quantity parse_derivative(struct Parser *parser) {
   unsigned allowed = parser->place.kinds;
-  if ((allowed & 1u << ACCELERATION) == 0 && (allowed & 1u << VELOCITY) != 0)
-    parser->place.kinds &= ~(1u << VELOCITY);
+  if ((allowed & 1u << ACCELERATION) == 0 && (allowed & 1u << VELOCITY) != 0) parser->place.kinds &= ~(1u << VELOCITY);
   if ((allowed & 1u << VELOCITY) == 0)
     FAIL(parser, "%s cannot depend on velocities, but der(...) does", parser->place.what);
   parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION));
@@ -244,14 +241,12 @@ static struct Quantity raise_to(struct Parser *parser, struct Quantity base, str
                             .dimension = dimension_unknown,
                             .literal = base.literal && exponent.literal};
   if (graph_is_constant(parser->graph, exponent.node))
-    result.dimension =
-        dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
+    result.dimension = dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
   else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
   return result;
 }
 
-static struct Quantity apply(struct Parser *parser, enum Operation operation, struct Quantity a,
-                             struct Quantity b) {
+static struct Quantity apply(struct Parser *parser, enum Operation operation, struct Quantity a, struct Quantity b) {
   struct Quantity result = {.node = function(parser->graph, operation, a.node, b.node),
                             .dimension = dimension_one,
                             .literal = a.literal && (operation_arity(operation) == 1 || b.literal)};
@@ -302,8 +297,7 @@ static struct Quantity parse_primary(struct Parser *parser) {
   char buffer[32];
   skip_space(parser);
   char c = *parser->next;
-  if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1])))
-    return parse_literal(parser);
+  if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1]))) return parse_literal(parser);
   if (c == '(') {
     parser->next++;
     struct Quantity value = parse_sum(parser);
@@ -352,8 +346,8 @@ static struct Quantity parse_term(struct Parser *parser) {
     struct Quantity factor = parse_sign(parser);
     if (parser->failed) break;
     if (division && factor.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
-    value.node = division ? divide(parser->graph, value.node, factor.node)
-                          : multiply(parser->graph, value.node, factor.node);
+    value.node =
+        division ? divide(parser->graph, value.node, factor.node) : multiply(parser->graph, value.node, factor.node);
     value.dimension = dimension_multiply(value.dimension, factor.dimension, division ? -1.0 : 1.0);
     value.literal = value.literal && factor.literal;
   }
@@ -389,8 +383,7 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
   if (!parser.failed && *parser.next != '\0')
     FAIL(&parser, "%s: expected an operator or the end, found %s", place.what, found(&parser, buffer));
-  if (!parser.failed && graph_is_constant(parser.graph, value.node) &&
-      !isfinite(graph_value(parser.graph, value.node)))
+  if (!parser.failed && graph_is_constant(parser.graph, value.node) && !isfinite(graph_value(parser.graph, value.node)))
     FAIL(&parser, "%s has no finite value; expected a finite number", place.what);
   if (!parser.failed && parser.graph->overflow)
     FAIL(&parser, "%s: the system is too large: more than %d operations", place.what, NODE_LIMIT);

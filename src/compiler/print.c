@@ -52,8 +52,7 @@ static void print_power(struct Printer *printer, Node base, double exponent) {
 }
 
 /* One side of the fraction bar: the factors whose exponent has this sign, led by a number unless it is 1. */
-static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count,
-                          int sign) {
+static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count, int sign) {
   const char *separator = "";
   if (number != 1.0) {
     print_number(printer->file, number);
@@ -136,8 +135,7 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
     fputs("^", printer->file);
     print(printer, vertex->right, IN_POWER);
   } else if (sum || product || vertex->operation == CONSTANT) print_term(printer, node, true);
-  else if (vertex->operation == SYMBOL)
-    fputs(graph_symbol_of(printer->graph, node)->name, printer->file);
+  else if (vertex->operation == SYMBOL) fputs(graph_symbol_of(printer->graph, node)->name, printer->file);
   else print_function(printer, vertex);
   if (parentheses) fputs(")", printer->file);
   printer->depth--;

@@ -29,8 +29,7 @@ static Node *create_seeds(struct Graph *graph) {
 static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
                                 Node *result) {
   size_t n = equations->count;
-  derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds,
-                   result);
+  derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds, result);
   if (equations->explicit_form) return;
   Node *right = allocate(n, sizeof *right);
   for (size_t i = 0; i < n; i++) right[i] = negate(graph, result[i]);

@@ -101,8 +101,7 @@ static struct Fraction fraction_add(const struct Fraction *x, const struct Fract
 }
 
 static struct Fraction fraction_multiply(const struct Fraction *x, const struct Fraction *y) {
-  struct Fraction product = {polynomial_multiply(&x->above, &y->above),
-                             polynomial_multiply(&x->below, &y->below)};
+  struct Fraction product = {polynomial_multiply(&x->above, &y->above), polynomial_multiply(&x->below, &y->below)};
   fraction_reduce(&product);
   return product;
 }
@@ -148,8 +147,7 @@ static struct Fraction convert(struct Converter *converter, Node node, const str
   }
 }
 
-static Node monomial_node(const struct Converter *converter, double coefficient,
-                          const uint8_t exponent[ATOM_LIMIT]) {
+static Node monomial_node(const struct Converter *converter, double coefficient, const uint8_t exponent[ATOM_LIMIT]) {
   struct Graph *graph = converter->graph;
   Node product = ONE;
   for (int atom = 0; atom < converter->atom_count; atom++)
@@ -170,8 +168,7 @@ static Node polynomial_node(const struct Converter *converter, struct Polynomial
   if (!divisible) lead = 1.0;
   Node sum = ZERO;
   for (size_t i = 0; i < p->count; i++)
-    sum = add(converter->graph, sum,
-              monomial_node(converter, p->terms[i].coefficient / lead, p->terms[i].exponent));
+    sum = add(converter->graph, sum, monomial_node(converter, p->terms[i].coefficient / lead, p->terms[i].exponent));
   return multiply(converter->graph, monomial_node(converter, lead, content), sum);
 }
 
@@ -185,8 +182,8 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
   for (Node i = 0; i < size && !converter->overflow; i++) {
     if (!needed[i]) continue;
     known[i] = convert(converter, i, known);
-    converter->overflow = converter->overflow || known[i].above.overflow || known[i].below.overflow ||
-                          known[i].below.count == 0;
+    converter->overflow =
+        converter->overflow || known[i].above.overflow || known[i].below.overflow || known[i].below.count == 0;
   }
   for (size_t i = 0; i < count; i++) fractions[i] = fraction_copy(&known[nodes[i]]);
   for (Node i = 0; i < size; i++) fraction_free(&known[i]);

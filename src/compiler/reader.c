@@ -20,8 +20,7 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   double from = 0, to = -1;
   if (node->_private != NULL) return; /* refused in an earlier pass */
   char *index = attribute(node, "index");
-  if (index == NULL || !number_attribute(reader, node, "from", &from) ||
-      !number_attribute(reader, node, "to", &to)) {
+  if (index == NULL || !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to)) {
     node->_private = node;
     free(index);
     return;
@@ -78,8 +77,8 @@ static void check_definitions_used(struct Reader *reader) {
 
 /* Results that every system has; their names must stay free. */
 static void reserve_result_names(struct Scope *scope) {
-  static const char *const results[] = {"kineticEnergy",     "potentialEnergy",       "totalEnergy",
-                                        "nonConservativeWork", "solverSteps",           "derivativeEvaluations",
+  static const char *const results[] = {"kineticEnergy",       "potentialEnergy", "totalEnergy",
+                                        "nonConservativeWork", "solverSteps",     "derivativeEvaluations",
                                         "jacobianEvaluations"};
   for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
 }
@@ -112,16 +111,15 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
 }
 
 /* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
-static struct Model *read_file(const char *path, const struct ReaderOptions *options,
-                               struct Diagnostics *diagnostics, int depth) {
+static struct Model *read_file(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics,
+                               int depth) {
   struct Diagnostics local = {.file = path};
   struct Model *model = NULL;
   xmlDocPtr document = xml_load(path, &local);
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
   if (root != NULL && xmlStrEqual(root->name, (const xmlChar *)"linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;
-    if (depth > 0)
-      report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
+    if (depth > 0) report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
     else if (original != NULL) {
       model = read_file(original, options, &local, depth + 1);
       if (model != NULL) read_linearization(model, root, &local);
@@ -144,7 +142,6 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   return NULL;
 }
 
-struct Model *model_read(const char *path, const struct ReaderOptions *options,
-                         struct Diagnostics *diagnostics) {
+struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {
   return read_file(path, options, diagnostics, 0);
 }

@@ -44,13 +44,12 @@ static void add_entry(struct Scope *scope, const char *name, struct Quantity qua
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
   const struct Entry *taken = find_entry(scope, name);
   if (taken != NULL && taken->line > 0) {
-    report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name",
-                 name, taken->line);
+    report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name", name,
+                 taken->line);
     return false;
   }
   if (taken != NULL) {
-    report_error(scope->diagnostics, line,
-                 "the name '%s' belongs to the language itself; expected another name", name);
+    report_error(scope->diagnostics, line, "the name '%s' belongs to the language itself; expected another name", name);
     return false;
   }
   add_entry(scope, name, quantity, line);
@@ -58,8 +57,7 @@ bool scope_define(struct Scope *scope, const char *name, struct Quantity quantit
 }
 
 void scope_set_number(struct Scope *scope, const char *name, double value) {
-  struct Quantity number = {.node = graph_constant(scope->graph, value), .dimension = dimension_one,
-                            .literal = true};
+  struct Quantity number = {.node = graph_constant(scope->graph, value), .dimension = dimension_one, .literal = true};
   add_entry(scope, name, number, 0);
 }
 
@@ -114,8 +112,8 @@ const char *scope_similar_name(const struct Scope *scope, const char *name) {
   return similar.best;
 }
 
-Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name,
-                  struct Dimension dimension, long line) {
+Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
+                  long line) {
   Node node = graph_symbol(scope->graph, kind, index, name);
   scope->time_derivatives =
       reallocate(scope->time_derivatives, scope->graph->symbol_count, sizeof *scope->time_derivatives);

@@ -39,8 +39,8 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 const char *scope_similar_name(const struct Scope *scope, const char *name);
 
 /* Adds a symbol to graph and scope; its time derivative is set with scope_set_time_derivative. */
-Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name,
-                  struct Dimension dimension, long line);
+Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
+                  long line);
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);
 
 /* d node / dt by the chain rule, the part explicit in time included. */

@@ -49,8 +49,7 @@ static int insert_factor(struct Factor factors[FACTOR_LIMIT], int count, Node ba
   return count + 1;
 }
 
-static int collect_factors(const struct Graph *graph, Node node, double exponent, struct Factor *factors,
-                           int count) {
+static int collect_factors(const struct Graph *graph, Node node, double exponent, struct Factor *factors, int count) {
   const struct Vertex *vertex = vertex_of(graph, node);
   while (count >= 0 && vertex->operation == MULTIPLY) {
     count = collect_factors(graph, vertex->left, exponent, factors, count);
@@ -61,8 +60,7 @@ static int collect_factors(const struct Graph *graph, Node node, double exponent
   if (vertex->operation == POWER) {
     double inner = numeric_exponent(graph, vertex);
     if (is_whole(inner)) return collect_factors(graph, vertex->left, exponent * inner, factors, count);
-    if (!isnan(inner) && is_whole(exponent))
-      return insert_factor(factors, count, vertex->left, exponent * inner);
+    if (!isnan(inner) && is_whole(exponent)) return insert_factor(factors, count, vertex->left, exponent * inner);
   }
   return insert_factor(factors, count, node, exponent);
 }
@@ -201,8 +199,7 @@ static int common_factors(struct Term *a, struct Term *b, struct Factor *common)
 }
 
 /* Whether the term has been reduced to sin(u)^2 or cos(u)^2; says which, and gives u. */
-static bool is_square_of(const struct Graph *graph, const struct Term *term, enum Operation *operation,
-                         Node *angle) {
+static bool is_square_of(const struct Graph *graph, const struct Term *term, enum Operation *operation, Node *angle) {
   if (term->factor_count != 1 || term->factors[0].exponent != 2.0) return false;
   const struct Vertex *vertex = vertex_of(graph, term->factors[0].base);
   *operation = vertex->operation;
@@ -227,8 +224,7 @@ static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *res
     *result = scale(graph, a.coefficient, product_of(graph, common, count));
     return true;
   }
-  if (a.coefficient != -b.coefficient || a.factor_count + b.factor_count != 1 || !(a_square || b_square))
-    return false;
+  if (a.coefficient != -b.coefficient || a.factor_count + b.factor_count != 1 || !(a_square || b_square)) return false;
   Node other = graph_node(graph, (a_square ? first : second) == SINE ? COSINE : SINE, a_square ? u : w, ZERO);
   rest = multiply(graph, product_of(graph, common, count), power_number(graph, other, 2.0));
   *result = scale(graph, a_square ? b.coefficient : a.coefficient, rest);
@@ -270,20 +266,17 @@ Node subtract(struct Graph *graph, Node left, Node right) {
 
 static bool is_odd_function(enum Operation operation) {
   return operation == SINE || operation == TANGENT || operation == ARCSINE || operation == ARCTANGENT ||
-         operation == SINH || operation == TANH || operation == ARSINH || operation == ARTANH ||
-         operation == SIGN;
+         operation == SINH || operation == TANH || operation == ARSINH || operation == ARTANH || operation == SIGN;
 }
 
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right) {
   if (operation_arity(operation) == 1) right = ZERO;
   if (graph_is_constant(graph, left) && graph_is_constant(graph, right))
-    return graph_constant(
-        graph, operation_evaluate(operation, graph_value(graph, left), graph_value(graph, right)));
+    return graph_constant(graph, operation_evaluate(operation, graph_value(graph, left), graph_value(graph, right)));
   if ((operation == MINIMUM || operation == MAXIMUM) && left == right) return left;
   Node base;
   if (coefficient_of(graph, left, &base) < 0) {
-    if (is_odd_function(operation))
-      return negate(graph, graph_node(graph, operation, negate(graph, left), right));
+    if (is_odd_function(operation)) return negate(graph, graph_node(graph, operation, negate(graph, left), right));
     if (operation == COSINE || operation == COSH || operation == ABSOLUTE)
       return graph_node(graph, operation, negate(graph, left), right);
   }

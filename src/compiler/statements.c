@@ -43,8 +43,7 @@ static bool is_of_parameters(const struct Graph *graph, Node node) {
 
 /* Whether the node is fetched instead of computed in the current function. */
 static bool is_fetched(const struct Statements *statements, Node node) {
-  return is_leaf(statements->graph, node) ||
-         (!statements->preparing && is_of_parameters(statements->graph, node));
+  return is_leaf(statements->graph, node) || (!statements->preparing && is_of_parameters(statements->graph, node));
 }
 
 void statements_announce(struct Statements *statements, const Node *targets, size_t count) {
@@ -98,10 +97,8 @@ static struct Expression expression_of(const struct Statements *statements, Node
   Node left = vertex->left, right = vertex->right;
   switch (vertex->operation) {
   case ADD:
-    if (is_negation(statements, right))
-      return (struct Expression){FORM_DIFFERENCE, left, vertices[right].right, 2};
-    if (is_negation(statements, left))
-      return (struct Expression){FORM_DIFFERENCE, right, vertices[left].right, 2};
+    if (is_negation(statements, right)) return (struct Expression){FORM_DIFFERENCE, left, vertices[right].right, 2};
+    if (is_negation(statements, left)) return (struct Expression){FORM_DIFFERENCE, right, vertices[left].right, 2};
     return (struct Expression){FORM_SUM, left, right, 2};
   case MULTIPLY:
     if (is_negation(statements, node)) return (struct Expression){FORM_NEGATION, right, ZERO, 1};
@@ -142,9 +139,10 @@ void write_c_number(FILE *file, double value) {
 
 static void write_symbol(FILE *file, const struct Symbol *symbol) {
   static const char *const arrays[] = {
-      [PARAMETER] = "p",       [COORDINATE] = "q",       [VELOCITY] = "v",       [ACCELERATION] = "a",
-      [INPUT] = "u",           [SEED_PARAMETER] = "dp",  [SEED_COORDINATE] = "dq", [SEED_VELOCITY] = "dv",
-      [SEED_ACCELERATION] = "da", [SEED_INPUT] = "du",
+      [PARAMETER] = "p",        [COORDINATE] = "q",     [VELOCITY] = "v",
+      [ACCELERATION] = "a",     [INPUT] = "u",          [SEED_PARAMETER] = "dp",
+      [SEED_COORDINATE] = "dq", [SEED_VELOCITY] = "dv", [SEED_ACCELERATION] = "da",
+      [SEED_INPUT] = "du",
   };
   if (symbol->kind == TIME) fputs("point->time", file);
   else if (symbol->kind == SEED_TIME) fputs("seed->time", file);
@@ -154,8 +152,7 @@ static void write_symbol(FILE *file, const struct Symbol *symbol) {
 void statements_operand(const struct Statements *statements, Node node) {
   const struct Graph *graph = statements->graph;
   if (graph_is_constant(graph, node)) write_c_number(statements->file, graph_value(graph, node));
-  else if (graph->vertices[node].operation == SYMBOL)
-    write_symbol(statements->file, graph_symbol_of(graph, node));
+  else if (graph->vertices[node].operation == SYMBOL) write_symbol(statements->file, graph_symbol_of(graph, node));
   else if (!statements->preparing && is_of_parameters(graph, node))
     fprintf(statements->file, "c[%zu]", statements->slot[node] - 1);
   else fprintf(statements->file, "t%zu", statements->number[node]);
@@ -192,8 +189,7 @@ static void write_power(struct Statements *statements, Node base, Node exponent)
   } else write_function(statements, "pow", base, exponent, 2);
 }
 
-static void write_expression(struct Statements *statements, struct Expression expression,
-                             enum Operation operation) {
+static void write_expression(struct Statements *statements, struct Expression expression, enum Operation operation) {
   static const char *const operators[] = {
       [FORM_SUM] = " + ", [FORM_DIFFERENCE] = " - ", [FORM_PRODUCT] = " * ", [FORM_QUOTIENT] = " / "};
   FILE *file = statements->file;

@@ -9,11 +9,11 @@
 struct Statements {
   const struct Graph *graph;
   FILE *file;
-  size_t *slot;          /* per node: 1 + place in prepared[], 0 for none */
-  Node *prepared;        /* the nodes that prepare() computes, ascending */
+  size_t *slot;   /* per node: 1 + place in prepared[], 0 for none */
+  Node *prepared; /* the nodes that prepare() computes, ascending */
   size_t prepared_count;
-  bool preparing;        /* inside prepare(): parameters' expressions are computed, not fetched */
-  size_t *number;        /* per node: its local variable's number in the current function, 0 for none yet */
+  bool preparing; /* inside prepare(): parameters' expressions are computed, not fetched */
+  size_t *number; /* per node: its local variable's number in the current function, 0 for none yet */
   size_t local_count;
   size_t operation_count; /* emitted in the current function */
 };

@@ -5,8 +5,7 @@
 bool check_call(struct Instance *instance, enum Function function, const char *name) {
   enum Mode mode = (enum Mode)instance->situation->mode;
   if (life_cycle_allows(function, instance->type, mode)) return true;
-  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name,
-            life_cycle_mode_name(mode),
+  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, life_cycle_mode_name(mode),
             instance->type == fmi2ModelExchange ? "model exchange" : "co-simulation");
   return false;
 }
@@ -18,8 +17,8 @@ bool check_array(struct Instance *instance, const void *array, size_t count, con
   return false;
 }
 
-const struct ScalarVariable *check_reference(struct Instance *instance, fmi2ValueReference reference,
-                                             bool integer, const char *function) {
+const struct ScalarVariable *check_reference(struct Instance *instance, fmi2ValueReference reference, bool integer,
+                                             const char *function) {
   if (reference >= lagrangian.variable_count) {
     log_error(instance, "%s: the value reference %u is unknown; expected one below %zu", function, reference,
               lagrangian.variable_count);

@@ -12,7 +12,7 @@ bool check_array(struct Instance *instance, const void *array, size_t count, con
                  const char *argument);
 
 /* The variable of this value reference, of type Integer or Real; NULL after logging an error. */
-const struct ScalarVariable *check_reference(struct Instance *instance, fmi2ValueReference reference,
-                                             bool integer, const char *function);
+const struct ScalarVariable *check_reference(struct Instance *instance, fmi2ValueReference reference, bool integer,
+                                             const char *function);
 
 #endif

@@ -21,8 +21,7 @@ static struct Direction direction_create(struct Instance *instance) {
   direction.parameter = direction.input + lagrangian.input_count;
   size_t count = 3 * lagrangian.state_count + lagrangian.input_count + lagrangian.parameter_count;
   memset(instance->work, 0, count * sizeof *instance->work);
-  direction.seed = (struct Seed){
-      .state = direction.state, .input = direction.input, .parameter = direction.parameter};
+  direction.seed = (struct Seed){.state = direction.state, .input = direction.input, .parameter = direction.parameter};
   return direction;
 }
 
@@ -62,8 +61,8 @@ static fmi2Status check_unknown(struct Instance *instance, const struct ScalarVa
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
-                                        const fmi2ValueReference vKnown_ref[], size_t nKnown,
-                                        const fmi2Real dvKnown[], fmi2Real dvUnknown[]) {
+                                        const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[]) {
   static const char *const name = "fmi2GetDirectionalDerivative";
   struct Instance *instance = c;
   if (instance == NULL) return fmi2Error;
@@ -87,8 +86,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
   if (status == fmi2OK) status = follow(instance, &point, &direction);
   for (size_t i = 0; i < nUnknown && status == fmi2OK; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[vUnknown_ref[i]];
-    double value = evaluate_along(variable, &point, &direction.seed, direction.derivative,
-                                  direction.derivative_along);
+    double value = evaluate_along(variable, &point, &direction.seed, direction.derivative, direction.derivative_along);
     if (isfinite(value)) dvUnknown[i] = value;
     else {
       log_message(instance, fmi2Discard, "%s: the derivative of '%s' is not finite here", name, variable->name);
@@ -103,14 +101,12 @@ static fmi2Status check_input_derivative(struct Instance *instance, fmi2ValueRef
   static const char *const name = "fmi2SetRealInputDerivatives";
   const struct ScalarVariable *variable = check_reference(instance, reference, false, name);
   if (variable == NULL) return fmi2Error;
-  if (variable->kind != VARIABLE_INPUT)
-    return log_error(instance, "%s: '%s' is no input", name, variable->name);
+  if (variable->kind != VARIABLE_INPUT) return log_error(instance, "%s: '%s' is no input", name, variable->name);
   if (order < 1 || order > INPUT_ORDER)
     return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", name, order,
                      variable->name, INPUT_ORDER);
   if (!isfinite(value))
-    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", name, variable->name,
-                     value);
+    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", name, variable->name, value);
   return fmi2OK;
 }
 
@@ -119,9 +115,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   static const char *const name = "fmi2SetRealInputDerivatives";
   struct Instance *instance = c;
   if (instance == NULL) return fmi2Error;
-  if (!check_call(instance, FUNCTION_SET_INPUT_DERIVATIVES, name) ||
-      !check_array(instance, vr, nvr, name, "vr") || !check_array(instance, order, nvr, name, "order") ||
-      !check_array(instance, value, nvr, name, "value"))
+  if (!check_call(instance, FUNCTION_SET_INPUT_DERIVATIVES, name) || !check_array(instance, vr, nvr, name, "vr") ||
+      !check_array(instance, order, nvr, name, "order") || !check_array(instance, value, nvr, name, "value"))
     return fmi2Error;
   for (size_t i = 0; i < nvr; i++)
     if (check_input_derivative(instance, vr[i], order[i], value[i]) != fmi2OK) return fmi2Error;
@@ -140,9 +135,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   static const char *const name = "fmi2GetRealOutputDerivatives";
   struct Instance *instance = c;
   if (instance == NULL) return fmi2Error;
-  if (!check_call(instance, FUNCTION_GET_OUTPUT_DERIVATIVES, name) ||
-      !check_array(instance, vr, nvr, name, "vr") || !check_array(instance, order, nvr, name, "order") ||
-      !check_array(instance, value, nvr, name, "value"))
+  if (!check_call(instance, FUNCTION_GET_OUTPUT_DERIVATIVES, name) || !check_array(instance, vr, nvr, name, "vr") ||
+      !check_array(instance, order, nvr, name, "order") || !check_array(instance, value, nvr, name, "value"))
     return fmi2Error;
   for (size_t i = 0; i < nvr; i++) {
     const struct ScalarVariable *variable = check_reference(instance, vr[i], false, name);

@@ -57,8 +57,7 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
   }
 }
 
-static fmi2Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable,
-                                  double *value) {
+static fmi2Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   struct Point point = evaluate_point(instance);
   const struct Result *result = &lagrangian.results[variable->index];
   if (result->uses_acceleration && !evaluate_derivatives(instance, &point, instance->work)) {
@@ -69,8 +68,7 @@ static fmi2Status evaluate_result(struct Instance *instance, const struct Scalar
   return fmi2OK;
 }
 
-static fmi2Status evaluate_derivative(struct Instance *instance, const struct ScalarVariable *variable,
-                                      double *value) {
+static fmi2Status evaluate_derivative(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   struct Point point = evaluate_point(instance);
   if (!evaluate_derivatives(instance, &point, instance->work)) {
     log_singularity(instance, fmi2Discard, point.time);

@@ -30,8 +30,7 @@ void situation_reset(struct Instance *instance) {
 }
 
 /* Checks the arguments of fmi2Instantiate that do not need an instance. */
-static bool can_instantiate(fmi2String name, fmi2Type type, fmi2String guid,
-                            const fmi2CallbackFunctions *functions) {
+static bool can_instantiate(fmi2String name, fmi2Type type, fmi2String guid, const fmi2CallbackFunctions *functions) {
   if (functions == NULL) return false;
   if (functions->allocateMemory == NULL || functions->freeMemory == NULL) {
     log_instantiation(functions, name, "fmi2Instantiate: allocateMemory or freeMemory is NULL; expected both");

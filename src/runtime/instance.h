@@ -19,7 +19,7 @@ struct Situation {
   int32_t mode; /* enum Mode */
   int32_t type; /* fmi2Type */
   int32_t experiment_defined, stop_time_defined;
-  int32_t input_derivatives_set;       /* for the step to come */
+  int32_t input_derivatives_set; /* for the step to come */
   int32_t statistics[STATISTIC_COUNT];
   double time, start_time, stop_time;
   double tolerance;

@@ -7,7 +7,7 @@
 enum { MESSAGE_LENGTH = 600 };
 
 static const char *const categories[LOG_CATEGORY_COUNT] = {
-    [LOG_EVENTS] = "logEvents",      [LOG_WARNING] = "logStatusWarning", [LOG_DISCARD] = "logStatusDiscard",
+    [LOG_EVENTS] = "logEvents",     [LOG_WARNING] = "logStatusWarning", [LOG_DISCARD] = "logStatusDiscard",
     [LOG_ERROR] = "logStatusError", [LOG_FATAL] = "logStatusFatal",     [LOG_ALL] = "logAll",
 };
 
@@ -37,16 +37,15 @@ static void escape(const char *text, char *escaped, size_t size) {
   escaped[length] = '\0';
 }
 
-static void send(fmi2CallbackLogger logger, fmi2ComponentEnvironment environment, fmi2String name,
-                 fmi2Status status, const char *format, va_list arguments) {
+static void send(fmi2CallbackLogger logger, fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                 const char *format, va_list arguments) {
   char text[MESSAGE_LENGTH], escaped[2 * MESSAGE_LENGTH];
   vsnprintf(text, sizeof text, format, arguments);
   escape(text, escaped, sizeof escaped);
   logger(environment, name, status, categories[category_of(status)], escaped);
 }
 
-static void send_enabled(const struct Instance *instance, fmi2Status status, const char *format,
-                         va_list arguments) {
+static void send_enabled(const struct Instance *instance, fmi2Status status, const char *format, va_list arguments) {
   unsigned wanted = 1u << category_of(status) | 1u << LOG_ALL;
   if (instance->logger == NULL || (instance->log_categories & wanted) == 0) return;
   send(instance->logger, instance->environment, instance->name, status, format, arguments);

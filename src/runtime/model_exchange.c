@@ -50,8 +50,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
   struct Instance *instance = c;
   if (instance == NULL) return fmi2Error;
   if (!check_call(instance, FUNCTION_SET_TIME, "fmi2SetTime")) return fmi2Error;
-  if (!isfinite(time))
-    return log_error(instance, "fmi2SetTime: the time is %g; expected a finite number", time);
+  if (!isfinite(time)) return log_error(instance, "fmi2SetTime: the time is %g; expected a finite number", time);
   instance->situation->time = time;
   return fmi2OK;
 }

@@ -25,13 +25,12 @@ struct Bdf {
 };
 
 static int right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
-  bool exists =
-      solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
+  bool exists = solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
   return exists ? 0 : 1; /* recoverable: a shorter step may avoid the point */
 }
 
-static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data,
-                    N_Vector unused1, N_Vector unused2, N_Vector unused3) {
+static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data, N_Vector unused1,
+                    N_Vector unused2, N_Vector unused3) {
   struct Instance *instance = data;
   (void)derivative;
   (void)unused1;
@@ -62,8 +61,7 @@ static bool configure(struct Instance *instance, struct Bdf *bdf) {
   bdf->tolerance = sundials_tolerances(instance, &bdf->vectors, safety);
   return sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
                             "CVodeSetErrHandlerFn") &&
-         sundials_succeeded(instance,
-                            CVodeInit(bdf->cvode, right_side, instance->situation->time, bdf->vectors.state),
+         sundials_succeeded(instance, CVodeInit(bdf->cvode, right_side, instance->situation->time, bdf->vectors.state),
                             "CVodeInit") &&
          sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->tolerance, bdf->vectors.tolerance),
                             "CVodeSVtolerances") &&

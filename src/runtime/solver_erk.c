@@ -21,8 +21,7 @@ struct Erk {
 };
 
 static int right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
-  bool exists =
-      solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
+  bool exists = solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
   return exists ? 0 : 1; /* recoverable: a shorter step may avoid the point */
 }
 
@@ -66,8 +65,7 @@ static bool restart(struct Instance *instance, struct Erk *erk, double end) {
   struct Situation *situation = instance->situation;
   memcpy(N_VGetArrayPointer(erk->vectors.state), instance->state, lagrangian.state_count * sizeof(double));
   double relative = sundials_tolerances(instance, &erk->vectors, safety);
-  double first = situation->suggested_step < end - situation->time ? situation->suggested_step
-                                                                   : end - situation->time;
+  double first = situation->suggested_step < end - situation->time ? situation->suggested_step : end - situation->time;
   return sundials_succeeded(instance, ERKStepReInit(erk->arkode, right_side, situation->time, erk->vectors.state),
                             "ERKStepReInit") &&
          sundials_succeeded(instance, ERKStepSVtolerances(erk->arkode, relative, erk->vectors.tolerance),

@@ -138,8 +138,7 @@ static enum StepResult step(struct Instance *instance, double length, double *re
   exact->extended[states] = 1.0;
   memcpy(exact->extended + states + 1, instance->input, inputs * sizeof(double));
   if (exact->order > 1)
-    memcpy(exact->extended + states + 1 + inputs, instance->input_derivatives,
-           INPUT_ORDER * inputs * sizeof(double));
+    memcpy(exact->extended + states + 1 + inputs, instance->input_derivatives, INPUT_ORDER * inputs * sizeof(double));
   for (size_t i = 0; i < states; i++) {
     double sum = 0.0;
     for (size_t j = 0; j < n; j++) sum += exact->matrix[i * n + j] * exact->extended[j];

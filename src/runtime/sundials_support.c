@@ -47,13 +47,14 @@ bool sundials_tiny_step(struct Instance *instance, double end) {
   return true;
 }
 
-void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name,
-                       double reached, double end) {
+void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name, double reached,
+                       double end) {
   if (instance->singular != 0) log_singularity(instance, fmi2Discard, reached);
-  log_message(instance, fmi2Discard,
-              "%s stopped at time %.17g before %.17g (%s, %d): retrying will not help; go on from an earlier state with "
-              "a larger tolerance, other parameters or other coordinates",
-              solver, reached, end, flag_name, flag);
+  log_message(
+      instance, fmi2Discard,
+      "%s stopped at time %.17g before %.17g (%s, %d): retrying will not help; go on from an earlier state with "
+      "a larger tolerance, other parameters or other coordinates",
+      solver, reached, end, flag_name, flag);
 }
 
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data) {

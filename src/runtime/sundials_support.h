@@ -30,8 +30,8 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
 bool sundials_tiny_step(struct Instance *instance, double end);
 
 /* Logs that the solver stopped before the end of a communication step, and what to try. */
-void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name,
-                       double reached, double end);
+void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name, double reached,
+                       double end);
 
 /* An error handler for SUNDIALS that stays silent: the flags tell what happened, in this project's words. */
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data);

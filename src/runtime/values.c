@@ -23,8 +23,9 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     const struct ScalarVariable *variable = check_reference(instance, vr[i], false, "fmi2GetReal");
     if (variable == NULL) return fmi2Error;
     if (!is_readable(instance, variable))
-      return log_error(instance, "fmi2GetReal: '%s' cannot be read in initialization mode; expected an output or "
-                                 "one of InitialUnknowns",
+      return log_error(instance,
+                       "fmi2GetReal: '%s' cannot be read in initialization mode; expected an output or "
+                       "one of InitialUnknowns",
                        variable->name);
     fmi2Status read = evaluate_variable(instance, variable, &value[i]);
     if (read > status) status = read;
@@ -88,8 +89,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
   struct Instance *instance = c;
   if (instance == NULL) return fmi2Error;
-  if (!check_call(instance, FUNCTION_SET_REAL, "fmi2SetReal") ||
-      !check_array(instance, vr, nvr, "fmi2SetReal", "vr") ||
+  if (!check_call(instance, FUNCTION_SET_REAL, "fmi2SetReal") || !check_array(instance, vr, nvr, "fmi2SetReal", "vr") ||
       !check_array(instance, value, nvr, "fmi2SetReal", "value"))
     return fmi2Error;
   /* All values are checked before the first is set. */

@@ -1,0 +1,61 @@
+"""Simulates an FMU with FMPy and leaves a CSV and a plot: simulate.py FMU [VARIABLE=VALUE ...]"""
+
+import argparse
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from fmpy import read_model_description, simulate_fmu
+
+
+def start_value(text):
+    name, separator, value = text.partition("=")
+    if not separator:
+        raise argparse.ArgumentTypeError(f"'{text}' is not VARIABLE=VALUE")
+    return name, float(value)
+
+
+def draw(description, result, path):
+    """One axis a unit, one line an output."""
+    unit_of = {variable.name: variable.unit or "1" for variable in description.modelVariables}
+    units = list(dict.fromkeys(unit_of[name] for name in result.dtype.names[1:]))
+    figure, axes = plt.subplots(len(units), sharex=True, squeeze=False, figsize=(8, 1.2 + 1.8 * len(units)))
+    for unit, axis in zip(units, axes[:, 0]):
+        for name in result.dtype.names[1:]:
+            if unit_of[name] == unit:
+                axis.plot(result["time"], result[name], label=name)
+        axis.set_ylabel(f"[{unit}]")
+        axis.grid(alpha=0.3)
+        axis.legend(loc="upper right", ncols=2, fontsize="small")
+    axes[0, 0].set_title(description.description or description.modelName)
+    axes[-1, 0].set_xlabel("time [s]")
+    figure.tight_layout()
+    figure.savefig(path, dpi=120)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("fmu", type=Path)
+    parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE")
+    arguments = parser.parse_args()
+
+    description = read_model_description(arguments.fmu)
+    known = [variable.name for variable in description.modelVariables]
+    for name, _ in arguments.start:
+        if name not in known:
+            parser.error(f"'{name}' is no variable of {description.modelName}; it has {', '.join(known)}")
+    result = simulate_fmu(arguments.fmu, start_values=dict(arguments.start), fmi_type="CoSimulation")
+
+    folder = Path("build/results")
+    folder.mkdir(parents=True, exist_ok=True)
+    csv, plot = (folder / f"{description.modelName}.{kind}" for kind in ("csv", "png"))
+    np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
+    draw(description, result, plot)
+    print(f"FMU   {arguments.fmu.resolve()}\nCSV   {csv.resolve()}\nplot  {plot.resolve()}")
+
+
+if __name__ == "__main__":
+    main()
