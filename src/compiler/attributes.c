@@ -56,13 +56,14 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
   char *text = attribute(node, "unit");
   if (text != NULL && !unit_parse(text, &dimension, &problem))
     report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text, problem);
+  reader->model->scope->checks_units |= text != NULL;
   free(text);
   return dimension;
 }
 
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
                   struct Dimension expected) {
-  if (quantity.literal || dimension_agrees(quantity.dimension, expected)) return;
+  if (quantity.literal || scope_units_agree(reader->model->scope, quantity.dimension, expected)) return;
   char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
   report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
                expected_unit);

@@ -38,7 +38,7 @@ static void set_point(struct Model *model, const char *name, const char *value, 
   struct Dimension dimension = quantity->dimension;
   struct Place place = {.line = line, .what = name, .kinds = 1u << PARAMETER};
   struct Quantity parsed = parse_expression(model->scope, value, place);
-  if (!parsed.literal && !dimension_agrees(parsed.dimension, dimension))
+  if (!parsed.literal && !scope_units_agree(model->scope, parsed.dimension, dimension))
     report_error(diagnostics, line, "unit mismatch: the value for '%s' has another unit than the variable", name);
   model->point.values[symbol] = parsed.node;
   model->point.given[symbol] = true;

@@ -80,7 +80,7 @@ static void expect(struct Parser *parser, char c, const char *context) {
 }
 
 static struct Quantity require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
-  if (dimension_agrees(value.dimension, dimension_one)) return value;
+  if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return value;
   char *unit = unit_text(value.dimension);
   FAIL(parser, "%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what, unit);
   free(unit);
@@ -92,7 +92,7 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
                                          const char *where) {
   if (a.literal) return b.dimension;
   if (b.literal) return a.dimension;
-  if (!dimension_agrees(a.dimension, b.dimension)) {
+  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) {
     char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
     FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
          where);

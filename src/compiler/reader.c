@@ -90,10 +90,8 @@ static struct Model *model_create(struct Diagnostics *diagnostics) {
   model->tolerance = model->start_time = model->stop_time = model->step_size = NAN;
   define_language(model->scope);
   reserve_result_names(model->scope);
-  struct Dimension second;
-  const char *problem;
-  unit_parse("s", &second, &problem);
-  model->time = scope_symbol(model->scope, TIME, 0, "time", second, 0);
+  /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */
+  model->time = scope_symbol(model->scope, TIME, 0, "time", dimension_unknown, 0);
   return model;
 }
 

@@ -112,6 +112,10 @@ const char *scope_similar_name(const struct Scope *scope, const char *name) {
   return similar.best;
 }
 
+bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second) {
+  return !scope->checks_units || dimension_agrees(first, second);
+}
+
 Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
                   long line) {
   Node node = graph_symbol(scope->graph, kind, index, name);

@@ -19,6 +19,7 @@ struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
   xmlHashTablePtr names;  /* name -> struct Entry */
+  bool checks_units;      /* some variable has a unit; a file without any is free of them */
   Node *time_derivatives; /* one node a symbol: d symbol / dt; ZERO for parameters */
 };
 
@@ -37,6 +38,9 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 
 /* A known name that differs from this one by at most two letters, or NULL. */
 const char *scope_similar_name(const struct Scope *scope, const char *name);
+
+/* Whether two quantities may be added; always true where units are not checked. */
+bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second);
 
 /* Adds a symbol to graph and scope; its time derivative is set with scope_set_time_derivative. */
 Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,

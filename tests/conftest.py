@@ -1,0 +1,28 @@
+"""Finds what the build made; every test runs on the packed FMUs."""
+
+import pytest
+
+import fmu
+
+
+def pytest_generate_tests(metafunc):
+    """A test with an argument `name` runs for every system, or for those that it names itself."""
+    named = any(
+        "name" in mark.args[0].replace(" ", "").split(",") for mark in metafunc.definition.iter_markers("parametrize")
+    )
+    if "name" in metafunc.fixturenames and not named:
+        metafunc.parametrize("name", fmu.all_names())
+
+
+@pytest.fixture
+def open_fmu():
+    """Creates instances, and frees them after the test."""
+    instances = []
+
+    def create(name, **options):
+        instances.append(fmu.Instance(name, **options))
+        return instances[-1]
+
+    yield create
+    for instance in instances:
+        instance.free()

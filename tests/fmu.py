@@ -1,0 +1,165 @@
+"""Instances of the built FMUs through FMPy, by variable names instead of value references."""
+
+import functools
+import re
+import subprocess
+import tempfile
+from contextlib import contextmanager
+from ctypes import byref
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Model,
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build"
+LAGC = BUILD / "bin" / "lagc"
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)
+
+
+def all_names():
+    return sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
+
+
+@functools.cache
+def unpacked(name):
+    """The folder of an unpacked FMU: a system of fmu/, or of tests/systems/."""
+    return Path(fmpy.extract(archive(name), tempfile.mkdtemp(prefix=name)))
+
+
+def archive(name):
+    folder = BUILD if (ROOT / "fmu" / name).exists() else BUILD / "test-systems"
+    return folder / "fmu" / f"{name}.fmu"
+
+
+@functools.cache
+def description(name):
+    return fmpy.read_model_description(unpacked(name))
+
+
+def further_names():
+    """The systems of tests/systems, which exercise what those of fmu/ do not."""
+    return sorted(path.parent.name for path in (ROOT / "tests" / "systems").glob("*/system.xml"))
+
+
+def moving_names():
+    """The systems with coordinates."""
+    return [name for name in all_names() if description(name).numberOfContinuousStates > 0]
+
+
+def references(name):
+    return {variable.name: variable.valueReference for variable in description(name).modelVariables}
+
+
+def names_of(name, causality):
+    return [v.name for v in description(name).modelVariables if v.causality == causality]
+
+
+def states_of(name):
+    """Names of the states: coordinates, then velocities (then the work where it is asked for)."""
+    return [unknown.variable.derivative.name for unknown in description(name).derivatives]
+
+
+class Instance:
+    """
+    One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where
+    their status is worse than a warning; fails() turns that around.
+    """
+
+    def __init__(self, name, kind=FMU2Slave, logging=True, guid=None, callbacks=None, instance_name="instance"):
+        self.description = description(name)
+        self.references = references(name)
+        self.messages = []
+        section = self.description.coSimulation if kind is FMU2Slave else self.description.modelExchange
+        self.fmu = kind(
+            guid=guid or self.description.guid,
+            unzipDirectory=str(unpacked(name)),
+            modelIdentifier=section.modelIdentifier,
+            instanceName=instance_name,
+        )
+        self.callbacks = callbacks or self._callbacks()
+        self.time = 0.0
+        self.fmu.component = None
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
+
+    def _callbacks(self):
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        return callbacks
+
+    def _log(self, environment, instance_name, status, category, message):
+        self.messages.append((status, category.decode(), message.decode().replace("%%", "%")))
+
+    def vr(self, *names):
+        return [self.references[name] for name in names]
+
+    def get(self, *names):
+        values = self.fmu.getReal(self.vr(*names))
+        return values[0] if len(names) == 1 else values
+
+    def set(self, values=(), **named):
+        values = {**dict(values), **named}
+        self.fmu.setReal(self.vr(*values), list(values.values()))
+
+    def initialize(self, values=(), tolerance=None, start_time=0.0, stop_time=None):
+        self.fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
+        self.set(values)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        self.time = start_time
+        return self
+
+    def reset(self):
+        self.fmu.reset()
+        return self
+
+    def step(self, size):
+        self.fmu.doStep(self.time, size)
+        self.time += size
+
+    def run(self, end, step, *names):
+        """Steps to the end; returns one row (time, values of names) a communication point, the start included."""
+        count = max(1, round((end - self.time) / step))
+        start = self.time
+        rows = [[self.time, *self.fmu.getReal(self.vr(*names))]]
+        for i in range(1, count + 1):
+            target = start + (end - start) * i / count
+            self.step(target - self.time)
+            self.time = target
+            rows.append([self.time, *self.fmu.getReal(self.vr(*names))])
+        return rows
+
+    @contextmanager
+    def fails(self, status, message):
+        """The call inside must end with this status, and log a message that the pattern finds."""
+        before = len(self.messages)
+        with pytest.raises(FMICallException) as raised:
+            yield
+        assert raised.value.status == status
+        texts = [text for _, _, text in self.messages[before:]]
+        assert any(re.search(message, text) for text in texts), f"{message!r} is not in {texts}"
+
+    def free(self):
+        if self.fmu.component is not None:
+            self.fmu.fmi2FreeInstance(self.fmu.component)
+            self.fmu.component = None
+            self.fmu.freeLibrary()
+
+    def free_state(self, state):
+        self.fmu.fmi2FreeFMUstate(self.fmu.component, byref(state))
+
+
+def lagc(*words, cwd=None):
+    return subprocess.run([LAGC, *map(str, words)], capture_output=True, text=True, cwd=cwd, timeout=120)
+

@@ -1,0 +1,107 @@
+"""An independent derivation: SymPy applies Lagrange's equation to energies typed in its own notation."""
+
+from dataclasses import dataclass, field
+
+import mpmath
+import numpy as np
+import sympy as sp
+
+time = sp.Symbol("time")
+
+
+@dataclass
+class System:
+    """T, U and the generalized forces Q as functions of the symbols below; positions by particle name."""
+
+    q: list
+    v: list
+    T: sp.Expr
+    U: sp.Expr
+    Q: list
+    inputs: list = field(default_factory=list)
+    parameters: list = field(default_factory=list)
+    positions: dict = field(default_factory=dict)
+    linearized_at: dict = None
+
+    def __post_init__(self):
+        self.Q = self.Q or [sp.Integer(0)] * len(self.q)
+        L = self.T - self.U
+        a = [sp.Symbol(f"a{i}") for i in range(len(self.q))]
+        self.mass, self.terms = sp.zeros(len(a)), []
+        for i, (qi, vi) in enumerate(zip(self.q, self.v)):
+            momentum = sp.diff(L, vi)
+            for j, vj in enumerate(self.v):
+                self.mass[i, j] = sp.diff(momentum, vj)
+            self.terms.append(
+                [self.Q[i], sp.diff(L, qi), -sp.diff(momentum, time)]
+                + [-sp.diff(momentum, qj) * vj for qj, vj in zip(self.q, self.v)]
+            )
+        if self.linearized_at is not None:
+            self._linearize()
+        self.arguments = [time, *self.q, *self.v, *self.inputs, *self.parameters]
+
+    def _linearize(self):
+        """At an equilibrium M a = rhs becomes M0 a = d rhs / d(q, v, u) (q, v, u): the derivative of M meets a = 0."""
+        point = {symbol: self.linearized_at.get(symbol, 0) for symbol in [*self.q, *self.v, *self.inputs]}
+        self.mass = self.mass.subs(point)
+        for i, terms in enumerate(self.terms):
+            right = sum(terms)
+            assert sp.simplify(right.subs(point)) == 0, "this point is no equilibrium"
+            self.terms[i] = [sp.diff(right, s).subs(point) * (s - value) for s, value in point.items()]
+
+    def evaluator(self, module):
+        """A function of the arguments that returns M by rows and the terms of the right side, one row an equation."""
+        n = len(self.q)
+        flat = [*self.mass, *(term for terms in self.terms for term in terms)]
+        compiled = sp.lambdify(self.arguments, flat, modules=module, cse=True)
+
+        def evaluate(*values):
+            numbers = compiled(*values)
+            width = (len(numbers) - n * n) // n
+            rows = [numbers[n * n + i * width : n * n + (i + 1) * width] for i in range(n)]
+            return [numbers[i * n : (i + 1) * n] for i in range(n)], rows
+
+        return evaluate
+
+    def accelerations(self, values):
+        """
+        Exact to 40 digits, and the scale of each: the sum of the magnitudes of the terms that cancel in it.
+        values: time, q, v, inputs and parameters.
+        """
+        with mpmath.workdps(40):
+            mass, terms = self.precise(*map(mpmath.mpf, values))
+            inverse = mpmath.matrix(mass) ** -1
+            exact = inverse * mpmath.matrix([sum(row) for row in terms])
+            sizes = [sum(abs(term) for term in row) for row in terms]
+            n = len(terms)
+            scale = [sum(abs(inverse[i, j]) * sizes[j] for j in range(n)) for i in range(n)]
+            return np.array([float(x) for x in exact]), np.array([float(s) for s in scale])
+
+    @property
+    def precise(self):
+        if not hasattr(self, "_precise"):
+            self._precise = self.evaluator("mpmath")
+        return self._precise
+
+    def right_side(self, inputs, parameters):
+        """f(t, x) for SciPy's integrators; inputs is a function of time."""
+        evaluate = self.evaluator("numpy")
+        n = len(self.q)
+
+        def derivative(t, x):
+            mass, terms = evaluate(t, *x, *inputs(t), *parameters)
+            right = np.array([sum(row) for row in terms], float)
+            return np.concatenate([x[n:], np.linalg.solve(np.array(mass, float), right)])
+
+        return derivative
+
+
+def velocity(expression, q, v):
+    """d expression / dt for an expression of q and time."""
+    return sp.diff(expression, time) + sum(sp.diff(expression, qi) * vi for qi, vi in zip(q, v))
+
+
+def kinetic(masses_and_positions, q, v):
+    return sum(
+        m / 2 * sum(velocity(sp.sympify(x), q, v) ** 2 for x in position) for m, position in masses_and_positions
+    )

@@ -1,0 +1,210 @@
+"""Every system of the design once more, typed in SymPy; the tests compare them with the FMUs."""
+
+import functools
+
+import sympy as sp
+from sympy import cos, sin, symbols
+
+from mechanics import System, kinetic, time, velocity
+
+
+def particle_cartesian():
+    x, y, z, vx, vy, vz = symbols("x y z vx vy vz")
+    Fx, Fy, Fz, m, kx, ky, kz, g = symbols("Fx Fy Fz m kx ky kz g")
+    q, v = [x, y, z], [vx, vy, vz]
+    U = (kx * x**2 + ky * y**2 + kz * z**2) / 2 + m * g * z
+    return System(
+        q, v, m * (vx**2 + vy**2 + vz**2) / 2, U, [Fx, Fy, Fz], [Fx, Fy, Fz], [m, kx, ky, kz, g], {"particle": (x, y, z)}
+    )
+
+
+def particle_polar():
+    r, theta, vr, omega, Fr, Ftheta, m, mu = symbols("r theta vr omega Fr Ftheta m mu")
+    T = m * (vr**2 + r**2 * omega**2) / 2
+    position = (r * cos(theta), r * sin(theta))
+    return System(
+        [r, theta], [vr, omega], T, -m * mu / r, [Fr, Ftheta], [Fr, Ftheta], [m, mu], {"particle": position}
+    )
+
+
+def particle_cylindrical():
+    rho, theta, z, vrho, omega, vz = symbols("rho theta z vrho omega vz")
+    Frho, Ftheta, Fz, m, k, g = symbols("Frho Ftheta Fz m k g")
+    T = m * (vrho**2 + rho**2 * omega**2 + vz**2) / 2
+    position = (rho * cos(theta), rho * sin(theta), z)
+    forces = [Frho, Ftheta, Fz]
+    return System(
+        [rho, theta, z], [vrho, omega, vz], T, m * g * z + k * rho**2 / 2, forces, forces, [m, k, g],
+        {"particle": position},
+    )
+
+
+def particle_spherical():
+    r, theta, phi, vr, vtheta, vphi = symbols("r theta phi vr omegaTheta omegaPhi")
+    Fr, Ftheta, Fphi, m, g = symbols("Fr Ftheta Fphi m g")
+    T = m * (vr**2 + r**2 * vphi**2 + r**2 * sin(phi) ** 2 * vtheta**2) / 2
+    position = (r * cos(theta) * sin(phi), r * sin(theta) * sin(phi), r * cos(phi))
+    forces = [Fr, Ftheta, Fphi]
+    return System(
+        [r, theta, phi], [vr, vtheta, vphi], T, m * g * r * cos(phi), forces, forces, [m, g], {"particle": position}
+    )
+
+
+def pendulum(torque=False, linear=False):
+    theta, omega, tau, m, l, g, b = symbols("theta omega tau m l g b")
+    T, U = m * l**2 * omega**2 / 2, m * g * l * (1 - cos(theta))
+    bob = {"bob": (l * sin(theta), -l * cos(theta))}
+    if torque:
+        return System([theta], [omega], T, U, [tau - b * omega], [tau], [m, l, g, b], bob)
+    return System([theta], [omega], T, U, None, [], [m, l, g], bob, {} if linear else None)
+
+
+def cart(torque=False, linear=False):
+    x, theta, v, omega, F, tau, M, m, l, g = symbols("x theta v omega F tau M m l g")
+    T = M * v**2 / 2 + m * ((v + l * omega * cos(theta)) ** 2 + (l * omega * sin(theta)) ** 2) / 2
+    return System(
+        [x, theta], [v, omega], T, m * g * l * cos(theta), [F, tau if torque else sp.Integer(0)],
+        [F, tau] if torque else [F], [M, m, l, g],
+        {"cart": (x,), "bob": (x + l * sin(theta), l * cos(theta))}, {} if linear else None,
+    )
+
+
+def rotating_pivot():
+    theta, omega, m, l, g, r, w, gamma = symbols("theta omega m l g r w gamma")
+    position = (r * cos(w * time) + l * cos(theta), -r * sin(w * time) + l * sin(theta))
+    U = -m * g * (position[0] * cos(gamma) + position[1] * sin(gamma))
+    q, v = [theta], [omega]
+    return System(q, v, kinetic([(m, position)], q, v), U, None, [], [m, l, g, r, w, gamma], {"bob": position})
+
+
+def elastic_pendulum():
+    r, theta, vr, omega, m, l0, k, c, g = symbols("r theta vr omega m l0 k c g")
+    T = m * (vr**2 + r**2 * omega**2) / 2
+    U = k * (r - l0) ** 2 / 2 - m * g * r * cos(theta)
+    bob = {"bob": (r * sin(theta), -r * cos(theta))}
+    return System([r, theta], [vr, omega], T, U, [-c * vr, sp.Integer(0)], [], [m, l0, k, c, g], bob)
+
+
+def double_pendulum():
+    theta1, theta2, omega1, omega2, m1, m2, l1, l2, g = symbols("theta1 theta2 omega1 omega2 m1 m2 l1 l2 g")
+    T = (
+        (m1 + m2) * l1**2 * omega1**2 / 2
+        + m2 * l2**2 * omega2**2 / 2
+        + m2 * l1 * l2 * omega1 * omega2 * cos(theta1 - theta2)
+    )
+    U = -(m1 + m2) * g * l1 * cos(theta1) - m2 * g * l2 * cos(theta2)
+    upper = (l1 * sin(theta1), -l1 * cos(theta1))
+    lower = (upper[0] + l2 * sin(theta2), upper[1] - l2 * cos(theta2))
+    return System(
+        [theta1, theta2], [omega1, omega2], T, U, None, [], [m1, m2, l1, l2, g], {"upper": upper, "lower": lower}
+    )
+
+
+def chain_pendulum(count=10):
+    """T in the closed form of the n-pendulum: m l^2 / 2 sum_ij (n + 1 - max(i, j)) w_i w_j cos(theta_i - theta_j)."""
+    m, l, g = symbols("m l g")
+    theta = [sp.Symbol(f"theta[{i}]") for i in range(1, count + 1)]
+    omega = [sp.Symbol(f"omega[{i}]") for i in range(1, count + 1)]
+    T = sum(
+        m * l**2 / 2 * (count - max(i, j)) * omega[i] * omega[j] * cos(theta[i] - theta[j])
+        for i in range(count)
+        for j in range(count)
+    )
+    U = -sum(m * g * l * (count - i) * cos(theta[i]) for i in range(count))
+    return System(theta, omega, T, U, None, [], [m, l, g])
+
+
+def bead_on_hoop():
+    theta, omega, m, R, W, g = symbols("theta omega m R W g")
+    T = m * R**2 * (omega**2 + W**2 * sin(theta) ** 2) / 2
+    return System([theta], [omega], T, -m * g * R * cos(theta), None, [], [m, R, W, g])
+
+
+def spherical_pendulum():
+    theta, phi, omega, nu, m, l, g = symbols("theta phi omega nu m l g")
+    T = m * l**2 * (omega**2 + sin(theta) ** 2 * nu**2) / 2
+    return System([theta, phi], [omega, nu], T, -m * g * l * cos(theta), None, [], [m, l, g])
+
+
+def furuta_pendulum():
+    alpha, theta, nu, omega, tau, Ja, m, J, a, l, b, g = symbols("alpha theta nu omega tau Ja m J a l b g")
+    T = (
+        (Ja + m * a**2 + (m * l**2 + J) * sin(theta) ** 2) * nu**2 / 2
+        + (m * l**2 + J) * omega**2 / 2
+        + m * a * l * cos(theta) * nu * omega
+    )
+    U = m * g * l * cos(theta)
+    return System([alpha, theta], [nu, omega], T, U, [tau - b * nu, -b * omega], [tau], [Ja, m, J, a, l, b, g])
+
+
+def charged_particle():
+    """m x'' = qB y', m y'' = -qB x'."""
+    x, y, vx, vy, m, qB = symbols("x y vx vy m qB")
+    return System([x, y], [vx, vy], m * (vx**2 + vy**2) / 2, 0, [qB * vy, -qB * vx], [], [m, qB])
+
+
+def two_carts():
+    M, m, l, k, g, u = symbols("M m l k g u")
+    x = symbols("x[1] x[2]")
+    theta, v, omega = symbols("theta[1] theta[2]"), symbols("v[1] v[2]"), symbols("omega[1] omega[2]")
+    s, vs = symbols("s vs")
+    q, velocities = [x[0], theta[0], x[1], theta[1], s], [v[0], omega[0], v[1], omega[1], vs]
+    T = sum(
+        M * v[i] ** 2 / 2 + m * (v[i] ** 2 + 2 * l * v[i] * omega[i] * cos(theta[i]) + l**2 * omega[i] ** 2) / 2
+        for i in range(2)
+    )
+    T += M * velocity(s + sp.Rational(1, 20) * sin(2 * time), [s], [vs]) ** 2 / 2
+    U = -m * g * l * (cos(theta[0]) + cos(theta[1])) + k * (x[0] - x[1]) ** 2 / 2
+    forces = [0, 0, 0, 0, k * (u - s) + cos(time) / 10]
+    return System(q, velocities, T, U, [sp.sympify(f) for f in forces], [u], [M, m, l, k, g])
+
+
+def rolling_disk():
+    s, phi, v, omega, m, J, r, mr, Jr, d, slope, g = symbols("s phi v omega m J r mr Jr d slope g")
+    hinge_velocity = sp.Matrix([v * cos(slope), -v * sin(slope)])
+    rod_velocity = hinge_velocity + omega * d * sp.Matrix([cos(phi), sin(phi)])
+    T = (m + J / r**2) * v**2 / 2 + mr * rod_velocity.dot(rod_velocity) / 2 + Jr * omega**2 / 2
+    U = -(m + mr) * g * s * sin(slope) - mr * g * d * cos(phi)
+    return System([s, phi], [v, omega], T, U, None, [], [m, J, r, mr, Jr, d, slope, g])
+
+
+def functions():
+    q, w, u, m, p = symbols("q w u m p", real=True)
+    U = sp.sqrt(1 + q**2) + sp.exp(-q) * sp.cosh(p * q) + sp.log(2 + sin(q)) + sp.asinh(q) + 2**q
+    U += (sp.Rational(3, 2) + p) ** (q / 3)
+    Q = sp.atan2(q, 1 + p**2) + sp.tan(q / 4) + sp.tanh(u) + sp.atan(w) + sp.asin(q / 9) + sp.acos(q / 9)
+    Q += sp.sinh(w / 5) + sp.Piecewise((q, q < u), (u, True)) + sp.Piecewise((w, w > 0), (0, True))
+    Q += -sp.Rational(1, 10) * sp.Abs(w) * w + sp.sign(u) * p + sp.acosh(2 + q**2) + sp.atanh(q / 9)
+    Q += sin(3 * time) * cos(time / 2) - sp.pi * w + q**3 / (1 + time**2)
+    return System([q], [w], m * w**2 / 2, U, [Q], [u], [m, p])
+
+
+DEFINITIONS = {
+    "ParticleCartesian": particle_cartesian,
+    "ParticlePolar": particle_polar,
+    "ParticleCylindrical": particle_cylindrical,
+    "ParticleSpherical": particle_spherical,
+    "SimplePendulum": pendulum,
+    "SimplePendulumLinear": functools.partial(pendulum, linear=True),
+    "DampedPendulum": functools.partial(pendulum, torque=True),
+    "InvertedPendulumCart": cart,
+    "InvertedPendulumCartLinear": functools.partial(cart, linear=True),
+    "InvertedPendulumCartTorque": functools.partial(cart, torque=True),
+    "InvertedPendulumCartTorqueLinear": functools.partial(cart, torque=True, linear=True),
+    "RotatingPivotPendulum": rotating_pivot,
+    "ElasticPendulum": elastic_pendulum,
+    "DoublePendulum": double_pendulum,
+    "ChainPendulum": chain_pendulum,
+    "BeadOnHoop": bead_on_hoop,
+    "SphericalPendulum": spherical_pendulum,
+    "FurutaPendulum": furuta_pendulum,
+    "ChargedParticle": charged_particle,
+    "TwoCarts": two_carts,
+    "RollingDisk": rolling_disk,
+    "Functions": functions,
+}
+
+
+@functools.cache
+def system(name):
+    return DEFINITIONS[name]()

@@ -1,0 +1,105 @@
+"""The derived accelerations, energies and positions against SymPy's, at random states and parameters."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import fmu
+from systems_in_sympy import DEFINITIONS, system
+from mechanics import time
+
+CASES = 200
+TOLERANCE = 1e-11
+
+
+def sample(name, definition, random):
+    """Time and one value for each coordinate, velocity, input and parameter, away from singular points."""
+    values = {time: random.uniform(0, 3)}
+    for symbol in [*definition.q, *definition.v, *definition.inputs]:
+        values[symbol] = random.uniform(-3, 3)
+    limits = {v.name: (float(v.min or 0.2), float(v.max or 3)) for v in fmu.description(name).modelVariables}
+    for symbol in definition.parameters:
+        low, high = limits[symbol.name]
+        values[symbol] = random.uniform(max(low, 0.2), min(high, 3))
+    for symbol in definition.q:
+        if symbol.name in ("r", "rho"):
+            values[symbol] = random.uniform(0.3, 3)
+        if symbol.name == "phi" and name == "ParticleSpherical" or symbol.name == "theta" and name == "SphericalPendulum":
+            values[symbol] = random.uniform(0.3, 2.8)
+    return values
+
+
+def situations(name, open_fmu):
+    """The instance in initialization mode with random values, and these values, many times."""
+    definition = system(name)
+    instance = open_fmu(name)
+    random = np.random.default_rng(sum(map(ord, name)))
+    for _ in range(CASES):
+        values = sample(name, definition, random)
+        instance.reset()
+        instance.fmu.setupExperiment(startTime=values[time])
+        instance.set({symbol.name: value for symbol, value in values.items() if symbol is not time
+                      and symbol not in definition.inputs})
+        instance.fmu.enterInitializationMode()
+        instance.set({symbol.name: values[symbol] for symbol in definition.inputs})
+        yield instance, [values[symbol] for symbol in definition.arguments]
+
+
+@pytest.mark.parametrize("name", DEFINITIONS)
+def test_accelerations(name, open_fmu):
+    definition = system(name)
+    for instance, values in situations(name, open_fmu):
+        exact, scale = definition.accelerations(values)
+        ours = np.array(instance.fmu.getReal(instance.vr(*[f"der({v.name})" for v in definition.v])))
+        assert np.all(np.abs(ours - exact) <= TOLERANCE * scale)
+        velocities = instance.fmu.getReal(instance.vr(*[f"der({q.name})" for q in definition.q]))
+        assert velocities == [values[1 + len(definition.q) + i] for i in range(len(definition.q))]
+
+
+def test_every_system_is_compared():
+    assert set(DEFINITIONS) == set(fmu.moving_names()) | set(fmu.further_names())
+
+
+# A potential that depends on velocities is no energy; linear systems have energies of second order.
+WITH_ENERGIES = [name for name in DEFINITIONS if not name.endswith("Linear") and name != "ChargedParticle"]
+
+
+@pytest.mark.parametrize("name", WITH_ENERGIES)
+def test_energies_and_positions(name, open_fmu):
+    definition = system(name)
+    expected = {"kineticEnergy": definition.T, "potentialEnergy": definition.U}
+    for particle, position in definition.positions.items():
+        expected.update({f"{particle}.{axis}": value for axis, value in zip("xyz", position)})
+    evaluate = sp.lambdify(definition.arguments, list(expected.values()), modules="numpy", cse=True)
+    for instance, values in situations(name, open_fmu):
+        instance.fmu.exitInitializationMode()
+        ours = instance.get("totalEnergy", *expected)
+        np.testing.assert_allclose(ours[1:], evaluate(*values), rtol=1e-11, atol=1e-11)
+        assert ours[0] == pytest.approx(ours[1] + ours[2], rel=1e-13, abs=1e-13)
+
+
+CART_EQUATIONS = """
+    (F + m*l*omega**2*sin(theta) - m*g*sin(theta)*cos(theta))/(M + m*sin(theta)**2)
+    ((M + m)*g*sin(theta) - F*cos(theta) - m*l*omega**2*sin(theta)*cos(theta))/(l*(M + m*sin(theta)**2))
+"""
+PIVOT_EQUATION = "-g/l*sin(theta - gamma) - r*w**2/l*sin(theta + w*time)"
+
+
+@pytest.mark.parametrize(
+    "name, equations",
+    [
+        ("SimplePendulum", "-g/l*sin(theta)"),
+        ("InvertedPendulumCart", CART_EQUATIONS),
+        ("RotatingPivotPendulum", PIVOT_EQUATION),
+        ("BeadOnHoop", "(W**2*cos(theta) - g/R)*sin(theta)"),
+    ],
+)
+def test_published_equations(name, equations, open_fmu):
+    """The equations of textbooks, typed as they are printed, so that SymPy's derivation is checked as well."""
+    definition = system(name)
+    names = {symbol.name: symbol for symbol in definition.arguments}
+    formulas = [sp.sympify(line, locals=names) for line in equations.split("\n") if line.strip()]
+    evaluate = sp.lambdify(definition.arguments, formulas, modules="numpy")
+    for instance, values in situations(name, open_fmu):
+        ours = instance.fmu.getReal(instance.vr(*[f"der({v.name})" for v in definition.v]))
+        np.testing.assert_allclose(ours, evaluate(*values), rtol=1e-11, atol=1e-10)
