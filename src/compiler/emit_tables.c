@@ -54,6 +54,16 @@ static void emit_result_table(const struct Emitter *emitter) {
   fputs("};\n\n", emitter->file);
 }
 
+/* What the elimination of coordinate i rests on: the mass matrix of its block up to row and column i. */
+static struct NodeList inertia_of(const struct Equations *equations, size_t i) {
+  struct NodeList inertia = {0};
+  for (size_t k = 0; k <= i; k++)
+    for (size_t j = 0; j <= k; j++)
+      if (equations->block[k] == equations->block[i] && equations->block[j] == equations->block[i])
+        append_nodes(&inertia, &equations->mass[k * equations->count + j], 1);
+  return inertia;
+}
+
 /* The names that a coordinate's inertia depends on, for the message that it has vanished. */
 static void emit_inertia_table(const struct Emitter *emitter) {
   const struct Graph *graph = emitter->graph;
@@ -61,7 +71,9 @@ static void emit_inertia_table(const struct Emitter *emitter) {
   bool *needed = allocate(graph->count, sizeof *needed);
   fputs("static const char *const inertia_depends_on[] = {\n", emitter->file);
   for (size_t i = 0; i < emitter->n; i++) {
-    graph_mark(graph, &emitter->equations->mass[i * emitter->n + i], 1, needed);
+    struct NodeList inertia = inertia_of(emitter->equations, i);
+    graph_mark(graph, inertia.nodes, inertia.count, needed);
+    free(inertia.nodes);
     fputs("    \"", emitter->file);
     const char *separator = "";
     for (size_t s = 0; s < graph->symbol_count; s++) {

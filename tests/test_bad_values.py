@@ -1,0 +1,159 @@
+"""Bad values through FMI: a clear error, no NaN, and the instance works again after a reset."""
+
+import math
+
+import pytest
+
+import fmu
+from fmu import DISCARD, ERROR
+
+
+def works_again(instance, name):
+    """After a reset the instance simulates as a new one does, bit by bit."""
+    states = fmu.states_of(name)
+    instance.reset().initialize()
+    with_history = instance.run(0.1, 0.05, *states)
+    fresh = fmu.Instance(name)
+    try:
+        assert fresh.initialize().run(0.1, 0.05, *states) == with_history
+    finally:
+        fresh.free()
+
+
+MASSES = [
+    (name, parameter)
+    for name, parameters in {
+        "ParticleCartesian": ["m"],
+        "ParticlePolar": ["m"],
+        "ParticleCylindrical": ["m"],
+        "ParticleSpherical": ["m"],
+        "SimplePendulum": ["m", "l"],
+        "DampedPendulum": ["m", "l"],
+        "InvertedPendulumCart": ["M", "m", "l"],
+        "InvertedPendulumCartTorque": ["m"],
+        "SimplePendulumLinear": ["l"],
+        "InvertedPendulumCartLinear": ["M", "l"],
+        "RotatingPivotPendulum": ["l"],
+        "ElasticPendulum": ["m"],
+        "DoublePendulum": ["m1", "m2", "l1", "l2"],
+        "ChainPendulum": ["m", "l"],
+    }.items()
+    for parameter in parameters
+]
+
+
+@pytest.mark.parametrize("name, parameter", MASSES)
+def test_no_inertia(name, parameter, open_fmu):
+    """A mass or a length of zero leaves some coordinate without inertia."""
+    instance = open_fmu(name)
+    instance.fmu.setupExperiment()
+    states = fmu.states_of(name)
+    values = {parameter: 0.0}
+    if (name, parameter) == ("InvertedPendulumCart", "M"):
+        values["theta"] = 0.0  # elsewhere M + m sin^2(theta) is not zero
+    with instance.fails(ERROR, "mass matrix|no acceleration"):
+        instance.set(values)
+        instance.fmu.enterInitializationMode()
+        instance.fmu.exitInitializationMode()
+        instance.step(0.1)
+    assert any(parameter in text for _, _, text in instance.messages)
+    works_again(instance, name)
+    assert all(math.isfinite(value) for value in instance.fmu.getReal(instance.vr(*states)))
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "ParticleCartesian", "SpringDamper", "ElasticPendulum"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_values_that_are_no_numbers(name, value, open_fmu):
+    instance = open_fmu(name)
+    for variable in instance.description.modelVariables:
+        if variable.causality in ("parameter", "input"):
+            with instance.fails(ERROR, f"'{variable.name}'.*finite"):
+                instance.set({variable.name: value})
+            works_again(instance, name)
+            instance.reset()
+
+
+def test_values_outside_their_range(open_fmu):
+    instance = open_fmu("SimplePendulum")
+    with instance.fails(ERROR, "-1 for 'm' is outside its range from 0"):
+        instance.set(m=-1)
+    works_again(instance, "SimplePendulum")
+
+
+def test_no_value_is_set_where_one_is_wrong(open_fmu):
+    instance = open_fmu("SimplePendulum")
+    with instance.fails(ERROR, "'l'"):
+        instance.set(m=7, l=-1)
+    instance.reset().initialize()
+    assert instance.get("m") == 1
+
+
+@pytest.mark.parametrize("step", [-0.1, 0.0, math.inf, math.nan])
+@pytest.mark.parametrize("name", ["SimplePendulum", "ParticleCartesian", "StateFeedback", "ElasticPendulum"])
+def test_bad_steps(name, step, open_fmu):
+    instance = open_fmu(name).initialize()
+    with instance.fails(ERROR, "finite step larger than 0"):
+        instance.step(step)
+    works_again(instance, name)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
+def test_unknown_value_references(name, open_fmu):
+    instance = open_fmu(name).initialize()
+    for call in (
+        lambda: instance.fmu.getReal([9999]),
+        lambda: instance.fmu.setReal([9999], [1.0]),
+        lambda: instance.fmu.getInteger([2**32 - 1]),
+        lambda: instance.fmu.getDirectionalDerivative([9999], [0], [1.0]),
+    ):
+        with instance.fails(ERROR, "unknown"):
+            call()
+        instance.reset().initialize()
+    works_again(instance, name)
+
+
+POLES = [
+    ("ParticleSpherical", dict(phi=0.0), "theta", "phi"),
+    ("ParticleSpherical", dict(r=0.0), "theta", "r"),
+    ("ParticlePolar", dict(r=0.0), "theta", "r"),
+    ("ParticleCylindrical", dict(rho=0.0), "theta", "rho"),
+    ("ElasticPendulum", dict(r=0.0), "theta", "r"),
+    ("SphericalPendulum", dict(theta=0.0), "phi", "theta"),
+]
+
+
+@pytest.mark.parametrize("name, values, lost, cause", POLES)
+def test_singular_coordinates(name, values, lost, cause, open_fmu):
+    """At a pole the azimuth has no inertia: the start there is refused, and no call returns NaN."""
+    instance = open_fmu(name)
+    states = fmu.states_of(name)
+    instance.fmu.setupExperiment()
+    instance.fmu.enterInitializationMode()
+    instance.set(values)
+    for state in states[len(states) // 2 :]:
+        with instance.fails(DISCARD, f"'{lost}'.*{cause}"):
+            instance.get(f"der({state})")
+    with instance.fails(ERROR, f"'{lost}'.*{cause}"):
+        instance.fmu.exitInitializationMode()
+    assert all(math.isfinite(value) for value in instance.get(*states))
+    works_again(instance, name)
+
+
+def test_throw_through_the_axis(open_fmu):
+    """Straight through the axis the azimuth does not turn, phi changes its sign, and the motion stays right."""
+    instance = open_fmu("ParticleSpherical").initialize(dict(r=1, phi=0.5, theta=0, omegaPhi=-1, omegaTheta=0, g=0))
+    x, z, vx, vz = math.sin(0.5), math.cos(0.5), -math.cos(0.5), math.sin(0.5)
+    for t, *position in instance.run(3, 0.1, "particle.x", "particle.y", "particle.z"):
+        assert position == pytest.approx([x + vx * t, 0, z + vz * t], abs=1e-8)
+    assert instance.get("phi") < 0
+
+
+def test_fall_into_the_centre(open_fmu):
+    instance = open_fmu("ParticlePolar").initialize(dict(r=1, omega=0))
+    with instance.fails(DISCARD, "retrying will not help"):
+        for _ in range(1000):
+            instance.step(0.01)
+    # Free fall from r = 1 with mu = 1 takes pi / (2 sqrt(2)).
+    assert instance.fmu.getRealStatus(2) == pytest.approx(math.pi / 2**1.5, abs=1e-6)
+    assert all(math.isfinite(value) for value in instance.get(*fmu.states_of("ParticlePolar")))
+    works_again(instance, "ParticlePolar")
