@@ -291,7 +291,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
-  else if (strcmp(element, "work") == 0) model->wants_work = true;
+  else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
 }
 
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
@@ -326,6 +326,6 @@ void check_settings(struct Reader *reader) {
   if (coordinates == 0 && reader->has_solver)
     report_error(reader->diagnostics, model->solver_line,
                  "a system without coordinates has nothing to solve; expected no <solver>");
-  if (model->wants_work && !model->has_forces)
-    report_error(reader->diagnostics, 0, "<work/> without forces; expected a <force> or <dissipation>");
+  if (model->work_line > 0 && !model->has_forces)
+    report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
 }

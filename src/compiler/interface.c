@@ -104,7 +104,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   size_t n = model->coordinates.count;
   interface->method = method_of(model);
   interface->depends_on_time = uses_time(model, equations);
-  interface->state_count = 2 * n + (model->wants_work ? 1 : 0);
+  interface->state_count = 2 * n + (model->work_line > 0 ? 1 : 0);
   if (interface->depends_on_time) {
     struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
     time->unit = copy_text("s");
@@ -120,7 +120,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
                           .description = (char *)"work of the non-conservative forces"};
   const char *problem;
   unit_parse("J", &work.dimension, &problem);
-  if (model->wants_work) {
+  if (model->work_line > 0) {
     append_list(interface, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
     interface->variables[interface->count - 1].entry.is_output = false;
   }
@@ -128,7 +128,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
-  if (model->wants_work) append_derivative(interface, &work, 2 * n, equations->power);
+  if (model->work_line > 0) append_derivative(interface, &work, 2 * n, equations->power);
   append_list(interface, &model->inputs, VARIABLE_INPUT, 0);
   append_list(interface, &model->parameters, VARIABLE_PARAMETER, 0);
   append_list(interface, &model->outputs, VARIABLE_RESULT, 0);

@@ -204,7 +204,7 @@ void linearize(struct Model *model, struct Equations *equations, struct Diagnost
     for (int part = 0; part < 3; part++) *parts[part] = simplify_fraction(graph, at_point(&expansion, *parts[part]));
   }
   equations->explicit_form = true;
-  model->wants_work = false;
+  model->work_line = 0;
   free(values);
   expansion_free(&expansion);
 }

@@ -112,6 +112,7 @@ static int run(const struct Arguments *arguments) {
   }
   equations_free(equations);
   model_free(model);
+  if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);
   return diagnostics.errors > 0 ? 1 : 0;
 }
 

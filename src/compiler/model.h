@@ -50,7 +50,7 @@ struct Model {
   struct Quantity potential, dissipation; /* J, W */
   struct Quantity *forces;                /* generalized force along each coordinate */
   bool has_forces;                        /* some force or dissipation was given */
-  bool wants_work;                        /* nonConservativeWork is integrated along */
+  long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
   struct LinearizationPoint point; /* where linearized */
   enum SolverMethod method;

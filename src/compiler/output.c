@@ -44,21 +44,27 @@ static bool write_file(const char *path, const char *text) {
   return fclose(file) == 0 && written;
 }
 
+static const char *const names[FILE_COUNT] = {"system.c", "modelDescription.xml", "documentation/index.html"};
+
+void output_remove(const char *directory) {
+  for (int i = 0; i < FILE_COUNT; i++) {
+    char *path = format_text("%s/%s", directory, names[i]);
+    remove(path);
+    free(path);
+  }
+}
+
 static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
-  static const char *const names[FILE_COUNT] = {"system.c", "modelDescription.xml", "documentation/index.html"};
-  char *documentation = format_text("%s/documentation", directory), *paths[FILE_COUNT];
+  char *documentation = format_text("%s/documentation", directory);
   bool written = create_directory(directory) && create_directory(documentation);
   for (int i = 0; i < FILE_COUNT; i++) {
-    paths[i] = format_text("%s/%s", directory, names[i]);
-    written = written && write_file(paths[i], texts[i]);
+    char *path = format_text("%s/%s", directory, names[i]);
+    written = written && write_file(path, texts[i]);
+    free(path);
   }
   if (!written)
     report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
                  strerror(errno));
-  for (int i = 0; i < FILE_COUNT; i++) {
-    if (!written) remove(paths[i]);
-    free(paths[i]);
-  }
   free(documentation);
 }
 

@@ -7,8 +7,11 @@
 
 /*
  * Writes system.c, modelDescription.xml and documentation/index.html into the directory, which is created where it
- * is missing. On an error, which is reported, no file is left.
+ * is missing, or reports why that fails.
  */
 void output_write(const struct Program *program, const char *directory, struct Diagnostics *diagnostics);
+
+/* Removes these files, also those of an earlier run: after an error none is left. */
+void output_remove(const char *directory);
 
 #endif

@@ -220,19 +220,19 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
 
 static struct Quantity parse_derivative(struct Parser *parser) {
   unsigned allowed = parser->place.kinds;
-  if ((allowed & 1u << ACCELERATION) == 0 && (allowed & 1u << VELOCITY) != 0) parser->place.kinds &= ~(1u << VELOCITY);
-  if ((allowed & 1u << VELOCITY) == 0)
-    FAIL(parser, "%s cannot depend on velocities, but der(...) does", parser->place.what);
   parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION));
   struct Quantity value = parse_sum(parser);
   parser->place.kinds = allowed;
   expect(parser, ')', "at the end of der(...)");
+  Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
+  for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
+    if ((allowed & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
+      FAIL(parser, "%s cannot depend on %s, but der(...) does", parser->place.what, kind_names[kind]);
   if (parser->failed) return nothing;
   struct Dimension second;
   const char *problem;
   unit_parse("s", &second, &problem);
-  return (struct Quantity){.node = total_time_derivative(parser->scope, value.node),
-                           .dimension = dimension_multiply(value.dimension, second, -1.0)};
+  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
 }
 
 static struct Quantity raise_to(struct Parser *parser, struct Quantity base, struct Quantity exponent) {
@@ -309,8 +309,12 @@ static struct Quantity parse_primary(struct Parser *parser) {
     return nothing;
   }
   char *name = read_identifier(parser);
+  const char *end = parser->next;
   bool call = accept(parser, '(');
-  if (!call) name = read_name_suffix(parser, name);
+  if (!call) {
+    parser->next = end; /* an error about the name is on its line */
+    name = read_name_suffix(parser, name);
+  }
   struct Quantity value = nothing;
   if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);
   free(name);

@@ -57,7 +57,7 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
     accelerations_along(graph, program->equations, seeds, column);
     for (size_t i = 0; i < n; i++) program->jacobian[i * states + j] = column[i];
     free(seeds);
-    if (model->wants_work) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
+    if (model->work_line > 0) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
   }
   free(column);
 }
@@ -71,7 +71,7 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   *program = (struct Program){.model = model, .equations = equations, .interface = interface};
   if (interface->method == SOLVER_EXACT) {
     program->linear = linear_system_of(model, equations, diagnostics);
-    if (model->wants_work)
+    if (model->work_line > 0)
       report_error(diagnostics, model->solver_line,
                    "<work/> is not linear in the state; expected another method than 'exact'");
   }

@@ -5,11 +5,21 @@
 #include <libxml/parser.h>
 #include <libxml/xmlschemas.h>
 
+/* What may stand where an element was not expected; libxml2 does not tell. */
+static const char *expected_elements(const xmlError *error) {
+  const xmlNode *node = error->node;
+  if (error->domain != XML_FROM_SCHEMASV || error->code != XML_SCHEMAV_ELEMENT_CONTENT || node->parent == NULL)
+    return "";
+  if (xmlStrEqual(node->parent->name, (const xmlChar *)"linearization")) return " Expected at, solver or experiment.";
+  return " Expected constant, parameter, input, coordinate, particle, body, kinetic, potential, dissipation, force, "
+         "define, output or for, and outside of <for> also work, solver or experiment.";
+}
+
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
-  else report_error(diagnostics, error->line, "%.*s", length, message);
+  else report_error(diagnostics, error->line, "%.*s%s", length, message, expected_elements(error));
 }
 
 static void validate(xmlDocPtr document, struct Diagnostics *diagnostics) {

@@ -1,0 +1,221 @@
+"""Broken system.xml files: each must give this line and this message, and leave no output."""
+
+import re
+
+import pytest
+
+from fmu import ROOT, lagc
+
+# A right system; the cases below replace or add lines of it (counted from 1).
+RIGHT = """\
+<system name="Broken" description="Pendulum">
+  <parameter name="m" start="1" unit="kg" min="0"/>
+  <parameter name="l" start="1" unit="m" min="0"/>
+  <parameter name="g" start="9.81" unit="m/s2"/>
+  <input name="tau" unit="N.m"/>
+  <coordinate name="theta" velocity="omega" unit="rad" start="1"/>
+  <particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/>
+  <potential>m*g*bob.y</potential>
+  <force coordinate="theta">tau</force>
+  <output name="height" unit="m">bob.y</output>
+  <solver method="erk" tolerance="1e-8"/>
+  <experiment stopTime="10" stepSize="0.01"/>
+</system>
+"""
+
+# What is wrong, the line replaced, its new text (several lines are fine), the line and message expected.
+CASES = [
+    ("not XML", 7, "<particle <", 7, "expected|error parsing|invalid"),
+    ("tag not closed", 8, "<potential>m*g*l", 0, "mismatch"),
+    ("unknown element", 8, "<potentail>m*g*bob.y</potentail>", 8, "potentail.*not expected.*potential"),
+    ("unknown attribute", 6, '<coordinate name="theta" speed="omega" unit="rad"/>', 6, "speed"),
+    ("velocity missing", 6, '<coordinate name="theta" unit="rad"/>', 6, "velocity.*required"),
+    ("parameter without start", 2, '<parameter name="m" unit="kg"/>', 2, "start.*required"),
+    ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, "m 1"),
+    ("unknown solver", 11, '<solver method="euler"/>', 11, "euler"),
+    ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, "-1"),
+    ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
+    ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
+    ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),
+    ("second experiment", 11, '<experiment stopTime="3"/>', 12, "second <experiment>"),
+    ("unknown name", 8, "<potential>m*G*bob.y</potential>", 8, "unknown name 'G'; did you mean 'g'"),
+    ("unknown name far from others", 8, "<potential>m*gravity*l</potential>", 8, "unknown name 'gravity'; expected"),
+    ("unknown particle", 8, "<potential>m*g*bab.y</potential>", 8, r"'bab\.y'; did you mean 'bob\.y'"),
+    ("unknown function", 8, "<potential>m*g*l*cosine(theta)</potential>", 8, "unknown function 'cosine'; expected sin"),
+    ("function without argument", 8, "<potential>m*g*l*cos</potential>", 8, "'cos' is no variable"),
+    ("parenthesis not closed", 8, "<potential>m*g*(l - bob.y</potential>", 8, r"expected '\)' to close.*the end"),
+    ("parenthesis not opened", 8, "<potential>m*g*l)</potential>", 8, r"'\)' without '\('"),
+    ("two operators", 8, "<potential>m*/g</potential>", 8, "expected a number, a name or.*found '/'"),
+    ("missing operator", 8, "<potential>m g</potential>", 8, "expected an operator or the end, found 'g'"),
+    ("product without *", 8, "<potential>2m*g*l</potential>", 8, r"'2m\*g\*l' is no number.*write \* for a product"),
+    ("hexadecimal number", 8, "<potential>0x10*m*g*l</potential>", 8, "'0x' is no number"),
+    ("number too large", 8, "<potential>1e999*m*g*l</potential>", 8, "'1e999.*is no number"),
+    ("division by zero", 8, "<potential>m*g*l/0</potential>", 8, "division by zero"),
+    ("empty expression", 8, "<potential> </potential>", 8, "expected a number, a name or '\\(', found the end"),
+    ("missing argument", 8, "<potential>m*g*l*atan2(theta)</potential>", 8, "expected ',' between the two arguments"),
+    ("argument too many", 8, "<potential>m*g*l*cos(theta, 1)</potential>", 8, r"expected '\)' after the argument of cos"),
+    ("strange character", 8, "<potential>m*g*l#2</potential>", 8, "found '#'"),
+    ("letter of another alphabet", 8, "<potential>m*g*l*cos(θ)</potential>", 8, "found 'θ'"),
+    ("units of a sum", 8, "<potential>m*g*(l + m)</potential>", 8, "unit mismatch: m and kg in one sum"),
+    ("unit of an argument", 8, "<potential>m*g*l*cos(l)</potential>", 8, "argument of cos has the unit m, expected 1 or rad"),
+    ("unit of the potential", 8, "<potential>m*g</potential>", 8, "potential has the unit .*expected kg.m2/s2"),
+    ("unit of a force", 9, '<force coordinate="theta">m*g</force>', 9, "unit mismatch: .*expected"),
+    ("unit of an output", 10, '<output name="height" unit="s">bob.y</output>', 10, "has the unit m, expected s"),
+    ("unit of a position", 7, '<particle name="bob" mass="m" y="sin(theta)*m"/>', 7, "unit mismatch"),
+    ("unknown unit", 2, '<parameter name="m" start="1" unit="lbs"/>', 2, "the unit 'lbs' is not known"),
+    ("unit that is not coherent", 3, '<parameter name="l" start="1" unit="cm"/>', 3, "the unit 'cm' is not known"),
+    ("name twice", 3, '<parameter name="m" start="1" unit="m"/>\n  <parameter name="l" start="1" unit="m"/>', 3,
+     "'m' is already defined on line 2"),
+    ("name of the language", 5, '<input name="sin" unit="N.m"/>\n  <input name="tau" unit="N.m"/>', 5, "'sin' belongs to the language"),
+    ("name of a result", 5, '<input name="totalEnergy"/>\n  <input name="tau" unit="N.m"/>', 5, "belongs to the language"),
+    ("velocity named as a parameter", 6, '<coordinate name="theta" velocity="g" unit="rad"/>', 6, "'g' is already defined on line 4"),
+    ("min above max", 2, '<parameter name="m" start="1" min="2" max="0"/>', 2, "min 2 is larger than max 0"),
+    ("start outside the range", 2, '<parameter name="m" start="-1" min="0"/>', 2, "start -1 is outside min and max"),
+    ("start that is no number", 2, '<parameter name="m" start="one"/>', 2, "unknown name 'one'"),
+    ("start that is infinite", 2, '<parameter name="m" start="1/(1-1)"/>', 2, "division by zero|no finite value"),
+    ("force without coordinate", 9, "<force>tau</force>", 9, 'needs either coordinate='),
+    ("force along nothing", 9, '<force coordinate="phi">tau</force>', 9, "no coordinate 'phi' for this force"),
+    ("force on nothing", 9, '<force on="rod" x="1"/>', 9, "no particle or body 'rod'"),
+    ("particle without position", 7, '<particle name="bob" mass="m"/>', 7, "<particle> has no position; expected x, y or z"),
+    ("mass that moves", 7, '<particle name="bob" mass="m*theta" y="l*cos(theta)"/>', 7, "cannot depend on coordinates"),
+    ("position with a velocity", 7, '<particle name="bob" mass="m" y="l*cos(theta) + omega"/>', 7, "cannot depend on velocities"),
+    ("potential with an input", 8, "<potential>m*g*bob.y + tau*theta</potential>", 8, "cannot depend on inputs, but 'tau' does"),
+    ("no inertia", 7, '<particle name="bob" mass="m" y="l"/>', 6, "coordinate 'theta' has no inertia"),
+    ("two coordinates for one motion", 7,
+     '<coordinate name="phi" velocity="nu" unit="rad"/>\n'
+     '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "structurally singular"),
+    ("work without forces", 9, "<work/>", 9, "<work/> without forces"),
+    ("exact for a nonlinear system", 11, '<solver method="exact"/>', 11, "not linear.*another method than 'exact'"),
+    ("index that is no number", 7, '<for index="i" from="1" to="n"></for>', 7, "unknown name 'n'"),
+    ("index that is half", 7, '<for index="i" from="1" to="1.5"></for>', 7, "expected whole numbers"),
+    ("endless repetition", 7, '<for index="i" from="1" to="1e9"></for>', 7, "at most 10000 repetitions"),
+    ("index that is a name", 7, '<for index="m" from="1" to="2"></for>', 7, "'m' of <for> is already a name"),
+    ("definition in a circle", 10, '<define name="a">b</define><define name="b">a</define>', 10, "unknown name 'b'"),
+    ("acceleration in a force", 9, '<force coordinate="theta">tau*der(omega)</force>', 9, "cannot depend on accelerations"),
+    ("error on a later line of an expression", 8, "<potential>\n  m*g*bob.y\n  + nothing\n</potential>", 10, "'nothing'"),
+]
+
+
+def broken(line, text):
+    lines = RIGHT.splitlines()
+    lines[line - 1] = text
+    return "\n".join(lines)
+
+
+def compile_text(text, folder, *words):
+    (folder / "system.xml").write_text(text)
+    return lagc("system.xml", "-o", "out", *words, cwd=folder)
+
+
+def test_the_right_system_is_right(tmp_path):
+    result = compile_text(RIGHT, tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("what, line, text, expected_line, message", CASES, ids=[case[0] for case in CASES])
+def test_broken_system(what, line, text, expected_line, message, tmp_path):
+    result = compile_text(broken(line, text), tmp_path)
+    assert result.returncode == 1
+    first = result.stderr.splitlines()[0]
+    place = f"system.xml:{expected_line}:" if expected_line else r"system.xml:\d+:"
+    assert re.match(f"{place} .*({message})", first), result.stderr
+    assert not (tmp_path / "out").exists()
+    assert result.stdout == ""
+
+
+def test_several_errors_in_one_run(tmp_path):
+    text = broken(8, "<potential>m*G*bob.y</potential>").replace(">tau<", ">tua<").replace('unit="m/s2"', 'unit="gal"')
+    result = compile_text(text, tmp_path)
+    assert re.findall(r"system.xml:(\d+):", result.stderr) == ["4", "8", "9"]
+
+
+def test_old_output_goes_when_the_system_breaks(tmp_path):
+    """A stale system.c beside a broken system.xml would be built without a word."""
+    compile_text(RIGHT, tmp_path)
+    assert (tmp_path / "out" / "system.c").exists()
+    compile_text(broken(8, "<potential>m*G</potential>"), tmp_path)
+    assert not (tmp_path / "out" / "system.c").exists()
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["missing.xml", "-o", "out"], "missing.xml.*expected an XML file"),
+        (["system.xml", "-o", "/proc/nothing"], "cannot write into"),
+        (["system.xml", "-o", "out", "--solver", "euler"], "euler.*expected erk, bdf or exact"),
+        (["system.xml", "-o", "out", "-D", "N=3"], "no <constant> of this name"),
+        (["--linearize", "system.xml", "--at", "alpha=1"], "'alpha'"),
+        (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity or an input"),
+        (["--linearize", "system.xml", "--at", "theta"], "expected name=value"),
+        (["system.xml"], "usage"),
+        (["system.xml", "-o"], "usage"),
+        (["--nonsense"], "usage"),
+        ([], "usage"),
+    ],
+)
+def test_bad_command_lines(words, message, tmp_path):
+    (tmp_path / "system.xml").write_text(RIGHT)
+    result = lagc(*words, cwd=tmp_path)
+    assert result.returncode == 1
+    assert re.search(message, result.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+def test_point_that_is_no_equilibrium(tmp_path):
+    """A warning: the linear system is then the tangent there, with a constant part."""
+    (tmp_path / "system.xml").write_text(RIGHT)
+    result = lagc("--linearize", "system.xml", "--at", "theta=1", cwd=tmp_path)
+    assert result.returncode == 0
+    assert re.search("warning: the point is no equilibrium", result.stderr)
+
+
+LINEARIZATION = '<linearization of="{}" name="Line">\n  <at name="theta" value="0"/>\n{}</linearization>\n'
+
+
+@pytest.mark.parametrize(
+    "of, line, expected",
+    [
+        ("missing.xml", "", r"missing.xml.*expected an XML file"),
+        ("line.xml", "", "line.xml:1: a linearization of a linearization"),
+        ("system.xml", '<at name="theta" value="1"/>\n', "line.xml:3: the point names 'theta' twice"),
+        ("system.xml", '<at name="alpha" value="1"/>\n', "line.xml:3: the point names 'alpha'"),
+        ("system.xml", '<at name="omega" value="g"/>\n', "line.xml:3: unit mismatch"),
+        ("system.xml", '<parameter name="a" start="1"/>\n', "line.xml:3: .*parameter"),
+    ],
+)
+def test_broken_linearizations(of, line, expected, tmp_path):
+    (tmp_path / "system.xml").write_text(RIGHT)
+    (tmp_path / "line.xml").write_text(LINEARIZATION.format(of, line))
+    result = lagc("line.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1
+    assert re.search(expected, result.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+def test_long_and_deep_expressions(tmp_path):
+    """10,000 terms and 1,000 parentheses are fine; more parentheses are refused, and never crash."""
+    wide = " + ".join(f"{i % 7 + 1}*m*g*bob.y/10000" for i in range(10000))
+    deep = "(" * 1000 + "m*g*bob.y" + ")" * 1000
+    for expression in (wide, deep):
+        result = compile_text(broken(8, f"<potential>{expression}</potential>"), tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+    for nesting in (1001, 100000):
+        expression = "(" * nesting + "m*g*bob.y" + ")" * nesting
+        result = compile_text(broken(8, f"<potential>{expression}</potential>"), tmp_path)
+        assert result.returncode == 1 and "more than 1000 nested parentheses" in result.stderr
+    for text in ("-" * 200000 + "m*g*l", "m*g*l" + "^2" * 5000, "cos(" * 5000 + "1" + ")" * 5000):
+        result = compile_text(broken(8, f"<potential>{text}</potential>"), tmp_path)
+        assert result.returncode in (0, 1), "lagc crashed"
+
+
+def test_external_entities_are_not_read(tmp_path):
+    """A system.xml from elsewhere cannot make lagc read other files."""
+    (tmp_path / "secret").write_text("m*g*l")
+    text = '<!DOCTYPE system [<!ENTITY secret SYSTEM "secret">]>\n' + broken(8, "<potential>&secret;</potential>")
+    result = compile_text(text, tmp_path)
+    assert result.returncode == 1 and "m*g*l" not in result.stderr
+
+
+def test_every_system_compiles_without_a_word(name, tmp_path):
+    result = lagc(ROOT / "fmu" / name / "system.xml", "-o", tmp_path / "out")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
