@@ -5,6 +5,7 @@
 #include "differentiate.h"
 #include "mass_matrix.h"
 #include "memory.h"
+#include "rational.h"
 #include "simplify.h"
 
 static void symbols_of(const struct VariableList *list, Node *symbols) {
@@ -21,6 +22,30 @@ static Node *generalized_forces(struct Model *model, const Node *velocities) {
   return force;
 }
 
+/* How many operations the nodes take together. */
+static size_t operations_of(const struct Graph *graph, const Node *nodes, size_t count) {
+  bool *needed = allocate(graph->count, sizeof *needed);
+  graph_mark(graph, nodes, count, needed);
+  size_t operations = 0;
+  for (Node node = 0; node < graph->count; node++)
+    operations += needed[node] && operation_arity(graph->vertices[node].operation) > 0;
+  free(needed);
+  return operations;
+}
+
+static void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others) {
+  if (operations_of(graph, others, count) >= operations_of(graph, nodes, count)) return;
+  for (size_t i = 0; i < count; i++) nodes[i] = others[i];
+}
+
+/* Takes the nodes multiplied out where that makes them shorter. */
+static void shorten(struct Graph *graph, size_t count, Node *nodes) {
+  Node *others = allocate(count, sizeof *others);
+  for (size_t i = 0; i < count; i++) others[i] = simplify_fraction(graph, nodes[i]);
+  take_shorter(graph, count, nodes, others);
+  free(others);
+}
+
 /* M_ij = d p_i / d v_j, column by column. */
 static void derive_mass_matrix(struct Graph *graph, struct Equations *equations, const Node *momentum,
                                const Node *velocities) {
@@ -34,6 +59,7 @@ static void derive_mass_matrix(struct Graph *graph, struct Equations *equations,
     free(seeds);
   }
   free(column);
+  shorten(graph, n * n, equations->mass);
 }
 
 /* Everything that moves with an inertia: coordinates of positions with masses, angles with moments of inertia. */
@@ -84,6 +110,25 @@ static void inertial_forces(struct Model *model, const struct Motions *motions, 
   free(seeds);
 }
 
+/*
+ * Multiplied out, the inertial forces in curvilinear coordinates lose terms that only cancel each other; others grow.
+ * left: the inertial forces without and with accelerations, which are replaced where that makes them shorter. Forces
+ * and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
+ */
+static void shorten_inertial_forces(struct Graph *graph, const struct Equations *equations, const Node *accelerations,
+                                    Node *left[2]) {
+  size_t n = equations->count;
+  shorten(graph, n, left[0]);
+  Node *other = allocate(n, sizeof *other);
+  for (size_t i = 0; i < n; i++) {
+    other[i] = left[0][i];
+    for (size_t j = 0; j < n; j++)
+      other[i] = add(graph, other[i], multiply(graph, equations->mass[i * n + j], accelerations[j]));
+  }
+  take_shorter(graph, n, left[1], other);
+  free(other);
+}
+
 /* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
 static void derive_motion(struct Model *model, struct Equations *equations, const Node *coordinates,
                           const Node *velocities, const Node *force) {
@@ -93,18 +138,21 @@ static void derive_motion(struct Model *model, struct Equations *equations, cons
   Node lagrangian = subtract(graph, model->explicit_kinetic.node, model->potential.node);
   Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
   Node *rate = allocate(n, sizeof *rate), *inertial = allocate(n, sizeof *inertial);
+  Node *left[2] = {allocate(n, sizeof(Node)), allocate(n, sizeof(Node))};
   gradient_of(graph, lagrangian, velocities, n, momentum);
   gradient_of(graph, lagrangian, coordinates, n, gradient);
-  Node *const results[] = {equations->right_side, equations->residual};
   for (int with_accelerations = 0; with_accelerations <= 1; with_accelerations++) {
     Node *seeds = time_seeds(model, with_accelerations == 1);
     derivative_along(graph, momentum, n, seeds, rate);
     inertial_forces(model, &motions, coordinates, with_accelerations == 1, inertial);
-    for (size_t i = 0; i < n; i++) {
-      Node left = add(graph, inertial[i], rate[i]), right = add(graph, force[i], gradient[i]);
-      results[with_accelerations][i] = with_accelerations ? subtract(graph, left, right) : subtract(graph, right, left);
-    }
+    for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
     free(seeds);
+  }
+  shorten_inertial_forces(graph, equations, model->accelerations, left);
+  for (size_t i = 0; i < n; i++) {
+    Node right = add(graph, force[i], gradient[i]);
+    equations->right_side[i] = subtract(graph, right, left[0][i]);
+    equations->residual[i] = subtract(graph, left[1][i], right);
   }
   free(motions.position);
   free(motions.inertia);
@@ -112,6 +160,8 @@ static void derive_motion(struct Model *model, struct Equations *equations, cons
   free(gradient);
   free(rate);
   free(inertial);
+  free(left[0]);
+  free(left[1]);
 }
 
 /* What of U is stored energy: terms linear in the velocities (magnetic forces) store none. */
