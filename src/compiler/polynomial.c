@@ -28,7 +28,7 @@ struct Polynomial polynomial_atom(int atom) {
 
 struct Polynomial polynomial_copy(const struct Polynomial *p) {
   struct Polynomial copy = with_capacity(p->count);
-  memcpy(copy.terms, p->terms, p->count * sizeof *p->terms);
+  for (size_t i = 0; i < p->count; i++) copy.terms[i] = p->terms[i];
   copy.count = p->count;
   copy.overflow = p->overflow;
   return copy;

@@ -1,0 +1,174 @@
+/*
+ * Takes an FMU through its whole life, right calls and wrong ones, for sanitizers and valgrind to watch:
+ * drive LIBRARY GUID REALS STATES. Fails where a right call fails, a value is not finite, or memory of the caller's
+ * functions is not given back.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmu_library.h"
+
+static long blocks; /* allocated and not freed */
+static int failures;
+
+static void *count_allocation(size_t count, size_t size) {
+  blocks++;
+  return calloc(count, size);
+}
+
+static void count_free(void *block) {
+  if (block != NULL) blocks--;
+  free(block);
+}
+
+static void no_logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
+                      fmi2String message, ...) {
+  char text[2000];
+  va_list arguments;
+  (void)environment;
+  va_start(arguments, message);
+  vsnprintf(text, sizeof text, message, arguments);
+  va_end(arguments);
+  if (name == NULL || category == NULL || status > fmi2Fatal) failures++;
+}
+
+static void expect(int right, const char *what) {
+  if (right) return;
+  fprintf(stderr, "not as expected: %s\n", what);
+  failures++;
+}
+#define EXPECT(condition) expect(condition, #condition)
+
+struct Drive {
+  struct FmuLibrary fmu;
+  const char *guid;
+  size_t reals, states;
+};
+
+static fmi2Component instantiate(const struct Drive *drive, fmi2Type type) {
+  const fmi2CallbackFunctions callbacks = {no_logger, count_allocation, count_free, NULL, NULL};
+  fmi2Component c = drive->fmu.fmi2Instantiate("drive", type, drive->guid, "file:///tmp/resources", &callbacks,
+                                               fmi2False, fmi2True);
+  EXPECT(c != NULL);
+  return c;
+}
+
+static void initialize(const struct Drive *drive, fmi2Component c) {
+  EXPECT(drive->fmu.fmi2SetupExperiment(c, fmi2True, 1e-6, 0.0, fmi2False, 0.0) == fmi2OK);
+  EXPECT(drive->fmu.fmi2EnterInitializationMode(c) == fmi2OK);
+  EXPECT(drive->fmu.fmi2ExitInitializationMode(c) == fmi2OK);
+}
+
+static void read_all(const struct Drive *drive, fmi2Component c) {
+  for (fmi2ValueReference vr = 0; vr < drive->reals; vr++) {
+    double value = NAN;
+    EXPECT(drive->fmu.fmi2GetReal(c, &vr, 1, &value) == fmi2OK);
+    EXPECT(isfinite(value));
+  }
+}
+
+/* Save, go on, come back, by way of bytes too. */
+static void exercise_state(const struct Drive *drive, fmi2Component c) {
+  const struct FmuLibrary *fmu = &drive->fmu;
+  fmi2FMUstate state = NULL, copy = NULL;
+  size_t size = 0;
+  EXPECT(fmu->fmi2GetFMUstate(c, &state) == fmi2OK);
+  EXPECT(fmu->fmi2GetFMUstate(c, &state) == fmi2OK);
+  EXPECT(fmu->fmi2SerializedFMUstateSize(c, state, &size) == fmi2OK);
+  fmi2Byte *bytes = malloc(size);
+  EXPECT(fmu->fmi2SerializeFMUstate(c, state, bytes, size) == fmi2OK);
+  EXPECT(fmu->fmi2DeSerializeFMUstate(c, bytes, size, &copy) == fmi2OK);
+  EXPECT(fmu->fmi2SetFMUstate(c, copy) == fmi2OK);
+  bytes[size / 2] = (fmi2Byte)(bytes[size / 2] ^ 1);
+  EXPECT(fmu->fmi2DeSerializeFMUstate(c, bytes, size, &copy) == fmi2Error);
+  EXPECT(fmu->fmi2SetFMUstate(c, state) == fmi2OK);
+  EXPECT(fmu->fmi2FreeFMUstate(c, &copy) == fmi2OK && copy == NULL);
+  EXPECT(fmu->fmi2FreeFMUstate(c, &state) == fmi2OK && state == NULL);
+  EXPECT(fmu->fmi2FreeFMUstate(c, &state) == fmi2OK);
+  free(bytes);
+}
+
+static void co_simulate(const struct Drive *drive, fmi2Component c) {
+  const struct FmuLibrary *fmu = &drive->fmu;
+  initialize(drive, c);
+  for (int i = 0; i < 40; i++) {
+    EXPECT(fmu->fmi2DoStep(c, 0.01 * i, 0.01, fmi2False) == fmi2OK);
+    if (i == 20) exercise_state(drive, c);
+  }
+  read_all(drive, c);
+  EXPECT(fmu->fmi2Terminate(c) == fmi2OK);
+}
+
+static void exchange_model(const struct Drive *drive, fmi2Component c) {
+  const struct FmuLibrary *fmu = &drive->fmu;
+  double x[64], derivative[64], nominal[64];
+  fmi2EventInfo event;
+  fmi2Boolean enter_event, terminate;
+  initialize(drive, c);
+  EXPECT(fmu->fmi2NewDiscreteStates(c, &event) == fmi2OK);
+  EXPECT(fmu->fmi2EnterContinuousTimeMode(c) == fmi2OK);
+  EXPECT(fmu->fmi2GetContinuousStates(c, x, drive->states) == fmi2OK);
+  EXPECT(fmu->fmi2GetNominalsOfContinuousStates(c, nominal, drive->states) == fmi2OK);
+  for (int i = 1; i <= 20; i++) {
+    EXPECT(fmu->fmi2GetDerivatives(c, derivative, drive->states) == fmi2OK);
+    for (size_t k = 0; k < drive->states; k++) x[k] += 1e-4 * derivative[k];
+    EXPECT(fmu->fmi2SetTime(c, 1e-4 * i) == fmi2OK);
+    EXPECT(fmu->fmi2SetContinuousStates(c, x, drive->states) == fmi2OK);
+    EXPECT(fmu->fmi2CompletedIntegratorStep(c, fmi2True, &enter_event, &terminate) == fmi2OK);
+  }
+  exercise_state(drive, c);
+  read_all(drive, c);
+  EXPECT(fmu->fmi2EnterEventMode(c) == fmi2OK);
+  EXPECT(fmu->fmi2Terminate(c) == fmi2OK);
+}
+
+/* Calls that are wrong in some state, or have wrong arguments; each must return an error and do no harm. */
+static void call_wrongly(const struct Drive *drive, fmi2Component c) {
+  const struct FmuLibrary *fmu = &drive->fmu;
+  const fmi2ValueReference unknown = 100000;
+  double value = NAN;
+  fmi2FMUstate state = NULL;
+  EXPECT(fmu->fmi2DoStep(c, 0, 0.1, fmi2True) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+  EXPECT(fmu->fmi2GetReal(c, &unknown, 1, &value) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+  EXPECT(fmu->fmi2SetReal(c, &unknown, 1, &value) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+  EXPECT(fmu->fmi2GetReal(c, NULL, 3, NULL) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+  EXPECT(fmu->fmi2DeSerializeFMUstate(c, "no state", 8, &state) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+  EXPECT(fmu->fmi2EnterInitializationMode(c) == fmi2Error);
+  EXPECT(fmu->fmi2Reset(c) == fmi2OK);
+}
+
+int main(int count, char **words) {
+  if (count != 5) return 2;
+  struct Drive drive = {.fmu = fmu_library_open(words[1]),
+                        .guid = words[2],
+                        .reals = strtoul(words[3], NULL, 10),
+                        .states = strtoul(words[4], NULL, 10)};
+  const fmi2CallbackFunctions callbacks = {no_logger, count_allocation, count_free, NULL, NULL};
+  EXPECT(drive.fmu.fmi2Instantiate("drive", fmi2CoSimulation, "{wrong}", NULL, &callbacks, fmi2False, fmi2False) ==
+         NULL);
+  fmi2Component c = instantiate(&drive, fmi2CoSimulation), second = instantiate(&drive, fmi2CoSimulation);
+  for (int run = 0; run < 2; run++) {
+    call_wrongly(&drive, c);
+    co_simulate(&drive, c);
+    EXPECT(drive.fmu.fmi2Reset(c) == fmi2OK);
+    co_simulate(&drive, second);
+    EXPECT(drive.fmu.fmi2Reset(second) == fmi2OK);
+  }
+  drive.fmu.fmi2FreeInstance(c);
+  drive.fmu.fmi2FreeInstance(second);
+  drive.fmu.fmi2FreeInstance(NULL);
+  c = instantiate(&drive, fmi2ModelExchange);
+  exchange_model(&drive, c);
+  drive.fmu.fmi2FreeInstance(c);
+  EXPECT(blocks == 0);
+  fmu_library_close(&drive.fmu);
+  return failures > 0;
+}

@@ -1,0 +1,124 @@
+"""Building: reproducible to the byte, a GUID from the content, and the C interface as the standard declares it."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import fmpy
+import pytest
+
+import fmu
+from fmu import BUILD, ROOT, lagc
+
+OFFICIAL = Path(fmpy.__file__).parent / "c-code"
+
+
+def test_the_same_input_gives_the_same_bytes(tmp_path):
+    """Another folder, another build: the same archives."""
+    source = tmp_path / "elsewhere"
+    for folder in ("fmu", "include", "modelDescription", "scripts", "src", "tests"):
+        shutil.copytree(ROOT / folder, source / folder)
+    shutil.copy(ROOT / "CMakeLists.txt", source)
+    systems = tmp_path / "systems"
+    for name in ("SimplePendulum", "ElasticPendulum", "SimplePendulumLinear"):
+        shutil.copytree(ROOT / "fmu" / name, systems / name)
+    subprocess.run([source / "scripts" / "build", "build", f"-DSYSTEMS={systems}"], check=True)
+    for name in ("SimplePendulum", "ElasticPendulum", "SimplePendulumLinear"):
+        assert (source / "build" / "fmu" / f"{name}.fmu").read_bytes() == fmu.archive(name).read_bytes(), name
+
+
+def guid(system, folder):
+    (folder / "system.xml").write_text(system)
+    assert lagc("system.xml", "-o", "out", cwd=folder).returncode == 0
+    description = (folder / "out" / "modelDescription.xml").read_text()
+    code = (folder / "out" / "system.c").read_text()
+    found = re.search(r'guid="(\{[0-9a-f-]{36}\})"', description).group(1)
+    assert f'.guid = "{found}"' in code
+    return found
+
+
+def test_guid_follows_the_content(tmp_path):
+    text = (ROOT / "fmu" / "SimplePendulum" / "system.xml").read_text()
+    original = guid(text, tmp_path)
+    assert guid(text, tmp_path) == original
+    assert guid(text.replace("\n", "\n\n"), tmp_path) == original, "blank lines are no content"
+    changes = [("m*g*l*(1", "m*g*l*(2"), ('start="9.81"', 'start="9.82"'), ('"mass of the bob"', '"mass"'), ("1e-10", "1e-9")]
+    assert len({guid(text.replace(*change), tmp_path) for change in changes} | {original}) == 5
+
+
+def test_guids_differ():
+    assert len({fmu.description(name).guid for name in fmu.all_names()}) == len(fmu.all_names())
+
+
+def test_folder_name_must_match(tmp_path):
+    systems = tmp_path / "systems"
+    shutil.copytree(ROOT / "fmu" / "SimplePendulum", systems / "Other")
+    result = subprocess.run(
+        ["cmake", "-S", ROOT, "-B", tmp_path / "build", f"-DSYSTEMS={systems}"], capture_output=True, text=True
+    )
+    assert result.returncode != 0 and "expected 'Other'" in " ".join(result.stderr.split())
+
+
+@pytest.mark.parametrize("header", ["fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"])
+def test_official_headers_are_there(header):
+    assert (OFFICIAL / header).exists()
+
+
+def test_interface_matches_the_official_headers(tmp_path):
+    """Our declarations beside those of the standard in one file: a difference is a compiler error."""
+    ours = (ROOT / "include" / "fmi2.h").read_text()
+    functions = re.findall(r"FMI2_EXPORT .*?\b(fmi2\w+)\(", ours)
+    official = (OFFICIAL / "fmi2Functions.h").read_text()
+    assert set(functions) == set(re.findall(r"FMI2_Export fmi2\w+TYPE\s+(fmi2\w+);", official))
+    # The official types keep their names; ours get others, and must then be the same types.
+    enumerations = re.findall(r"typedef enum \{(.*?)\} (\w+);", ours, re.S)
+    renamed = re.sub(r"\bfmi2(\w+)", r"own2\1", ours).replace("FMI2_H", "OWN2_H").replace("FMI2_EXPORT", "OWN2_EXPORT")
+    lines = ["#include <stddef.h>", '#include "fmi2Functions.h"', '#include "own2.h"']
+    for values, name in enumerations:
+        for value in re.findall(r"fmi2\w+", values):
+            lines.append(f'_Static_assert((int){value} == (int)own2{value[4:]}, "{value}");')
+    for name in ("Component", "ComponentEnvironment", "FMUstate", "ValueReference", "Real", "Integer", "Boolean", "Char",
+                 "String", "Byte"):
+        lines.append(f"extern fmi2{name} v{name}; extern own2{name} v{name};")
+    for structure, fields in (
+        ("CallbackFunctions", ["logger", "allocateMemory", "freeMemory", "stepFinished", "componentEnvironment"]),
+        ("EventInfo", ["newDiscreteStatesNeeded", "terminateSimulation", "nominalsOfContinuousStatesChanged",
+                       "valuesOfContinuousStatesChanged", "nextEventTimeDefined", "nextEventTime"]),
+    ):
+        lines.append(f'_Static_assert(sizeof(fmi2{structure}) == sizeof(own2{structure}), "{structure}");')
+        for field in fields:
+            lines.append(
+                f"_Static_assert(offsetof(fmi2{structure}, {field}) == offsetof(own2{structure}, {field}), "
+                f'"{field}");'
+            )
+    (tmp_path / "own2.h").write_text(renamed)
+    (tmp_path / "check.c").write_text("\n".join(lines) + "\n")
+    words = ["gcc", "-std=c11", "-Wall", "-Werror", "-fsyntax-only", f"-I{OFFICIAL}", f"-I{tmp_path}"]
+    result = subprocess.run([*words, tmp_path / "check.c"], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("source", sorted((ROOT / "src" / "runtime").glob("*.c")), ids=lambda path: path.name)
+def test_runtime_compiles_against_the_official_headers(source, tmp_path):
+    """A definition that differs from the official declaration is a compiler error."""
+    (tmp_path / "fmi2.h").write_text('#include "fmi2Functions.h"\n')
+    # Quoted includes look beside their file first, so the headers of the runtime are copied next to the other fmi2.h.
+    for header in [*(ROOT / "src" / "runtime").glob("*.h"), ROOT / "include" / "lagrangian.h", ROOT / "include" / "ldlt.h"]:
+        shutil.copy(header, tmp_path)
+    shutil.copy(source, tmp_path)
+    words = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{OFFICIAL}"]
+    result = subprocess.run([*words, tmp_path / source.name], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+
+
+def test_source_tree_stays_clean():
+    """Everything built is in build/."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a clone")
+    status = subprocess.run(["git", "status", "--porcelain", "--ignored"], cwd=ROOT, capture_output=True, text=True)
+    ignored = {line[3:] for line in status.stdout.splitlines() if line.startswith("!!")}
+    allowed = re.compile(r"^(build/|\.pytest_cache/|\.hypothesis/|(tests|scripts)/__pycache__/)$")
+    assert all(allowed.match(path) for path in ignored), ignored
+
+

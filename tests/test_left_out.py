@@ -1,0 +1,119 @@
+"""What a system does not need is not in its FMU: read from the linker's map and from the library itself."""
+
+import re
+import subprocess
+
+import pytest
+
+import fmu
+from fmu import BUILD
+
+EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
+NONE = ["StateFeedback", "SpringDamper"]
+BDF = ["ElasticPendulum"]
+
+
+def library(name):
+    return fmu.unpacked(name) / "binaries" / "linux64" / f"{name}.so"
+
+
+def linked_members(name):
+    """Bytes that each object file contributes after garbage collection, from the linker's map."""
+    text = (BUILD / "systems" / name / "link.map").read_text()
+    text = text[text.index("Linker script and memory map") :]
+    sizes = {}
+    for size, member in re.findall(r"^ \.\S+\s+0x0*[1-9a-f][0-9a-f]*\s+0x([0-9a-f]+) (\S+)$", text, re.M):
+        member = member.rsplit("/", 1)[-1]
+        sizes[member] = sizes.get(member, 0) + int(size, 16)
+    return {member: size for member, size in sizes.items() if size > 0}
+
+
+def output_of(*words):
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout
+
+
+def test_exported_symbols(name):
+    """Rule 1 and rule 23: every fmi2 function, and nothing else."""
+    symbols = output_of("nm", "-D", "--defined-only", library(name)).split("\n")
+    exported = {line.split()[-1] for line in symbols if line}
+    header = (fmu.ROOT / "include" / "fmi2.h").read_text()
+    assert exported == set(re.findall(r"FMI2_EXPORT .*?\b(fmi2\w+)\(", header)) and len(exported) == 44
+
+
+def test_needed_libraries(name):
+    needed = set(re.findall(r"NEEDED.*\[(.*)\]", output_of("readelf", "-d", library(name))))
+    assert needed <= {"libm.so.6", "libc.so.6"}
+
+
+def test_is_stripped(name):
+    assert ".symtab" not in output_of("readelf", "-SW", library(name))
+
+
+def test_no_path_of_this_machine_is_in_it(name):
+    assert str(fmu.ROOT).encode() not in library(name).read_bytes()
+
+
+def test_only_the_solver_that_is_needed(name):
+    members = " ".join(linked_members(name))
+    text = library(name).read_bytes()
+    assert "xml" not in members and b"libxml" not in text
+    if name in EXACT + NONE:
+        assert "sundials" not in members and "SUN" not in members and b"SUNDIALS" not in text
+    elif name in BDF:
+        assert "libsundials_cvode" in members and "libsundials_arkode" not in members
+    else:
+        assert "libsundials_arkode" in members
+        for needless in ("libsundials_cvode", "sunlinsoldense", "sunmatrixdense", "arkode_arkstep", "arkode_mristep"):
+            assert needless not in members
+    solvers = set(re.findall(r"solver_(\w+)\.c\.o", members))
+    assert solvers == ({"exact"} if name in EXACT else set() if name in NONE else {"bdf"} if name in BDF else {"erk"})
+    assert ("ldlt.c.o" in members) == (name == "ChainPendulum")
+
+
+def test_generated_code_is_what_the_system_needs(name):
+    """No input code without inputs, no time without time, no Jacobian unless the solver asks for one."""
+    code = (BUILD / "systems" / name / "system.c").read_text()
+    assert ("point->input" in code) == bool(fmu.names_of(name, "input"))
+    assert ("point->time" in code) == (name == "RotatingPivotPendulum")
+    assert ("int jacobian(" in code) == (name in BDF)
+    assert ("void linear(" in code) == (name in EXACT)
+    assert ("int derivatives(" in code) == (name not in NONE)
+    assert ("ldlt_factor(" in code) == (name == "ChainPendulum")
+
+
+def test_one_degree_of_freedom_is_a_division():
+    code = (BUILD / "systems" / "SimplePendulum" / "system.c").read_text()
+    operations = int(re.search(r"d state / dt; (\d+) operations", code).group(1))
+    assert operations <= 5
+
+
+def test_constant_mass_matrix_is_factored_once():
+    """The masses of the particle on springs are divided by in prepare(), not at every evaluation."""
+    code = (BUILD / "systems" / "ParticleCartesian" / "system.c").read_text()
+    body = re.search(r"static int derivatives\(.*?^}", code, re.S | re.M).group()
+    assert "/" not in re.sub(r"/\*.*?\*/", "", body)
+
+
+def test_blocks_are_solved_separately():
+    """Two carts, each 2 x 2, and one driven mass: no 5 x 5 elimination."""
+    code = (BUILD / "test-systems" / "systems" / "TwoCarts" / "system.c").read_text()
+    assert "ldlt_factor" not in code
+    operations = int(re.search(r"d state / dt; (\d+) operations", code).group(1))
+    assert operations < 60
+
+
+def test_sizes(capsys):
+    """A table of sizes; each FMU stays small."""
+    rows = []
+    for name in fmu.all_names():
+        members = linked_members(name)
+        sundials = sum(size for member, size in members.items() if "sundials" in member)
+        own = sum(size for member, size in members.items() if "system.c.o" in member)
+        rows.append((name, fmu.archive(name).stat().st_size, library(name).stat().st_size, sundials, own))
+    with capsys.disabled():
+        print(f"\n{'FMU':34}{'archive':>10}{'library':>10}{'SUNDIALS':>10}{'equations':>10}  bytes")
+        for row in rows:
+            print(f"{row[0]:34}" + "".join(f"{value:10}" for value in row[1:]))
+    for name, archive, shared, sundials, _ in rows:
+        assert archive < (25_000 if sundials == 0 else 115_000)
+        assert shared < (60_000 if sundials == 0 else 340_000)

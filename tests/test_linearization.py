@@ -1,0 +1,72 @@
+"""lagc --linearize: A and B as formulas and as numbers, against the design's and SymPy's."""
+
+import re
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from fmu import ROOT, lagc
+
+
+def printed(name, *words):
+    """(A, B) as SymPy formulas and as numbers, and the values that the numbers are for."""
+    result = lagc("--linearize", ROOT / "fmu" / name / "system.xml", *words)
+    assert result.returncode == 0, result.stderr
+    formulas, numbers = re.split(r"^at .*:$", result.stdout, flags=re.M)
+    values = dict(pair.split(" = ") for pair in re.search(r"^at (.*):$", result.stdout, re.M).group(1).split(", "))
+
+    def matrices(text):
+        found = []
+        for block in re.findall(r"^[AB] =\n((?:  \[.*\]\n?)+)", text, re.M):
+            rows = [row.strip(" []").split(", ") for row in block.splitlines()]
+            found.append(sp.Matrix([[sp.sympify(entry) for entry in row] for row in rows]))
+        return found
+
+    return matrices(formulas), matrices(numbers), {sp.Symbol(k): float(v) for k, v in values.items()}
+
+
+M, m, l, g, b = sp.symbols("M m l g b")
+CART = [[0, 0, 1, 0], [0, 0, 0, 1], [0, -m * g / M, 0, 0], [0, (M + m) * g / (M * l), 0, 0]]
+FORCE = [[0], [0], [1 / M], [-1 / (M * l)]]
+TORQUE = [[0, 0], [0, 0], [1 / M, -1 / (M * l)], [-1 / (M * l), (M + m) / (M * m * l**2)]]
+HANGING = [[0, 0, 1, 0], [0, 0, 0, 1], [0, -m * g / M, 0, 0], [0, -(M + m) * g / (M * l), 0, 0]]
+CASES = [
+    ("SimplePendulum", ["--at", "theta=0"], [[0, 1], [-g / l, 0]], None),
+    ("SimplePendulum", ["--at", "theta=pi"], [[0, 1], [g / l, 0]], None),
+    ("DampedPendulum", [], [[0, 1], [-g / l, -b / (m * l**2)]], [[0], [1 / (m * l**2)]]),
+    ("InvertedPendulumCart", ["--at", "theta=0"], CART, FORCE),
+    ("InvertedPendulumCart", ["--at", "x=2,theta=pi"], HANGING, [[0], [0], [1 / M], [1 / (M * l)]]),
+    ("InvertedPendulumCartTorque", [], CART, TORQUE),
+]
+
+
+@pytest.mark.parametrize("name, words, A, B", CASES)
+def test_matrices(name, words, A, B):
+    formulas, numbers, values = printed(name, *words)
+    expected = [sp.Matrix(A)] + ([sp.Matrix(B)] if B else [])
+    for formula, number, right in zip(formulas, numbers, expected, strict=True):
+        difference = (formula - right).applyfunc(sp.simplify)
+        # pi is a number in the program, so that sin(pi) = 0 only up to rounding.
+        assert max(abs(float(entry.subs(values))) for entry in difference) < 1e-13
+        np.testing.assert_allclose(
+            np.array(number, float), np.array(right.subs(values), float), rtol=1e-13, atol=1e-13
+        )
+
+
+def test_formulas_are_short():
+    """What is printed is what one would write, not merely equal to it."""
+    (A, B), _, _ = printed("InvertedPendulumCartTorque")
+    assert sum(sp.count_ops(entry) for entry in [*A, *B]) <= 24
+
+
+def test_linearization_of_a_linearization():
+    result = lagc("--linearize", ROOT / "fmu" / "SimplePendulumLinear" / "system.xml")
+    assert result.returncode == 1 and "linearization already" in result.stderr
+
+
+def test_chain_stays_exact():
+    """At rest the chain's stiffness has whole multiples of g/l: nothing like 0.9999999."""
+    result = lagc("--linearize", ROOT / "fmu" / "ChainPendulum" / "system.xml", "-D", "N=4")
+    assert "3*g/l" in result.stdout or "3*g" in result.stdout
+    assert not re.search(r"\d\.\d{6,}", result.stdout.split("at m")[0])
