@@ -14,6 +14,14 @@ def pytest_generate_tests(metafunc):
         metafunc.parametrize("name", fmu.all_names())
 
 
+def pytest_terminal_summary(terminalreporter):
+    from test_left_out import sizes
+
+    terminalreporter.write_line(f"\n{'FMU':34}{'archive':>10}{'library':>10}{'SUNDIALS':>10}{'equations':>10}  bytes")
+    for name, *numbers in sizes():
+        terminalreporter.write_line(f"{name:34}" + "".join(f"{number:10}" for number in numbers))
+
+
 @pytest.fixture
 def open_fmu():
     """Creates instances, and frees them after the test."""

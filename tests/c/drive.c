@@ -50,8 +50,8 @@ struct Drive {
 
 static fmi2Component instantiate(const struct Drive *drive, fmi2Type type) {
   const fmi2CallbackFunctions callbacks = {no_logger, count_allocation, count_free, NULL, NULL};
-  fmi2Component c = drive->fmu.fmi2Instantiate("drive", type, drive->guid, "file:///tmp/resources", &callbacks,
-                                               fmi2False, fmi2True);
+  fmi2Component c =
+      drive->fmu.fmi2Instantiate("drive", type, drive->guid, "file:///tmp/resources", &callbacks, fmi2False, fmi2True);
   EXPECT(c != NULL);
   return c;
 }

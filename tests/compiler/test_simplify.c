@@ -1,0 +1,154 @@
+/* The algebra of the graph: what it simplifies, and that it never changes a value. */
+#include "expressions.h"
+#include "rational.h"
+
+static void test_simplifications(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  assert_prints(&e, "x + 0", "x");
+  assert_prints(&e, "x*1", "x");
+  assert_prints(&e, "x*0", "0");
+  assert_prints(&e, "x - x", "0");
+  assert_prints(&e, "2*x + 3*x", "5*x");
+  assert_prints(&e, "x/x", "1");
+  assert_prints(&e, "x*y/x", "y");
+  assert_prints(&e, "x*x*x", "x^3");
+  assert_prints(&e, "--x", "x");
+  assert_prints(&e, "2^3^2", "512");
+  assert_prints(&e, "-2^2", "-4");
+  assert_prints(&e, "sin(0) + cos(0)", "1");
+  assert_prints(&e, "sin(x)^2 + cos(x)^2", "1");
+  assert_prints(&e, "y*sin(x)^2 + y*cos(x)^2", "y");
+  assert_prints(&e, "sin(-x)", "-sin(x)");
+  assert_prints(&e, "cos(-x)", "cos(x)");
+  assert_prints(&e, "x^0.5*x^0.5", "x");
+  assert_int_equal(e.diagnostics.errors, 0);
+  expressions_free(&e);
+}
+
+static void test_signs_and_precedence(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  Node node = parse(&e, "-x^2 - -y*2 + z/2/4 - (x - y - z)^2^1");
+  assert_true(fabs(value_at(&e, node, 3, 5, 7) - (-9.0 + 10 + 7.0 / 8 - 81)) < 1e-12);
+  expressions_free(&e);
+}
+
+/* A random expression as text, so that parser, algebra and evaluation are met together. */
+static void random_text(unsigned *seed, int depth, char *text, size_t size) {
+  static const char *const forms[] = {"(%s + %s)", "(%s - %s)", "%s*%s", "(%s)/(3 + (%s)^2)", "sin(%s)*cos(%s)"};
+  static const char *const leaves[] = {"x", "y", "z", "2", "0.5", "sin(x)", "cos(x)", "sin(y)^2", "cos(y)^2"};
+  *seed = *seed * 1103515245u + 12345u;
+  unsigned choice = *seed >> 16;
+  if (depth == 0) {
+    snprintf(text, size, "%s", leaves[choice % (sizeof leaves / sizeof *leaves)]);
+    return;
+  }
+  char left[4000], right[4000];
+  random_text(seed, depth - 1, left, sizeof left);
+  random_text(seed, depth - 1, right, sizeof right);
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  snprintf(text, size, forms[choice % (sizeof forms / sizeof *forms)], left, right);
+#pragma GCC diagnostic pop
+}
+
+/* Evaluates the text with no algebra at all: every number, name and operator by itself. */
+static double plain_sum(const char **text, const double *values);
+
+static double plain_primary(const char **text, const double *values) {
+  double value;
+  if (**text == '(') {
+    ++*text;
+    value = plain_sum(text, values);
+    ++*text;
+  } else if (strncmp(*text, "sin(", 4) == 0 || strncmp(*text, "cos(", 4) == 0) {
+    bool sine = **text == 's';
+    *text += 4;
+    value = plain_sum(text, values);
+    value = sine ? sin(value) : cos(value);
+    ++*text;
+  } else if (**text >= 'x' && **text <= 'z') value = values[*(*text)++ - 'x'];
+  else {
+    char *end;
+    value = strtod(*text, &end);
+    *text = end;
+  }
+  if (**text != '^') return value;
+  ++*text;
+  return pow(value, plain_primary(text, values));
+}
+
+static double plain_term(const char **text, const double *values) {
+  double value = plain_primary(text, values);
+  while (**text == '*' || **text == '/') {
+    char operator= *(*text)++;
+    double factor = plain_primary(text, values);
+    value = operator== '*' ? value * factor : value / factor;
+  }
+  return value;
+}
+
+static double plain_sum(const char **text, const double *values) {
+  double value = plain_term(text, values);
+  while ((*text)[0] == ' ') {
+    char operator=(*text)[1];
+    *text += 3;
+    double term = plain_term(text, values);
+    value = operator== '+' ? value + term : value - term;
+  }
+  return value;
+}
+
+static void test_algebra_keeps_values(void **state) {
+  (void)state;
+  unsigned seed = 7;
+  const double at[] = {0.7, -1.3, 2.1};
+  for (int i = 0; i < 2000; i++) {
+    struct Expressions e = expressions_create();
+    char text[10000];
+    random_text(&seed, 1 + i % 5, text, sizeof text);
+    Node node = parse(&e, text), fraction = simplify_fraction(e.graph, node);
+    const char *rest = text;
+    double plain = plain_sum(&rest, at);
+    assert_int_equal(*rest, '\0');
+    assert_true(fabs(value_at(&e, node, at[0], at[1], at[2]) - plain) <= 1e-9 * (1 + fabs(plain)));
+    assert_true(fabs(value_at(&e, fraction, at[0], at[1], at[2]) - plain) <= 1e-7 * (1 + fabs(plain)));
+    expressions_free(&e);
+  }
+}
+
+static void test_printed_text_reads_back(void **state) {
+  (void)state;
+  unsigned seed = 11;
+  for (int i = 0; i < 500; i++) {
+    struct Expressions e = expressions_create();
+    char text[10000];
+    random_text(&seed, 1 + i % 4, text, sizeof text);
+    Node node = parse(&e, text);
+    char *printed = expression_text(e.graph, node);
+    Node again = parse(&e, printed);
+    double first = value_at(&e, node, 0.7, -1.3, 2.1), second = value_at(&e, again, 0.7, -1.3, 2.1);
+    assert_true(fabs(first - second) <= 1e-12 * (1 + fabs(first)));
+    free(printed);
+    expressions_free(&e);
+  }
+}
+
+static void test_fractions_cancel(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  char *text = expression_text(e.graph, simplify_fraction(e.graph, parse(&e, "(x^2 - y^2)/(x - y)")));
+  assert_string_equal(text, "x + y");
+  free(text);
+  expressions_free(&e);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_simplifications),      cmocka_unit_test(test_signs_and_precedence),
+      cmocka_unit_test(test_algebra_keeps_values), cmocka_unit_test(test_printed_text_reads_back),
+      cmocka_unit_test(test_fractions_cancel),
+  };
+  return cmocka_run_group_tests_name("simplify", tests, NULL, NULL);
+}
