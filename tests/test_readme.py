@@ -1,0 +1,65 @@
+"""The README's examples work when they are pasted."""
+
+import re
+import subprocess
+import zipfile
+
+import fmpy
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from fmu import BUILD, ROOT, all_names, lagc
+
+README = (ROOT / "README.md").read_text()
+
+
+def test_own_system(tmp_path):
+    system = re.search(r"```xml\n(<system .*?</system>\n)```", README, re.S).group(1)
+    assert len(system.splitlines()) <= 15
+    folder = tmp_path / "systems" / "BeadOnHoop"
+    folder.mkdir(parents=True)
+    (folder / "system.xml").write_text(system)
+    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", f"-DSYSTEMS={folder.parent}"], check=True)
+    archive = tmp_path / "build" / "fmu" / "BeadOnHoop.fmu"
+    documentation = zipfile.ZipFile(archive).read("documentation/index.html").decode()
+    equation = re.search(r"equations, here `(.*?)`", README, re.S).group(1)
+    assert equation in documentation
+    result = fmpy.simulate_fmu(str(archive))
+    m, R, W, b, g = 0.1, 0.5, 6, 0.01, 9.81
+    exact = solve_ivp(
+        lambda t, y: [y[1], (W**2 * np.cos(y[0]) - g / R) * np.sin(y[0]) - b * y[1] / (m * R * R)],
+        (0, 10), [0.1, 0], rtol=1e-11, atol=1e-12,
+    )
+    assert abs(result["theta"][-1] - exact.y[0, -1]) < 1e-6
+    assert abs(result["height"][-1] - R * (1 - np.cos(exact.y[0, -1]))) < 1e-6
+
+
+def test_linearization_as_printed():
+    command, expected = re.search(r"    \$ build/bin/(lagc .*)\n((?:    .*\n)+)", README).groups()
+    printed = lagc(*command.split()[1:], cwd=ROOT).stdout
+    assert "".join(line[4:] + "\n" for line in expected.splitlines()) in printed
+
+
+def test_python_example(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    code = re.search(r"```python\n(.*?)```", README, re.S).group(1)
+    names = {}
+    exec(code, names)
+    assert names["result"]["theta"][0] == 3 and names["result"]["time"][-1] == 5
+
+
+def test_every_system_is_in_the_table():
+    table = README[README.index("## The systems") : README.index("## Using an FMU")]
+    assert set(re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b", table)) >= set(all_names())
+
+
+def test_every_element_is_described():
+    schema = (ROOT / "modelDescription" / "system.xsd").read_text()
+    for element in re.findall(r'<xs:element name="(\w+)"', schema):
+        assert f"<{element}" in README, element
+
+
+def test_every_command_is_there():
+    for script in set(re.findall(r"scripts/(\w+)", README)):
+        assert (ROOT / "scripts" / script).exists()
+    assert (BUILD / "bin" / "lagc").exists()
