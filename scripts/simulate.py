@@ -1,6 +1,7 @@
 """Simulates an FMU with FMPy and leaves a CSV and a plot: simulate.py FMU [VARIABLE=VALUE ...]"""
 
 import argparse
+import sys
 from pathlib import Path
 
 import matplotlib
@@ -9,13 +10,23 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from fmpy import read_model_description, simulate_fmu
+from fmpy.fmi1 import FMICallException
 
 
 def start_value(text):
     name, separator, value = text.partition("=")
     if not separator:
         raise argparse.ArgumentTypeError(f"'{text}' is not VARIABLE=VALUE")
-    return name, float(value)
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{value}' for '{name}' is no number") from None
+
+
+def print_problem(environment, instance_name, status, category, message):
+    """A logger that leaves out what is no problem."""
+    if status > 0:
+        print(message.decode().replace("%%", "%"), file=sys.stderr)
 
 
 def draw(description, result, path):
@@ -47,7 +58,16 @@ def main():
     for name, _ in arguments.start:
         if name not in known:
             parser.error(f"'{name}' is no variable of {description.modelName}; it has {', '.join(known)}")
-    result = simulate_fmu(arguments.fmu, start_values=dict(arguments.start), fmi_type="CoSimulation")
+    try:
+        result = simulate_fmu(
+            arguments.fmu,
+            start_values=dict(arguments.start),
+            fmi_type="CoSimulation",
+            logger=print_problem,
+            debug_logging=True,
+        )
+    except FMICallException as problem:
+        sys.exit(f"{arguments.fmu}: {problem}")
 
     folder = Path("build/results")
     folder.mkdir(parents=True, exist_ok=True)
