@@ -19,6 +19,8 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
   write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
+  /* SUNDIALS allocates with malloc, so that these FMUs have no use for the caller's functions. */
+  if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
@@ -26,7 +28,6 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
   if (model->inputs.count > 0 && moves) write_attribute(writer, "canInterpolateInputs", "true");
   if (moves) write_attribute(writer, "maxOutputDerivativeOrder", "1");
-  /* SUNDIALS allocates with malloc. */
   if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   xmlTextWriterEndElement(writer);

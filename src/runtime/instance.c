@@ -29,10 +29,15 @@ void situation_reset(struct Instance *instance) {
   instance->prepared_is_stale = instance->solver_is_stale = true;
 }
 
+/* Whether canNotUseMemoryManagementFunctions is true: the caller's functions are then ignored, and may be NULL. */
+static bool allocates_by_itself(void) {
+  return lagrangian.solver != NULL && lagrangian.solver->allocates_by_itself;
+}
+
 /* Checks the arguments of fmi2Instantiate that do not need an instance. */
 static bool can_instantiate(fmi2String name, fmi2Type type, fmi2String guid, const fmi2CallbackFunctions *functions) {
   if (functions == NULL) return false;
-  if (functions->allocateMemory == NULL || functions->freeMemory == NULL) {
+  if (!allocates_by_itself() && (functions->allocateMemory == NULL || functions->freeMemory == NULL)) {
     log_instantiation(functions, name, "fmi2Instantiate: allocateMemory or freeMemory is NULL; expected both");
     return false;
   }
@@ -72,21 +77,23 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   (void)visible;
   if (!can_instantiate(instanceName, fmuType, fmuGUID, functions)) return NULL;
   size_t name_size = strlen(instanceName) + 1;
-  struct Instance *instance = functions->allocateMemory(1, sizeof *instance);
-  struct Situation *situation = functions->allocateMemory(1, situation_size());
-  double *evaluation = functions->allocateMemory(evaluation_count(), sizeof *evaluation);
-  char *name = functions->allocateMemory(name_size, 1);
+  fmi2CallbackAllocateMemory acquire = allocates_by_itself() ? calloc : functions->allocateMemory;
+  fmi2CallbackFreeMemory release = allocates_by_itself() ? free : functions->freeMemory;
+  struct Instance *instance = acquire(1, sizeof *instance);
+  struct Situation *situation = acquire(1, situation_size());
+  double *evaluation = acquire(evaluation_count(), sizeof *evaluation);
+  char *name = acquire(name_size, 1);
   if (instance == NULL || situation == NULL || evaluation == NULL || name == NULL) {
     log_instantiation(functions, instanceName, "fmi2Instantiate: allocateMemory returned no memory");
     void *const blocks[] = {instance, situation, evaluation, name};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-      if (blocks[i] != NULL) functions->freeMemory(blocks[i]);
+      if (blocks[i] != NULL) release(blocks[i]);
     return NULL;
   }
   memcpy(name, instanceName, name_size);
   *instance = (struct Instance){.logger = functions->logger,
-                                .allocate = functions->allocateMemory,
-                                .free = functions->freeMemory,
+                                .allocate = acquire,
+                                .free = release,
                                 .environment = functions->componentEnvironment,
                                 .name = name,
                                 .type = fmuType,

@@ -11,6 +11,8 @@ enum StepResult {
 };
 
 struct Solver {
+  /* The library behind the solver has an allocator of its own; canNotUseMemoryManagementFunctions is then true. */
+  bool allocates_by_itself;
   /* Allocates instance->solver_memory. False after logging where that fails. */
   bool (*create)(struct Instance *instance);
   void (*destroy)(struct Instance *instance);

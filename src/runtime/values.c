@@ -5,10 +5,21 @@
 #include "evaluate.h"
 #include "log.h"
 
-/* In initialization mode only outputs and initial unknowns have a value to read. */
-static bool is_readable(const struct Instance *instance, const struct ScalarVariable *variable) {
-  return instance->situation->mode != MODE_INITIALIZATION || variable->is_output ||
-         variable->kind == VARIABLE_DERIVATIVE;
+/*
+ * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
+ * read all variables then; they get the values with a warning.
+ */
+static fmi2Status check_readable(struct Instance *instance, const struct ScalarVariable *variable) {
+  if (instance->situation->mode != MODE_INITIALIZATION || variable->is_output || variable->kind == VARIABLE_DERIVATIVE)
+    return fmi2OK;
+  log_message(instance, fmi2Warning,
+              "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
+              variable->name);
+  return fmi2Warning;
+}
+
+static fmi2Status worse(fmi2Status first, fmi2Status second) {
+  return first > second ? first : second;
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
@@ -22,13 +33,8 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   for (size_t i = 0; i < nvr; i++) {
     const struct ScalarVariable *variable = check_reference(instance, vr[i], false, "fmi2GetReal");
     if (variable == NULL) return fmi2Error;
-    if (!is_readable(instance, variable))
-      return log_error(instance,
-                       "fmi2GetReal: '%s' cannot be read in initialization mode; expected an output or "
-                       "one of InitialUnknowns",
-                       variable->name);
-    fmi2Status read = evaluate_variable(instance, variable, &value[i]);
-    if (read > status) status = read;
+    if (status == fmi2OK) status = check_readable(instance, variable); /* one warning is enough */
+    status = worse(status, evaluate_variable(instance, variable, &value[i]));
   }
   return status;
 }
@@ -40,14 +46,14 @@ fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
       !check_array(instance, vr, nvr, "fmi2GetInteger", "vr") ||
       !check_array(instance, value, nvr, "fmi2GetInteger", "value"))
     return fmi2Error;
+  fmi2Status status = fmi2OK;
   for (size_t i = 0; i < nvr; i++) {
     const struct ScalarVariable *variable = check_reference(instance, vr[i], true, "fmi2GetInteger");
     if (variable == NULL) return fmi2Error;
-    if (!is_readable(instance, variable))
-      return log_error(instance, "fmi2GetInteger: '%s' cannot be read in initialization mode", variable->name);
+    if (status == fmi2OK) status = check_readable(instance, variable);
     value[i] = instance->situation->statistics[variable->index];
   }
-  return fmi2OK;
+  return status;
 }
 
 /* Whether this kind of variable may be set now (section 4.2.4, notes on fmi2SetReal). */

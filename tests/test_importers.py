@@ -1,0 +1,167 @@
+"""
+Every FMU in importers that others wrote, beside FMPy's co-simulation of it.
+
+Also tried and not here: OMSimulator (its Python package downloads the program while it is installed, from a server
+other than the package registry: "Failed building wheel for OMSimulator"), PyFMI (on the registry for Python 2 only,
+built against an FMI Library that Debian does not package: "Getting requirements to build wheel did not run
+successfully"), FMI++ (builds against Boost and SWIG: "Failed building wheel for fmipp"), CoFMUpy (runs FMUs through
+FMPy, so it would prove nothing more).
+"""
+
+import subprocess
+import sys
+
+import fmpy
+import numpy as np
+import pytest
+
+import fmu
+from fmu import BUILD, ROOT
+
+END, STEP = 0.5, 0.01
+NANOSECONDS = 10**9  # libcosim counts time in them
+
+
+def outputs_by_fmpy(name):
+    """The outputs at END after steps of STEP, by FMPy."""
+    outputs = fmu.names_of(name, "output")
+    result = fmpy.simulate_fmu(
+        str(fmu.unpacked(name)), stop_time=END, output_interval=STEP, output=outputs, fmi_type="CoSimulation"
+    )
+    assert result["time"][-1] == pytest.approx(END)
+    return outputs, np.array([result[output][-1] for output in outputs])
+
+
+def test_fmpy_model_exchange(name):
+    """FMPy's CVode integrates our derivatives; at its tolerance the outputs agree with our own solver."""
+    outputs, expected = outputs_by_fmpy(name)
+    result = fmpy.simulate_fmu(
+        str(fmu.unpacked(name)), stop_time=END, output_interval=STEP, output=outputs, fmi_type="ModelExchange",
+        relative_tolerance=1e-8,
+    )
+    ours = np.array([result[output][-1] for output in outputs])
+    np.testing.assert_allclose(ours, expected, rtol=1e-4, atol=1e-5)
+
+
+def test_libcosim(name):
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.FATAL)
+    outputs, expected = outputs_by_fmpy(name)
+    execution = CosimExecution.from_step_size(round(STEP * NANOSECONDS))
+    slave = execution.add_local_slave(CosimLocalSlave(str(fmu.archive(name)), name))
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    assert execution.simulate_until(round(END * NANOSECONDS))
+    references = fmu.references(name)
+    values = observer.last_real_values(slave, [references[output] for output in outputs])
+    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_ecos(name):
+    from ecospy import EcosSimulation, EcosSimulationStructure
+
+    outputs, expected = outputs_by_fmpy(name)
+    structure = EcosSimulationStructure()
+    structure.add_model(name, str(fmu.archive(name)))
+    with EcosSimulation(STEP, structure=structure) as simulation:
+        simulation.init()
+        simulation.step(round(END / STEP))
+        values = [simulation.get_real(f"{name}::{output}") for output in outputs]
+        simulation.terminate()
+    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
+
+
+WITHOUT_CALLBACKS = [
+    name for name in fmu.all_names() if fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
+]
+
+
+@pytest.mark.parametrize("name", WITHOUT_CALLBACKS)
+def test_fmuloader(name):
+    """
+    It passes NULL for the memory functions of FMUs that do not use them. (Those that it passes to others cut off
+    pointers at 32 bits, so it cannot run FMUs that use them.)
+    """
+    from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
+
+    outputs, expected = outputs_by_fmpy(name)
+    references = fmu.references(name)
+    with Fmi2Slave(fmu.archive(name), model_identifier=name) as slave:
+        slave.instantiate(name, Fmi2Type.CO_SIMULATION, guid=fmu.description(name).guid,
+                          cannot_use_memory_management_functions=True)
+        slave.setup_experiment()
+        slave.enter_initialization_mode()
+        slave.exit_initialization_mode()
+        for i in range(round(END / STEP)):
+            slave.do_step(i * STEP, STEP)
+        values = slave.get_real([references[output] for output in outputs])
+        slave.terminate()
+    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_fmu_manipulation_toolbox_finds_no_error(name):
+    tool = BUILD / "venv" / "bin" / "fmutool"
+    result = subprocess.run([tool, "-input", fmu.archive(name), "-check"], capture_output=True, text=True)
+    text = result.stdout + result.stderr
+    assert result.returncode == 0, text
+    assert "compliant with FMI-2.0" in text and "No semantic error" in text and "ERROR" not in text, text
+
+
+COUPLED = """
+import sys
+sys.path.insert(0, {tests!r})
+import fmu
+instance = fmu.Instance("ElasticPendulum").initialize(dict(theta=1.0, k=1e6))
+print(instance.run(1.0, 0.1, "theta", "r", "omega", "vr")[-1])
+"""
+
+
+def test_two_sundials_in_one_process():
+    """
+    FMPy's CVode is of another version than the one in our FMU. Loaded first, with all its symbols visible, it must
+    not be the one that our FMU calls: the result has the same bits as in a process without it.
+    """
+    load = (
+        "import ctypes, fmpy.sundials\n"
+        "from pathlib import Path\n"
+        "folder = Path(fmpy.sundials.__file__).parent\n"
+        "libraries = sorted(folder.rglob('*.so*'))\n"
+        "assert libraries\n"
+        "for library in libraries: ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)\n"
+    )
+    alone, together = (
+        subprocess.run(
+            [sys.executable, "-c", before + COUPLED.format(tests=str(ROOT / "tests"))],
+            capture_output=True, text=True, check=True,
+        ).stdout
+        for before in ("", load)
+    )
+    assert alone == together and "nan" not in alone
+
+
+def test_cart_balanced_by_libcosim():
+    """Two of our FMUs coupled by a master of others: the feedback holds the pole up."""
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.FATAL)
+    execution = CosimExecution.from_step_size(5 * NANOSECONDS // 1000)
+    cart, feedback = (
+        execution.add_local_slave(CosimLocalSlave(str(fmu.archive(name)), name))
+        for name in ("InvertedPendulumCart", "StateFeedback")
+    )
+    of_cart, of_feedback = fmu.references("InvertedPendulumCart"), fmu.references("StateFeedback")
+    for name in ("x", "theta", "v", "omega"):
+        execution.connect_real_variables(cart, of_cart[name], feedback, of_feedback[name])
+    execution.connect_real_variables(feedback, of_feedback["F"], cart, of_cart["F"])
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    assert execution.simulate_until(15 * NANOSECONDS)
+    x, theta = observer.last_real_values(cart, [of_cart["x"], of_cart["theta"]])
+    assert abs(theta) < 1e-2 and abs(x) < 0.1
