@@ -38,17 +38,21 @@ static struct Header header_of(const void *situation) {
 }
 
 /* What is wrong with a block that claims to be a state of this FMU; NULL where nothing is. */
-static const char *fault_of(const struct Instance *instance, const void *block) {
-  const char *situation = (const char *)block + sizeof(struct Header);
-  struct Header header, expected = header_of(situation);
+static const char *fault_of(const struct Instance *instance, const void *block, size_t size) {
+  struct Header header;
+  if (size < sizeof header) return "they are cut off";
   memcpy(&header, block, sizeof header);
-  if (memcmp(header.magic, magic, sizeof magic) != 0) return "it is no state of such an FMU";
-  if (header.version != expected.version) return "it is of another version";
-  if (memcmp(header.guid, expected.guid, sizeof header.guid) != 0) return "it is of another model";
-  if (header.size != expected.size || header.checksum != expected.checksum) return "it is damaged";
+  if (memcmp(header.magic, magic, sizeof magic) != 0) return "they are no state of such an FMU";
+  if (header.version != VERSION) return "they are of another version";
+  if (strncmp(header.guid, lagrangian.guid, sizeof header.guid) != 0) return "they are of another model";
+  if (size != block_size()) return "they have another length";
+  const char *situation = (const char *)block + sizeof header;
+  struct Header expected = header_of(situation);
   struct Situation fixed;
   memcpy(&fixed, situation, sizeof fixed);
-  return fixed.type == (int32_t)instance->type ? NULL : "it is of the other kind of instance";
+  if (memcmp(&header, &expected, sizeof header) != 0 || fixed.mode < 0 || fixed.mode >= MODE_COUNT)
+    return "they are damaged";
+  return fixed.type == (int32_t)instance->type ? NULL : "they are of the other kind of instance";
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
@@ -71,8 +75,8 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
   if (!check_call(instance, FUNCTION_FMU_STATE, "fmi2SetFMUstate") ||
       !check_array(instance, FMUstate, 1, "fmi2SetFMUstate", "FMUstate"))
     return fmi2Error;
-  const char *fault = fault_of(instance, FMUstate);
-  if (fault != NULL) return log_error(instance, "fmi2SetFMUstate: the state cannot be used: %s", fault);
+  const char *fault = fault_of(instance, FMUstate, block_size());
+  if (fault != NULL) return log_error(instance, "fmi2SetFMUstate: the bytes of the state cannot be used: %s", fault);
   memcpy(instance->situation, (const char *)FMUstate + sizeof(struct Header), situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
   return fmi2OK;
@@ -120,7 +124,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
       !check_array(instance, serializedState, size, "fmi2DeSerializeFMUstate", "serializedState") ||
       !check_array(instance, FMUstate, 1, "fmi2DeSerializeFMUstate", "FMUstate"))
     return fmi2Error;
-  const char *fault = size == block_size() ? fault_of(instance, serializedState) : "it has another length";
+  const char *fault = fault_of(instance, serializedState, size);
   if (fault != NULL) return log_error(instance, "fmi2DeSerializeFMUstate: the bytes cannot be used: %s", fault);
   if (*FMUstate == NULL) *FMUstate = instance->allocate(1, block_size());
   if (*FMUstate == NULL) return log_error(instance, "fmi2DeSerializeFMUstate: allocateMemory returned no memory");

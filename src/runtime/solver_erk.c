@@ -100,5 +100,4 @@ static enum StepResult step(struct Instance *instance, double length, double *re
   return STEP_PARTIAL;
 }
 
-const struct Solver solver_erk = {
-    .allocates_by_itself = true, .create = create, .destroy = destroy, .step = step};
+const struct Solver solver_erk = {.allocates_by_itself = true, .create = create, .destroy = destroy, .step = step};

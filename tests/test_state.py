@@ -1,0 +1,222 @@
+"""Saving and restoring: repeated steps give the same bits, also in another process, and bad bytes are refused."""
+
+import json
+import random
+import struct
+import subprocess
+import sys
+from ctypes import byref, c_char_p, c_size_t, c_void_p
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Model
+
+import fmu
+from fmu import ERROR, ROOT
+
+ONE_STEP = [name for name in fmu.all_names() if name != "ElasticPendulum"]
+
+
+def drive(instance, name, steps):
+    """Uneven steps with changing inputs; returns what can be read at each."""
+    rows = []
+    inputs = fmu.names_of(name, "input")
+    # Statistics count what was done, also in the past that was left.
+    names = [v.name for v in instance.description.modelVariables if v.type == "Real"]
+    for i in range(steps):
+        if inputs and i % 3 == 0:
+            instance.set({inputs[0]: np.sin(i) / 10})
+        if inputs and instance.description.coSimulation.canInterpolateInputs and i % 4 == 1:
+            instance.fmu.setRealInputDerivatives(instance.vr(inputs[0]), [1], [0.3])
+        instance.step(0.013 * (1 + i % 3))
+        rows.append(instance.fmu.getReal(instance.vr(*names)))
+    return rows
+
+
+@pytest.mark.parametrize("name", ONE_STEP)
+def test_going_back_gives_the_same_bits(name, open_fmu):
+    instance = open_fmu(name).initialize(tolerance=1e-6)
+    drive(instance, name, 7)
+    state, time = instance.fmu.getFMUstate(), instance.time
+    first = drive(instance, name, 12)
+    for _ in range(3):
+        instance.fmu.setFMUstate(state)
+        instance.time = time
+        assert drive(instance, name, 12) == first
+    instance.free_state(state)
+
+
+def test_bdf_goes_on_within_tolerance(open_fmu):
+    name, tolerance = "ElasticPendulum", 1e-7
+    instance = open_fmu(name).initialize(tolerance=tolerance)
+    drive(instance, name, 7)
+    state, time = instance.fmu.getFMUstate(), instance.time
+    first = np.array(drive(instance, name, 12))
+    instance.fmu.setFMUstate(state)
+    instance.time = time
+    again = np.array(drive(instance, name, 12))
+    states = [i for i, v in enumerate(instance.description.modelVariables) if v.name in fmu.states_of(name)]
+    np.testing.assert_allclose(again[:, states], first[:, states], atol=100 * tolerance, rtol=100 * tolerance)
+    page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
+    assert "within the tolerance, not to the same bits" in page
+    instance.free_state(state)
+
+
+GO_ON = """
+import json, sys
+sys.path.insert(0, {tests!r})
+import fmu, test_state
+name, time, data = json.loads(sys.stdin.read())
+instance = fmu.Instance(name)
+state = instance.fmu.deSerializeFMUstate(bytes.fromhex(data))
+instance.fmu.setFMUstate(state)
+instance.time = time
+print(json.dumps(test_state.drive(instance, name, 10)))
+"""
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "ParticleCartesian", "InvertedPendulumCart", "StateFeedback"])
+def test_going_on_in_another_process(name, open_fmu):
+    """Parameters, inputs and their derivatives, tolerance and step size travel with the bytes."""
+    instance = open_fmu(name)
+    parameter = fmu.names_of(name, "parameter")[0]
+    instance.initialize({parameter: 1.7}, tolerance=1e-5)
+    drive(instance, name, 6)
+    state = instance.fmu.getFMUstate()
+    data = instance.fmu.serializeFMUstate(state).hex()
+    text = json.dumps([name, instance.time, data])
+    here = drive(instance, name, 10)
+    there = subprocess.run(
+        [sys.executable, "-c", GO_ON.format(tests=str(ROOT / "tests"))], input=text, capture_output=True, text=True
+    )
+    assert there.returncode == 0, there.stderr
+    assert json.loads(there.stdout) == here
+    instance.free_state(state)
+
+
+def test_state_has_everything(open_fmu):
+    """Rule 10: parameters, inputs and the status go back too, also out of an error."""
+    instance = open_fmu("DampedPendulum").initialize(dict(b=0.3, tau=0.1))
+    instance.step(0.1)
+    state = instance.fmu.getFMUstate()
+    before = instance.get("theta", "omega", "b", "tau", "nonConservativeWork")
+    instance.set(b=2.0, tau=-1)
+    instance.step(0.1)
+    with instance.fails(ERROR, "unknown"):
+        instance.fmu.getReal([9999])
+    instance.fmu.setFMUstate(state)
+    assert instance.get("theta", "omega", "b", "tau", "nonConservativeWork") == before
+    instance.time = 0.1
+    instance.step(0.1)
+    instance.free_state(state)
+
+
+def test_a_state_is_used_again(open_fmu):
+    """Rule 10: fmi2GetFMUstate reuses a state that is not NULL; fmi2FreeFMUstate sets the pointer to NULL."""
+    instance = open_fmu("SimplePendulum").initialize()
+    component = c_void_p(instance.fmu.component)
+    state = c_void_p()
+    instance.fmu.fmi2GetFMUstate(component, byref(state))
+    address = state.value
+    instance.step(0.5)
+    later = instance.get("theta")
+    instance.fmu.fmi2GetFMUstate(component, byref(state))
+    assert state.value == address
+    instance.step(0.5)
+    instance.fmu.setFMUstate(state)
+    assert instance.get("theta") == later
+    instance.fmu.fmi2FreeFMUstate(component, byref(state))
+    assert state.value is None
+    instance.fmu.fmi2FreeFMUstate(component, byref(state))
+
+
+def serialized(instance):
+    state = instance.fmu.getFMUstate()
+    data = instance.fmu.serializeFMUstate(state)
+    instance.free_state(state)
+    return data
+
+
+def test_every_flipped_bit_is_refused(open_fmu):
+    instance = open_fmu("SimplePendulum").initialize()
+    data = serialized(instance)
+    for i in range(len(data)):
+        broken = bytearray(data)
+        broken[i] ^= 1 << (i % 8)
+        with instance.fails(ERROR, "fmi2DeSerializeFMUstate"):
+            instance.fmu.deSerializeFMUstate(bytes(broken))
+        instance.reset()
+
+
+def test_truncated_and_foreign_bytes_are_refused(open_fmu):
+    instance = open_fmu("SimplePendulum").initialize()
+    data = serialized(instance)
+    noise = random.Random(4)
+    for wrong in (b"", data[:-1], data + b"\0", data[: len(data) // 2], noise.randbytes(len(data)), b"\0" * len(data)):
+        with instance.fails(ERROR, "fmi2DeSerializeFMUstate"):
+            instance.fmu.deSerializeFMUstate(wrong)
+        instance.reset()
+    other = serialized(open_fmu("DoublePendulum").initialize())
+    with instance.fails(ERROR, "another model"):
+        instance.fmu.deSerializeFMUstate(other)
+    instance.reset()
+    # A state that was saved for model exchange means other modes.
+    exchange = serialized(open_fmu("SimplePendulum", kind=FMU2Model).initialize())
+    with instance.fails(ERROR, "other kind"):
+        instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(exchange))
+
+
+def test_serialize_with_a_wrong_size(open_fmu):
+    instance = open_fmu("SimplePendulum").initialize()
+    component = c_void_p(instance.fmu.component)
+    state = instance.fmu.getFMUstate()
+    size = c_size_t()
+    instance.fmu.fmi2SerializedFMUstateSize(component, state, byref(size))
+    for wrong in (0, size.value - 1):
+        with instance.fails(ERROR, "size|bytes"):
+            instance.fmu.fmi2SerializeFMUstate(component, state, c_char_p(b"\0" * size.value), c_size_t(wrong))
+    instance.free_state(state)
+
+
+def test_serialized_form_says_what_it_is(open_fmu):
+    """A magic word, a version, and the GUID of the model."""
+    instance = open_fmu("SimplePendulum").initialize()
+    data = serialized(instance)
+    assert data[:8] == b"lagrange"
+    assert struct.unpack_from("=I", data, 8)[0] >= 1
+    assert instance.description.guid.encode() in data
+
+
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_reset_is_a_new_instance(name, open_fmu):
+    """Rule 9: the same bits after a reset, thousands of times."""
+    fresh = drive(open_fmu(name).initialize(tolerance=1e-6), name, 5)
+    instance = open_fmu(name)
+    parameter = fmu.names_of(name, "parameter")[0]
+    for i in range(200):
+        instance.initialize({parameter: 1.5}, tolerance=1e-3)
+        instance.step(0.02)
+        instance.reset()
+    assert drive(instance.initialize(tolerance=1e-6), name, 5) == fresh
+
+
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_instances_are_independent(name, open_fmu):
+    """Steps of one instance between those of another change nothing."""
+    alone = drive(open_fmu(name).initialize(), name, 6)
+    first, second = open_fmu(name).initialize(), open_fmu(name)
+    parameter = fmu.names_of(name, "parameter")[0]
+    second.initialize({parameter: 1.9})
+    interleaved = []
+    names = [v.name for v in first.description.modelVariables if v.type == "Real"]
+    inputs = fmu.names_of(name, "input")
+    for i in range(6):
+        if inputs and i % 3 == 0:
+            first.set({inputs[0]: np.sin(i) / 10})
+        if inputs and first.description.coSimulation.canInterpolateInputs and i % 4 == 1:
+            first.fmu.setRealInputDerivatives(first.vr(inputs[0]), [1], [0.3])
+        second.step(0.01)
+        first.step(0.013 * (1 + i % 3))
+        second.fmu.getReal(second.vr(*names))
+        interleaved.append(first.fmu.getReal(first.vr(*names)))
+    assert interleaved == alone
