@@ -14,7 +14,6 @@
 static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model, const struct Interface *interface) {
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
-  bool moves = interface->state_count > 0;
   bool uses_sundials = interface->method == SOLVER_ERK || interface->method == SOLVER_BDF;
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
@@ -26,8 +25,9 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
   write_attribute(writer, "modelIdentifier", model->name);
   write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
-  if (model->inputs.count > 0 && moves) write_attribute(writer, "canInterpolateInputs", "true");
-  if (moves) write_attribute(writer, "maxOutputDerivativeOrder", "1");
+  if (model->inputs.count > 0) write_attribute(writer, "canInterpolateInputs", "true");
+  /* Every system has outputs: its coordinates, or those that it names. */
+  write_attribute(writer, "maxOutputDerivativeOrder", "1");
   if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   xmlTextWriterEndElement(writer);

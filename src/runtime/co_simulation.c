@@ -46,12 +46,12 @@ static fmi2Status check_step(struct Instance *instance, double time, double step
     return log_error(instance, "fmi2DoStep: step %g at time %g; expected a finite step larger than 0", step, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * step;
   if (fabs(time - situation->time) > rounding)
-    return log_error(instance, "fmi2DoStep: currentCommunicationPoint is %.17g; expected %.17g, where the instance is",
+    return log_error(instance, "fmi2DoStep: currentCommunicationPoint is %.15g; expected %.15g, where the instance is",
                      time, situation->time);
   if (time + step <= time)
     return log_error(instance, "fmi2DoStep: step %g does not advance the time %g; expected a larger one", step, time);
   if (situation->stop_time_defined && time + step > situation->stop_time + rounding)
-    return log_error(instance, "fmi2DoStep: the step ends at %.17g; expected none past stopTime %.17g", time + step,
+    return log_error(instance, "fmi2DoStep: the step ends at %.15g; expected none past stopTime %.15g", time + step,
                      situation->stop_time);
   return fmi2OK;
 }

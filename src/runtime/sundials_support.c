@@ -52,7 +52,7 @@ void sundials_log_stop(struct Instance *instance, const char *solver, int flag, 
   if (instance->singular != 0) log_singularity(instance, fmi2Discard, reached);
   log_message(
       instance, fmi2Discard,
-      "%s stopped at time %.17g before %.17g (%s, %d): retrying will not help; go on from an earlier state with "
+      "%s stopped at time %.15g before %.15g (%s, %d): retrying will not help; go on from an earlier state with "
       "a larger tolerance, other parameters or other coordinates",
       solver, reached, end, flag_name, flag);
 }

@@ -1,0 +1,378 @@
+"""Rules of FMI 2.0 that exporters get wrong, and the log (section 2.1.5)."""
+
+import ctypes
+import math
+import re
+from ctypes import byref
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Model,
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+
+import fmu
+from fmu import DISCARD, ERROR, OK, WARNING
+
+CATEGORIES = ["logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal", "logAll"]
+
+
+def test_functions_of_the_other_interface_return_an_error(open_fmu):
+    """Rule 1: all functions are there."""
+    slave = open_fmu("SimplePendulum").initialize()
+    slave.fmu.dll.fmi2EnterContinuousTimeMode.restype = ctypes.c_int
+    with_model = slave.fmu.dll.fmi2EnterContinuousTimeMode(ctypes.c_void_p(slave.fmu.component))
+    assert with_model == ERROR
+
+
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_reading_in_initialization_mode(name, open_fmu):
+    """Rule 2: outputs and InitialUnknowns can be read then. The rest comes with a warning: libcosim reads it all."""
+    instance = open_fmu(name)
+    with instance.fails(ERROR, "not allowed in the state 'instantiated'"):
+        instance.fmu.getReal([0])
+    instance.reset()
+    instance.fmu.setupExperiment()
+    instance.fmu.enterInitializationMode()
+    unknowns = [unknown.variable.valueReference for unknown in instance.description.initialUnknowns]
+    instance.fmu.getReal(unknowns + instance.vr(*fmu.names_of(name, "output")))
+    assert not [m for m in instance.messages[2:] if m[0] == WARNING]
+    parameter = fmu.names_of(name, "parameter")[0]
+    instance.get(parameter)
+    assert re.search(f"'{parameter}' was read in initialization mode", instance.messages[-1][2])
+    assert instance.messages[-1][:2] == (WARNING, "logStatusWarning")
+
+
+def test_setting_by_state(open_fmu):
+    """Rule 3: what can be set when."""
+    name = "DampedPendulum"
+    instance = open_fmu(name)
+    allowed = {"tau": "isc", "theta": "is", "omega": "is", "b": "isc", "der(omega)": "", "kineticEnergy": "", "bob.x": ""}
+    for variable, states in allowed.items():
+        for state in "isc":  # instantiated, initialization, step complete
+            instance.reset()
+            if state != "i":
+                instance.fmu.setupExperiment()
+                instance.fmu.enterInitializationMode()
+            if state == "c":
+                instance.fmu.exitInitializationMode()
+            if state in states:
+                instance.set({variable: 0.5})
+            else:
+                with instance.fails(ERROR, f"'{re.escape(variable)}' cannot be set"):
+                    instance.set({variable: 0.5})
+
+
+def test_parameters_of_model_exchange_wait_for_an_event(open_fmu):
+    instance = open_fmu("DampedPendulum", kind=FMU2Model).initialize()
+    instance.set(b=0.7)
+    instance.fmu.enterContinuousTimeMode()
+    instance.set(tau=0.1)
+    with instance.fails(ERROR, "'b' cannot be set"):
+        instance.set(b=0.5)
+
+
+def test_setup_is_required(open_fmu):
+    """Rule 4."""
+    instance = open_fmu("SimplePendulum")
+    with instance.fails(ERROR, "fmi2SetupExperiment"):
+        instance.fmu.enterInitializationMode()
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (dict(startTime=math.nan), "startTime is nan"),
+        (dict(stopTime=-1.0), "stopTime is -1"),
+        (dict(stopTime=math.inf), "stopTime is inf"),
+        (dict(tolerance=0.0), "tolerance is 0"),
+        (dict(tolerance=-1e-6), "tolerance is -1e-06"),
+        (dict(tolerance=math.nan), "tolerance is nan"),
+        (dict(tolerance=2.0), "tolerance is 2"),
+    ],
+)
+def test_bad_experiments(words, message, open_fmu):
+    instance = open_fmu("SimplePendulum")
+    with instance.fails(ERROR, message):
+        instance.fmu.setupExperiment(**words)
+
+
+def test_steps_end_where_they_say(name, open_fmu):
+    """Rule 5: no drift, no rounding to a grid, and the caller's time counts."""
+    instance = open_fmu(name).initialize(start_time=0.25)
+    with instance.fails(ERROR, "currentCommunicationPoint is 0; expected 0.25"):
+        instance.fmu.doStep(0.0, 0.1)
+    instance.reset().initialize(start_time=0.25)
+    time = 0.25
+    for i in range(1, 200):
+        size = 0.0015 * (1 + i % 3)
+        instance.fmu.doStep(time, size)
+        time += size
+        assert instance.fmu.getRealStatus(2) == time
+        if i == 100:
+            time = math.nextafter(time, 10)  # a caller that rounds otherwise
+    with instance.fails(ERROR, "currentCommunicationPoint"):
+        instance.fmu.doStep(time + 0.1, 0.1)
+
+
+def test_steps_past_the_end(name, open_fmu):
+    """Rule 6: an error past a stop time; without one there is none."""
+    instance = open_fmu(name).initialize(stop_time=0.3)
+    for i in range(3):
+        instance.fmu.doStep(i * 0.1, 0.1)  # 0.1 * 3 is not 0.3 in binary
+    with instance.fails(ERROR, "past stopTime 0.3"):
+        instance.fmu.doStep(0.3, 0.1)
+    instance.reset().initialize()
+    instance.step(0.5)
+
+
+def test_discard_tells_how_far_it_came(open_fmu):
+    """Rule 7."""
+    instance = open_fmu("ParticlePolar").initialize(dict(omega=0))
+    instance.step(1.0)
+    with instance.fails(DISCARD, "stopped at time 1.1"):
+        instance.step(1.0)
+    reached = instance.fmu.getRealStatus(2)
+    assert 1.0 < reached < 1.12
+    assert instance.fmu.getBooleanStatus(3) is False
+    assert instance.get("r") < 0.1
+    with instance.fails(ERROR, "not allowed in the state 'step failed'"):
+        instance.step(0.1)
+
+
+def test_after_an_error(open_fmu):
+    """Rule 8: neither steps nor the end; reset and a saved state recover."""
+    instance = open_fmu("SimplePendulum").initialize()
+    state = instance.fmu.getFMUstate()
+    for recover in (lambda: instance.fmu.setFMUstate(state), lambda: instance.reset().initialize()):
+        with instance.fails(ERROR, "unknown"):
+            instance.fmu.getReal([9999])
+        for call in (lambda: instance.fmu.doStep(0.0, 0.1), instance.fmu.terminate):
+            with instance.fails(ERROR, "not allowed in the state 'error'"):
+                call()
+        assert math.isfinite(instance.get("theta"))
+        recover()
+        instance.time = 0.0
+        instance.step(0.1)
+    instance.free_state(state)
+    instance.fmu.fmi2FreeInstance(None)
+
+
+def test_guid_must_match(capsys):
+    """Rule 13: a failed instantiation says why, also with logging off."""
+    messages = []
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.Instance("SimplePendulum", guid="{other}", callbacks=callbacks, logging=False)
+    expected = fmu.description("SimplePendulum").guid
+    assert messages == [f"fmi2Instantiate: the GUID is '{{other}}'; expected '{expected}', that of this binary"]
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.Instance("SimplePendulum", instance_name="", callbacks=callbacks, logging=False)
+    assert "name" in messages[-1]
+
+
+def test_callbacks_are_copied(open_fmu):
+    """Rule 13: the structure and the strings are valid during the call alone."""
+    instance = open_fmu("DampedPendulum")
+    ctypes.memset(byref(instance.callbacks), 0xAB, ctypes.sizeof(instance.callbacks))
+    instance.initialize()
+    instance.step(0.1)
+    with pytest.raises(FMICallException):
+        instance.fmu.getReal([9999])
+    assert "9999" in instance.messages[-1][2]
+
+
+def test_versions(open_fmu):
+    """Rule 14."""
+    instance = open_fmu("SimplePendulum")
+    assert instance.fmu.getTypesPlatform() == "default" and instance.fmu.getVersion() == "2.0"
+
+
+def test_resources_may_come_in_any_form(open_fmu):
+    """Rule 22: no FMU needs its resources."""
+    instance = open_fmu("SimplePendulum")
+    instantiate = instance.fmu.dll.fmi2Instantiate
+    instantiate.restype = ctypes.c_void_p
+    for location in (None, b"", b"file:/tmp/x", b"file:///tmp/x", b"http://nowhere"):
+        component = instantiate(b"i", 1, instance.description.guid.encode(), location, byref(instance.callbacks), 0, 0)
+        assert component
+        instance.fmu.fmi2FreeInstance(component)
+
+
+# --- The log ---
+
+
+def provoke(instance):
+    """Something for every category."""
+    instance.initialize(dict(omega=0))
+    with pytest.raises(FMICallException):
+        instance.step(5.0)  # discarded
+    with pytest.raises(FMICallException):
+        instance.fmu.getReal([9999])  # an error
+    instance.reset()
+    instance.fmu.setupExperiment()
+    instance.fmu.enterInitializationMode()
+    instance.get("m")  # a warning
+    instance.reset()
+
+
+def test_quiet_when_off(open_fmu):
+    instance = open_fmu("ParticlePolar", logging=False)
+    provoke(instance)
+    assert instance.messages == []
+
+
+@pytest.mark.parametrize("category", CATEGORIES)
+def test_only_what_is_enabled(category, open_fmu):
+    """Rule 15: a category alone, and logAll for all of them."""
+    everything = open_fmu("ParticlePolar")
+    provoke(everything)
+    found = {entry[1] for entry in everything.messages}
+    assert found == {"logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError"}
+    instance = open_fmu("ParticlePolar", logging=False)
+    instance.fmu.setDebugLogging(True, [category])
+    provoke(instance)
+    expected = [entry for entry in everything.messages if category in (entry[1], "logAll")]
+    if category in ("logEvents", "logAll"):
+        expected = expected[1:]  # that it was instantiated was before
+    assert instance.messages == expected
+    instance.fmu.setDebugLogging(False, [])
+    before = len(instance.messages)
+    provoke(instance)
+    assert len(instance.messages) == before
+
+
+def test_unknown_category(open_fmu):
+    instance = open_fmu("SimplePendulum")
+    with instance.fails(ERROR, "no log category 'logNothing'"):
+        instance.fmu.setDebugLogging(True, ["logNothing"])
+
+
+def test_messages_are_formats_and_lines(open_fmu):
+    """Rule 15: no end of line, '%' and '#' doubled, the status and its category agree."""
+    instance = open_fmu("ParticlePolar")
+    provoke(instance)
+    for status, category, text in instance.messages:
+        assert not text.endswith("\n") and text
+        assert "%" not in text.replace("%%", "")
+        expected = {OK: "logEvents", WARNING: "logStatusWarning", DISCARD: "logStatusDiscard", ERROR: "logStatusError"}
+        assert category == expected[status]
+
+
+def test_escapes_in_messages():
+    messages = []
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.Instance("SimplePendulum", guid="100%s #r1#", callbacks=callbacks)
+    # FMPy's proxy has printed the format, so that '%%' is '%' again; '##' stays for the importer to read.
+    assert "'100%s ##r1##'" in messages[0] or "'100%%s ##r1##'" in messages[0]
+
+
+def test_null_logger():
+    """A NULL logger is no crash, whatever goes wrong."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    instance = fmu.Instance("ParticlePolar", callbacks=callbacks)
+    provoke(instance)
+    instance.free()
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.Instance("ParticlePolar", guid="{other}", callbacks=callbacks)
+
+
+# --- Memory (rule 16) ---
+
+
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_memory_of_the_caller(name):
+    """All of it comes from the caller's functions and goes back; or none, where the FMU says so."""
+    alive, total = set(), 0
+
+    def allocate(count, size):
+        nonlocal total
+        address = fmpy.calloc(count, size)
+        alive.add(address)
+        total += 1
+        return address
+
+    def release(address):
+        if address:
+            alive.remove(address)
+            fmpy.free(address)
+
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: None)
+    own = fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
+    if not own:
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(release)
+    instance = fmu.Instance(name, callbacks=callbacks).initialize()
+    instance.step(0.1)
+    state = instance.fmu.getFMUstate()
+    instance.free_state(state)
+    instance.free()
+    assert alive == set() and (total > 3) == (not own)
+
+
+@pytest.mark.parametrize("name", ["ParticleCartesian", "StateFeedback"])
+def test_memory_runs_out(name):
+    """Each allocation in turn returns NULL: an error, no crash, and nothing leaks."""
+    for fatal in range(8):
+        alive, count = set(), 0
+
+        def allocate(number, size):
+            nonlocal count
+            count += 1
+            if count == fatal + 1:
+                return 0
+            address = fmpy.calloc(number, size)
+            alive.add(address)
+            return address
+
+        def release(address):
+            if address:
+                alive.remove(address)
+                fmpy.free(address)
+
+        messages = []
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(release)
+        instance = None
+        try:
+            instance = fmu.Instance(name, callbacks=callbacks).initialize()
+            instance.step(0.1)
+            instance.free_state(instance.fmu.getFMUstate())
+            assert count <= fatal
+        except Exception:
+            assert any("no memory" in message for message in messages)
+        if instance is not None:
+            instance.free()
+        assert alive == set()
+
+
+@pytest.mark.parametrize("kind", [FMU2Slave, FMU2Model])
+def test_names_of_instances_are_passed_on(kind):
+    """The logger gets the instance's name and the environment."""
+    seen = []
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, name, *rest: seen.append((environment, name)))
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    callbacks.componentEnvironment = 1234
+    instance = fmu.Instance("SimplePendulum", kind=kind, callbacks=callbacks, instance_name="pendulum 7").initialize()
+    instance.free()
+    assert set(seen) == {(1234, b"pendulum 7")}
