@@ -1,6 +1,7 @@
 """Instances of the built FMUs through FMPy, by variable names instead of value references."""
 
 import functools
+import os
 import re
 import subprocess
 import tempfile
@@ -21,7 +22,7 @@ from fmpy.fmi2 import (
 )
 
 ROOT = Path(__file__).resolve().parent.parent
-BUILD = ROOT / "build"
+BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
 LAGC = BUILD / "bin" / "lagc"
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
@@ -44,6 +45,10 @@ def archive(name):
 @functools.cache
 def description(name):
     return fmpy.read_model_description(unpacked(name))
+
+
+def library(name):
+    return unpacked(name) / "binaries" / "linux64" / f"{name}.so"
 
 
 def further_names():

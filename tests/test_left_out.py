@@ -13,10 +13,6 @@ NONE = ["StateFeedback", "SpringDamper"]
 BDF = ["ElasticPendulum"]
 
 
-def library(name):
-    return fmu.unpacked(name) / "binaries" / "linux64" / f"{name}.so"
-
-
 def linked_members(name):
     """Bytes that each object file contributes after garbage collection, from the linker's map."""
     text = (BUILD / "systems" / name / "link.map").read_text()
@@ -34,28 +30,28 @@ def output_of(*words):
 
 def test_exported_symbols(name):
     """Rule 1 and rule 23: every fmi2 function, and nothing else."""
-    symbols = output_of("nm", "-D", "--defined-only", library(name)).split("\n")
+    symbols = output_of("nm", "-D", "--defined-only", fmu.library(name)).split("\n")
     exported = {line.split()[-1] for line in symbols if line}
     header = (fmu.ROOT / "include" / "fmi2.h").read_text()
     assert exported == set(re.findall(r"FMI2_EXPORT .*?\b(fmi2\w+)\(", header)) and len(exported) == 44
 
 
 def test_needed_libraries(name):
-    needed = set(re.findall(r"NEEDED.*\[(.*)\]", output_of("readelf", "-d", library(name))))
+    needed = set(re.findall(r"NEEDED.*\[(.*)\]", output_of("readelf", "-d", fmu.library(name))))
     assert needed <= {"libm.so.6", "libc.so.6"}
 
 
 def test_is_stripped(name):
-    assert ".symtab" not in output_of("readelf", "-SW", library(name))
+    assert ".symtab" not in output_of("readelf", "-SW", fmu.library(name))
 
 
 def test_no_path_of_this_machine_is_in_it(name):
-    assert str(fmu.ROOT).encode() not in library(name).read_bytes()
+    assert str(fmu.ROOT).encode() not in fmu.library(name).read_bytes()
 
 
 def test_only_the_solver_that_is_needed(name):
     members = " ".join(linked_members(name))
-    text = library(name).read_bytes()
+    text = fmu.library(name).read_bytes()
     assert "xml" not in members and b"libxml" not in text
     if name in EXACT + NONE:
         assert "sundials" not in members and "SUN" not in members and b"SUNDIALS" not in text
@@ -109,7 +105,7 @@ def sizes():
         members = linked_members(name)
         sundials = sum(size for member, size in members.items() if "sundials" in member)
         own = sum(size for member, size in members.items() if "system.c.o" in member)
-        rows.append((name, fmu.archive(name).stat().st_size, library(name).stat().st_size, sundials, own))
+        rows.append((name, fmu.archive(name).stat().st_size, fmu.library(name).stat().st_size, sundials, own))
     return rows
 
 
