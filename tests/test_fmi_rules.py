@@ -3,6 +3,7 @@
 import ctypes
 import math
 import re
+import subprocess
 from ctypes import byref
 
 import fmpy
@@ -324,6 +325,12 @@ def test_memory_of_the_caller(name):
     instance.free_state(state)
     instance.free()
     assert alive == set() and (total > 3) == (not own)
+
+
+@pytest.mark.parametrize("name", ["ParticleCartesian", "SimplePendulum", "ElasticPendulum"])
+def test_steps_allocate_nothing(name):
+    result = subprocess.run([fmu.BUILD / "bin" / f"overhead_{name}", "500"], capture_output=True, text=True)
+    assert result.returncode == 0 and ", 0 allocations in 3500 steps" in result.stdout
 
 
 @pytest.mark.parametrize("name", ["ParticleCartesian", "StateFeedback"])

@@ -1,4 +1,4 @@
-"""The whole life of every FMU under sanitizers and under valgrind: no leak, no undefined behaviour."""
+"""Every FMU under sanitizers and under valgrind: no leak, no undefined behaviour, no race between threads."""
 
 import os
 import subprocess
@@ -23,6 +23,12 @@ def run(words, **environment):
     result = subprocess.run(words, capture_output=True, text=True, env={**os.environ, **environment}, timeout=300)
     assert result.returncode == 0, result.stdout + result.stderr
     return result
+
+
+def test_threads(name):
+    """8 threads with 8 instances each, under ThreadSanitizer."""
+    words = words_for(name, BUILD / "threads")
+    run([BUILD / "threads" / "bin" / "threads", words[1], words[2]])
 
 
 def test_life_under_sanitizers(name):

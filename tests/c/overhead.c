@@ -1,0 +1,94 @@
+/*
+ * What the FMI layer costs: fmi2DoStep beside the solver called directly, for communication steps of 0.001 s, and how
+ * many times memory is allocated meanwhile: overhead STEPS. Linked with the parts of one FMU.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "instance.h"
+#include "solver.h"
+
+enum { REPEATS = 7 };
+static const double step_size = 0.001;
+
+static long allocations, steps;
+
+/* The linker sends all calls of these functions here (--wrap). */
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *block, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+
+void *__wrap_malloc(size_t size) {
+  allocations++;
+  return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size) {
+  allocations++;
+  return __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *block, size_t size) {
+  allocations++;
+  return __real_realloc(block, size);
+}
+
+static double seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int initialize(fmi2Component c) {
+  return fmi2Reset(c) == fmi2OK && fmi2SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0) == fmi2OK &&
+         fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK &&
+         fmi2DoStep(c, 0.0, step_size, fmi2True) == fmi2OK;
+}
+
+static double time_of_steps(fmi2Component c) {
+  double start = seconds();
+  for (long i = 1; i <= steps; i++)
+    if (fmi2DoStep(c, (double)i * step_size, step_size, fmi2True) != fmi2OK) exit(1);
+  return seconds() - start;
+}
+
+static double time_of_solver(fmi2Component c) {
+  struct Instance *instance = c;
+  double start = seconds();
+  for (long i = 1; i <= steps; i++) {
+    double reached = (double)(i + 1) * step_size;
+    instance->situation->time = (double)i * step_size;
+    if (lagrangian.solver->step(instance, step_size, &reached) != STEP_DONE) exit(1);
+  }
+  return seconds() - start;
+}
+
+int main(int count, char **words) {
+  const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
+  fmi2Component c =
+      fmi2Instantiate("overhead", fmi2CoSimulation, lagrangian.guid, NULL, &callbacks, fmi2False, fmi2False);
+  double best_step = 1e9, best_solver = 1e9;
+  steps = count == 2 ? strtol(words[1], NULL, 10) : 0;
+  if (c == NULL || steps < 1) return 2;
+  long during_steps = 0;
+  for (int i = 0; i < REPEATS; i++) {
+    if (!initialize(c)) return 1;
+    long before = allocations;
+    double step = time_of_steps(c);
+    during_steps += allocations - before;
+    if (!initialize(c)) return 1;
+    double solver = time_of_solver(c);
+    if (step < best_step) best_step = step;
+    if (solver < best_solver) best_solver = solver;
+  }
+  double scale = 1e9 / (double)steps;
+  printf("%s: fmi2DoStep %.1f ns, the solver alone %.1f ns, the FMI layer %.1f ns, %ld allocations in %ld steps\n",
+         lagrangian.name, best_step * scale, best_solver * scale, (best_step - best_solver) * scale, during_steps,
+         REPEATS * steps);
+  fmi2FreeInstance(c);
+  return during_steps > 0;
+}
