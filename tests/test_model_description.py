@@ -235,11 +235,29 @@ def test_the_archive(name):
     """Rule 21: deflated or stored members with forward slashes, none of them a link."""
     with zipfile.ZipFile(fmu.archive(name)) as archive:
         members = {info.filename: info for info in archive.infolist() if not info.is_dir()}
-    assert {"modelDescription.xml", f"binaries/linux64/{name}.so", "documentation/index.html"} <= set(members)
+    assert set(members) == {
+        "modelDescription.xml", "model.png", f"binaries/linux64/{name}.so", "documentation/index.html"
+    }
     for info in members.values():
         assert info.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
         assert "\\" not in info.filename and not info.filename.startswith("/")
         assert (info.external_attr >> 16) & 0o170000 in (0, 0o100000)
+
+
+def test_the_icon(name):
+    """A drawing with a curve on it: more than the paper, the axes and the starting point."""
+    from matplotlib.image import imread
+
+    image = imread(fmu.unpacked(name) / "model.png")
+    assert image.shape[:2] == (128, 128)
+    blue = (image[:, :, 2] > image[:, :, 0] + 0.3).sum()
+    assert 100 < blue < 128 * 128 / 2
+
+
+def test_icons_differ():
+    icons = {(fmu.unpacked(name) / "model.png").read_bytes() for name in fmu.all_names()}
+    # The three carts fall in the same way without their inputs, and so do their linearizations.
+    assert len(icons) >= len(fmu.all_names()) - 3
 
 
 def test_the_documentation_page(name):

@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+import sys
 import zipfile
 
 import fmpy
@@ -57,6 +58,14 @@ def test_every_element_is_described():
     schema = (ROOT / "modelDescription" / "system.xsd").read_text()
     for element in re.findall(r'<xs:element name="(\w+)"', schema):
         assert f"<{element}" in README, element
+
+
+def test_table_of_features():
+    """scripts/features brings it up to date."""
+    sys.path.insert(0, str(ROOT / "scripts"))
+    import features
+
+    assert f"<!-- features -->\n{features.table()}\n<!-- end -->" in README
 
 
 def test_every_command_is_there():
