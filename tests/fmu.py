@@ -74,6 +74,18 @@ def states_of(name):
     return [unknown.variable.derivative.name for unknown in description(name).derivatives]
 
 
+def callbacks_of(logger, allocate=fmpy.calloc, release=fmpy.free, environment=None):
+    """What an importer hands to fmi2Instantiate; None for NULL."""
+    callbacks = fmi2CallbackFunctions()
+    if logger is not None:
+        callbacks.logger = fmi2CallbackLoggerTYPE(logger)
+    if allocate is not None:
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(release)
+    callbacks.componentEnvironment = environment
+    return callbacks
+
+
 class Instance:
     """
     One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where
@@ -91,17 +103,10 @@ class Instance:
             modelIdentifier=section.modelIdentifier,
             instanceName=instance_name,
         )
-        self.callbacks = callbacks or self._callbacks()
+        self.callbacks = callbacks or callbacks_of(self._log)
         self.time = 0.0
         self.fmu.component = None
         self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
-
-    def _callbacks(self):
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
-        return callbacks
 
     def _log(self, environment, instance_name, status, category, message):
         self.messages.append((status, category.decode(), message.decode().replace("%%", "%")))

@@ -10,15 +10,7 @@ import sys
 from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 
 import fmpy
-from fmpy.fmi2 import (
-    FMU2Model,
-    FMU2Slave,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    fmi2EventInfo,
-)
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2EventInfo
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule, run_state_machine_as_test
@@ -45,10 +37,7 @@ class Calls(RuleBasedStateMachine):
     )
     def instantiate(self, name, kind, logging):
         self.alive = set()
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(self.log)
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(self.allocate)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(self.release)
+        callbacks = fmu.callbacks_of(self.log, self.allocate, self.release)
         self.instance = fmu.Instance(name, kind=kind, logging=logging, callbacks=callbacks)
         self.table = COMMON_CS if kind is FMU2Slave else ME
         self.states = CS_STATES if kind is FMU2Slave else ME_STATES

@@ -9,14 +9,7 @@ from ctypes import byref
 import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Model,
-    FMU2Slave,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-)
+from fmpy.fmi2 import FMU2Model, FMU2Slave
 
 import fmu
 from fmu import DISCARD, ERROR, OK, WARNING
@@ -168,10 +161,7 @@ def test_after_an_error(open_fmu):
 def test_guid_must_match(capsys):
     """Rule 13: a failed instantiation says why, also with logging off."""
     messages = []
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    callbacks = fmu.callbacks_of(lambda *words: messages.append(words[4].decode()))
     with pytest.raises(Exception, match="Failed to instantiate"):
         fmu.Instance("SimplePendulum", guid="{other}", callbacks=callbacks, logging=False)
     expected = fmu.description("SimplePendulum").guid
@@ -271,10 +261,7 @@ def test_messages_are_formats_and_lines(open_fmu):
 
 def test_escapes_in_messages():
     messages = []
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    callbacks = fmu.callbacks_of(lambda *words: messages.append(words[4].decode()))
     with pytest.raises(Exception, match="Failed to instantiate"):
         fmu.Instance("SimplePendulum", guid="100%s #r1#", callbacks=callbacks)
     # FMPy's proxy has printed the format, so that '%%' is '%' again; '##' stays for the importer to read.
@@ -283,9 +270,7 @@ def test_escapes_in_messages():
 
 def test_null_logger():
     """A NULL logger is no crash, whatever goes wrong."""
-    callbacks = fmi2CallbackFunctions()
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+    callbacks = fmu.callbacks_of(None)
     instance = fmu.Instance("ParticlePolar", callbacks=callbacks)
     provoke(instance)
     instance.free()
@@ -296,35 +281,35 @@ def test_null_logger():
 # --- Memory (rule 16) ---
 
 
-@pytest.mark.parametrize("name", fmu.all_names())
-def test_memory_of_the_caller(name):
-    """All of it comes from the caller's functions and goes back; or none, where the FMU says so."""
-    alive, total = set(), 0
+class Memory:
+    """The caller's functions: they count, and the allocation numbered fatal returns NULL."""
 
-    def allocate(count, size):
-        nonlocal total
-        address = fmpy.calloc(count, size)
-        alive.add(address)
-        total += 1
+    def __init__(self, fatal=None):
+        self.alive, self.count, self.fatal = set(), 0, fatal
+
+    def allocate(self, number, size):
+        self.count += 1
+        if self.count == self.fatal:
+            return 0
+        address = fmpy.calloc(number, size)
+        self.alive.add(address)
         return address
 
-    def release(address):
+    def release(self, address):
         if address:
-            alive.remove(address)
+            self.alive.remove(address)
             fmpy.free(address)
 
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: None)
-    own = fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
-    if not own:
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(release)
-    instance = fmu.Instance(name, callbacks=callbacks).initialize()
+
+def test_memory_of_the_caller(name):
+    """All of it comes from the caller's functions and goes back; or none, where the FMU says so."""
+    memory, own = Memory(), fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
+    allocate = None if own else memory.allocate
+    instance = fmu.Instance(name, callbacks=fmu.callbacks_of(None, allocate, memory.release)).initialize()
     instance.step(0.1)
-    state = instance.fmu.getFMUstate()
-    instance.free_state(state)
+    instance.free_state(instance.fmu.getFMUstate())
     instance.free()
-    assert alive == set() and (total > 3) == (not own)
+    assert memory.alive == set() and (memory.count > 3) == (not own)
 
 
 @pytest.mark.parametrize("name", ["ParticleCartesian", "SimplePendulum", "ElasticPendulum"])
@@ -336,50 +321,26 @@ def test_steps_allocate_nothing(name):
 @pytest.mark.parametrize("name", ["ParticleCartesian", "StateFeedback"])
 def test_memory_runs_out(name):
     """Each allocation in turn returns NULL: an error, no crash, and nothing leaks."""
-    for fatal in range(8):
-        alive, count = set(), 0
-
-        def allocate(number, size):
-            nonlocal count
-            count += 1
-            if count == fatal + 1:
-                return 0
-            address = fmpy.calloc(number, size)
-            alive.add(address)
-            return address
-
-        def release(address):
-            if address:
-                alive.remove(address)
-                fmpy.free(address)
-
-        messages = []
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(allocate)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(release)
-        instance = None
+    for fatal in range(1, 9):
+        messages, memory, instance = [], Memory(fatal), None
+        log = lambda *words: messages.append(words[4].decode())
         try:
-            instance = fmu.Instance(name, callbacks=callbacks).initialize()
+            instance = fmu.Instance(name, callbacks=fmu.callbacks_of(log, memory.allocate, memory.release)).initialize()
             instance.step(0.1)
             instance.free_state(instance.fmu.getFMUstate())
-            assert count <= fatal
+            assert memory.count < fatal
         except Exception:
             assert any("no memory" in message for message in messages)
         if instance is not None:
             instance.free()
-        assert alive == set()
+        assert memory.alive == set()
 
 
 @pytest.mark.parametrize("kind", [FMU2Slave, FMU2Model])
 def test_names_of_instances_are_passed_on(kind):
     """The logger gets the instance's name and the environment."""
     seen = []
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda environment, name, *rest: seen.append((environment, name)))
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
-    callbacks.componentEnvironment = 1234
+    callbacks = fmu.callbacks_of(lambda environment, name, *rest: seen.append((environment, name)), environment=1234)
     instance = fmu.Instance("SimplePendulum", kind=kind, callbacks=callbacks, instance_name="pendulum 7").initialize()
     instance.free()
     assert set(seen) == {(1234, b"pendulum 7")}
