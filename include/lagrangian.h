@@ -11,6 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "series.h"
+
 /* Where the equations are evaluated. */
 struct Point {
   double time;
@@ -64,6 +66,7 @@ struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t variable_count, result_count;
+  size_t series_rows; /* of workspace for series() */
   const struct ScalarVariable *variables;
   const struct Result *results;
   const double *nominal; /* state_count: scales of the absolute tolerance */
@@ -86,6 +89,11 @@ struct Lagrangian {
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
   /* d derivatives / d state, element (i, j) at jacobian[j * state_count + i] */
   int (*jacobian)(const struct Point *point, double *jacobian);
+  /*
+   * Taylor coefficients x[state_count] of the state from the point up to order, with those of the inputs given;
+   * w[series_rows] is workspace.
+   */
+  int (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
   /* d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
   void (*linear)(const double *parameter, const double *prepared, double *matrix);
 };

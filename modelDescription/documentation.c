@@ -114,6 +114,9 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
                      "on the state that the FMU saves, so that a repeated step gives the same bits.",
       [SOLVER_BDF] = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
                      "history, so that a restored state goes on within the tolerance, not to the same bits.",
+      [SOLVER_TAYLOR] = "Co-simulation integrates with Taylor series of the motion, of an order that follows from the "
+                        "tolerance; a step depends only on the state that the FMU saves, so that a repeated step gives "
+                        "the same bits.",
       [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
                        "time over the communication step.",
   };

@@ -85,6 +85,8 @@ CASES = [
      '<coordinate name="phi" velocity="nu" unit="rad"/>\n'
      '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "structurally singular"),
     ("work without forces", 9, "<work/>", 9, "<work/> without forces"),
+    ("series of a function with a kink", 11,
+     '<force coordinate="theta">abs(tau)*sin(theta)</force><solver method="taylor"/>', 11, "abs has a kink.*expected the method 'erk'"),
     ("exact for a nonlinear system", 11, '<solver method="exact"/>', 11, "not linear.*another method than 'exact'"),
     ("index that is no number", 7, '<for index="i" from="1" to="n"></for>', 7, "unknown name 'n'"),
     ("index that is half", 7, '<for index="i" from="1" to="1.5"></for>', 7, "expected whole numbers"),
@@ -142,7 +144,7 @@ def test_old_output_goes_when_the_system_breaks(tmp_path):
     [
         (["missing.xml", "-o", "out"], "missing.xml.*expected an XML file"),
         (["system.xml", "-o", "/proc/nothing"], "cannot write into"),
-        (["system.xml", "-o", "out", "--solver", "euler"], "euler.*expected erk, bdf or exact"),
+        (["system.xml", "-o", "out", "--solver", "euler"], "euler.*expected taylor, erk, bdf or exact"),
         (["system.xml", "-o", "out", "-D", "N=3"], "no <constant> of this name"),
         (["--linearize", "system.xml", "--at", "alpha=1"], "'alpha'"),
         (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity or an input"),

@@ -104,7 +104,8 @@ def test_runtime_compiles_against_the_official_headers(source, tmp_path):
     """A definition that differs from the official declaration is a compiler error."""
     (tmp_path / "fmi2.h").write_text('#include "fmi2Functions.h"\n')
     # Quoted includes look beside their file first, so the headers of the runtime are copied next to the other fmi2.h.
-    for header in [*(ROOT / "src" / "runtime").glob("*.h"), ROOT / "include" / "lagrangian.h", ROOT / "include" / "ldlt.h"]:
+    ours = [header for header in (ROOT / "include").glob("*.h") if header.name != "fmi2.h"]
+    for header in [*(ROOT / "src" / "runtime").glob("*.h"), *ours]:
         shutil.copy(header, tmp_path)
     shutil.copy(source, tmp_path)
     words = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{OFFICIAL}"]

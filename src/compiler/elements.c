@@ -255,16 +255,13 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   static const struct {
     const char *name;
     enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_ERK}};
+  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
   if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
   for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
     if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
-  if (method != NULL && strcmp(method, "taylor") == 0)
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
-                   "the method 'taylor' is not available in this version; 'erk' is used");
   number_attribute(reader, node, "tolerance", &reader->model->tolerance);
   free(method);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "emit_accelerations.h"
+#include "emit_series.h"
 #include "emit_tables.h"
 #include "memory.h"
 
@@ -158,6 +159,7 @@ static void announce_all(struct Emitter *emitter) {
     append_nodes(&targets, &node, 1);
   }
   append_nodes(&targets, program->result_along, program->interface->result_count);
+  if (program->series != NULL) append_nodes(&targets, program->series->targets, program->series->count);
   statements_announce(emitter->statements, targets.nodes, targets.count);
   statements_settle(emitter->statements);
   free(targets.nodes);
@@ -188,6 +190,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
   if (program->jacobian != NULL)
     emit_function(&emitter, "Jacobian matrix", "int jacobian(const struct Point *point, double *jacobian)",
                   jacobian_body, 0);
+  if (program->series != NULL) emitter.series_rows = emit_series(&emitter);
   if (program->linear != NULL)
     emit_function(&emitter, "A, B and c", "void linear(const double *p, const double *c, double *matrix)", linear_body,
                   0);

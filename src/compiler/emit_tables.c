@@ -103,6 +103,7 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   static const char *const solvers[] = {[SOLVER_ERK] = "&solver_erk",
                                         [SOLVER_BDF] = "&solver_bdf",
                                         [SOLVER_EXACT] = "&solver_exact",
+                                        [SOLVER_TAYLOR] = "&solver_taylor",
                                         [SOLVER_NONE] = "NULL"};
   const struct Program *program = emitter->program;
   const struct Interface *interface = program->interface;
@@ -123,6 +124,7 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
           interface->depends_on_time ? "true" : "false", solvers[interface->method]);
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",
           moves ? "directional" : "NULL");
+  if (program->series != NULL) fprintf(file, "    .series_rows = %zu,\n    .series = series,\n", emitter->series_rows);
   fprintf(file, "    .jacobian = %s,\n    .linear = %s,\n};\n", program->jacobian != NULL ? "jacobian" : "NULL",
           program->linear != NULL ? "linear" : "NULL");
 }

@@ -13,7 +13,9 @@ struct Emitter {
   const struct Equations *equations;
   const struct Graph *graph;
   struct Statements *statements;
-  size_t n, states; /* coordinates, state variables */
+  size_t n, states;            /* coordinates, state variables */
+  struct SeriesWriter *series; /* while series() is written */
+  size_t series_rows;          /* of workspace that series() needs */
 };
 
 /* A growing list of nodes. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "series.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {
@@ -73,7 +74,7 @@ static void append_bodies(struct Interface *interface, const struct Model *model
 
 static void append_statistics(struct Interface *interface) {
   append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
-  if (interface->method == SOLVER_EXACT) return;
+  if (interface->method == SOLVER_EXACT || interface->method == SOLVER_TAYLOR) return;
   append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
          "evaluations of the equations of motion");
   if (interface->method == SOLVER_BDF)
@@ -93,16 +94,17 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
-static enum SolverMethod method_of(const struct Model *model) {
+static enum SolverMethod method_of(const struct Model *model, const struct Equations *equations) {
   if (model->coordinates.count == 0) return SOLVER_NONE;
   if (model->method != SOLVER_DEFAULT) return model->method;
-  return model->linearized ? SOLVER_EXACT : SOLVER_ERK;
+  if (model->linearized) return SOLVER_EXACT;
+  return kink_of(model->graph, equations) == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
 }
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
-  interface->method = method_of(model);
+  interface->method = method_of(model, equations);
   interface->depends_on_time = uses_time(model, equations);
   interface->state_count = 2 * n + (model->work_line > 0 ? 1 : 0);
   if (interface->depends_on_time) {

@@ -20,7 +20,7 @@ static const char *const usage =
     "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
     "\n"
     "  -o DIR           the directory for the files\n"
-    "  --solver METHOD  erk, bdf or exact in place of the system's own\n"
+    "  --solver METHOD  taylor, erk, bdf or exact in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
 
@@ -70,13 +70,13 @@ static void override_solver(struct Model *model, const char *solver, struct Diag
   static const struct {
     const char *name;
     enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}};
+  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
     if (strcmp(solver, methods[i].name) != 0) continue;
     model->method = methods[i].method;
     return;
   }
-  report_error(diagnostics, 0, "--solver %s is not known; expected erk, bdf or exact", solver);
+  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", solver);
 }
 
 static void compile(struct Model *model, struct Equations *equations, const char *directory,

@@ -28,7 +28,7 @@ struct Body {
   long line;
 };
 
-enum SolverMethod { SOLVER_DEFAULT, SOLVER_ERK, SOLVER_BDF, SOLVER_EXACT, SOLVER_NONE };
+enum SolverMethod { SOLVER_DEFAULT, SOLVER_ERK, SOLVER_BDF, SOLVER_EXACT, SOLVER_TAYLOR, SOLVER_NONE };
 
 /* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
 struct LinearizationPoint {

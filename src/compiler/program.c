@@ -62,6 +62,14 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
   free(column);
 }
 
+static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
+  const char *kink;
+  program->series = series_plan_create(model->graph, program->equations, model->work_line > 0, &kink);
+  if (program->series == NULL)
+    report_error(diagnostics, model->solver_line,
+                 "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
+}
+
 struct Program *program_create(struct Model *model, const struct Equations *equations,
                                const struct Interface *interface, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
@@ -88,6 +96,7 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   derivative_along(graph, &equations->power, 1, seeds, &program->power_along);
   if (interface->method == SOLVER_BDF) create_jacobian(program, graph);
   free(seeds);
+  if (interface->method == SOLVER_TAYLOR) create_series(program, model, diagnostics);
   if (graph->overflow)
     report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",
                  NODE_LIMIT);
@@ -99,6 +108,7 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
 void program_free(struct Program *program) {
   if (program == NULL) return;
   linear_system_free(program->linear);
+  series_plan_free(program->series);
   free(program->along);
   free(program->jacobian);
   free(program->power_jacobian);

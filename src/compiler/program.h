@@ -5,12 +5,14 @@
 #include "interface.h"
 #include "lagrange.h"
 #include "linearize.h"
+#include "series.h"
 
 struct Program {
   const struct Model *model;
   const struct Equations *equations;
   const struct Interface *interface;
   struct LinearSystem *linear; /* NULL unless the solver is exact */
+  struct SeriesPlan *series;   /* NULL unless the solver is taylor */
   Node *along;                 /* derivative of the accelerations, or right sides for it in large blocks */
   Node power_along;
   Node *jacobian; /* count rows by state_count columns, as along for each state; NULL unless the solver asks */

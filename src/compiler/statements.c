@@ -8,15 +8,6 @@
 #include "print.h"
 #include "simplify.h"
 
-/* How a node is written: an operator between operands, a function of them, ... */
-enum Form { FORM_SUM, FORM_DIFFERENCE, FORM_PRODUCT, FORM_QUOTIENT, FORM_NEGATION, FORM_POWER, FORM_FUNCTION };
-
-struct Expression {
-  enum Form form;
-  Node left, right;
-  int arity;
-};
-
 struct Statements *statements_create(const struct Graph *graph) {
   struct Statements *statements = allocate(1, sizeof *statements);
   statements->graph = graph;
@@ -41,8 +32,7 @@ static bool is_of_parameters(const struct Graph *graph, Node node) {
   return !is_leaf(graph, node) && (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
 }
 
-/* Whether the node is fetched instead of computed in the current function. */
-static bool is_fetched(const struct Statements *statements, Node node) {
+bool is_fetched(const struct Statements *statements, Node node) {
   return is_leaf(statements->graph, node) || (!statements->preparing && is_of_parameters(statements->graph, node));
 }
 
@@ -90,8 +80,7 @@ static bool is_negation(const struct Statements *statements, Node node) {
   return !is_fetched(statements, node) && coefficient_of(statements->graph, node, &base) == -1.0;
 }
 
-/* How to write a node, with a + (-b) turned to a - b and a * (1 / b) to a / b. uses: how often a node is needed. */
-static struct Expression expression_of(const struct Statements *statements, Node node, const size_t *uses) {
+struct Expression expression_of(const struct Statements *statements, Node node, const size_t *uses) {
   const struct Vertex *vertex = &statements->graph->vertices[node];
   const struct Vertex *vertices = statements->graph->vertices;
   Node left = vertex->left, right = vertex->right;
@@ -112,7 +101,7 @@ static struct Expression expression_of(const struct Statements *statements, Node
   }
 }
 
-static size_t *count_uses(const struct Statements *statements, const Node *targets, size_t count) {
+size_t *count_uses(const struct Statements *statements, const Node *targets, size_t count) {
   const struct Graph *graph = statements->graph;
   bool *needed = allocate(graph->count, sizeof *needed);
   size_t *uses = allocate(graph->count, sizeof *uses);

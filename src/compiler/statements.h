@@ -18,6 +18,15 @@ struct Statements {
   size_t operation_count; /* emitted in the current function */
 };
 
+/* How a node is written: an operator between operands, a function of them, ... */
+enum Form { FORM_SUM, FORM_DIFFERENCE, FORM_PRODUCT, FORM_QUOTIENT, FORM_NEGATION, FORM_POWER, FORM_FUNCTION };
+
+struct Expression {
+  enum Form form;
+  Node left, right;
+  int arity;
+};
+
 struct Statements *statements_create(const struct Graph *graph);
 void statements_free(struct Statements *statements);
 
@@ -32,6 +41,15 @@ void statements_begin(struct Statements *statements, FILE *file);
 
 /* Emits what the targets need and is not computed yet, one `const double` a node. */
 void statements_emit(struct Statements *statements, const Node *targets, size_t count);
+
+/* Whether the node is a leaf, or fetched instead of computed in the current function. */
+bool is_fetched(const struct Statements *statements, Node node);
+
+/* How often the targets need each node; free with free(). */
+size_t *count_uses(const struct Statements *statements, const Node *targets, size_t count);
+
+/* How to write a node, with a + (-b) turned to a - b and a * (1 / b) to a / b, where uses tells of no other need. */
+struct Expression expression_of(const struct Statements *statements, Node node, const size_t *uses);
 
 /* Writes an operand: a local variable, a symbol, a prepared value or a number. */
 void statements_operand(const struct Statements *statements, Node node);

@@ -36,7 +36,7 @@ static void advance_inputs(struct Instance *instance, double end) {
     d[0] += s * (d[n] + s / 2 * d[2 * n]);
     d[n] += s * d[2 * n];
   }
-  instance->solver_is_stale = true;
+  instance->situation->changed = 1;
 }
 
 /* What is wrong with the arguments of fmi2DoStep; fmi2OK where nothing is. */

@@ -126,7 +126,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   for (size_t i = 0; i < nvr; i++)
     instance->input_derivatives[(size_t)(order[i] - 1) * inputs + lagrangian.variables[vr[i]].index] = value[i];
   instance->situation->input_derivatives_set = 1;
-  instance->solver_is_stale = true;
+  instance->situation->changed = 1;
   return fmi2OK;
 }
 

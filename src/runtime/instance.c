@@ -12,7 +12,8 @@ static size_t value_count(void) {
 }
 
 size_t situation_size(void) {
-  return sizeof(struct Situation) + value_count() * sizeof(double);
+  bool saves = lagrangian.solver != NULL && lagrangian.solver->saved_size != NULL;
+  return sizeof(struct Situation) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
 void situation_reset(struct Instance *instance) {
@@ -26,6 +27,7 @@ void situation_reset(struct Instance *instance) {
     if (variable->kind == VARIABLE_INPUT) instance->input[variable->index] = variable->start;
     if (variable->kind == VARIABLE_PARAMETER) instance->parameter[variable->index] = variable->start;
   }
+  instance->situation->changed = 1;
   instance->prepared_is_stale = instance->solver_is_stale = true;
 }
 
@@ -61,6 +63,7 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->input = instance->state + lagrangian.state_count;
   instance->parameter = instance->input + lagrangian.input_count;
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
+  instance->saved = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
   instance->prepared = evaluation;
   instance->work = evaluation + lagrangian.prepared_count;
 }

@@ -11,6 +11,8 @@ enum StepResult {
 };
 
 struct Solver {
+  /* Bytes that the solver keeps in the situation, at instance->saved; NULL for none. */
+  size_t (*saved_size)(void);
   /* The library behind the solver has an allocator of its own; canNotUseMemoryManagementFunctions is then true. */
   bool allocates_by_itself;
   /* Allocates instance->solver_memory. False after logging where that fails. */
@@ -18,12 +20,12 @@ struct Solver {
   void (*destroy)(struct Instance *instance);
   /*
    * Integrates instance->state from situation->time over length > 0, and logs what goes wrong. Where
-   * instance->solver_is_stale, the past of the solver no longer counts.
+   * situation->changed or instance->solver_is_stale, the past of the solver no longer counts.
    */
   enum StepResult (*step)(struct Instance *instance, double length, double *reached);
 };
 
-extern const struct Solver solver_erk, solver_bdf, solver_exact;
+extern const struct Solver solver_erk, solver_bdf, solver_exact, solver_taylor;
 
 /*
  * d state / dt at a time and state that the solver chose, with the inputs of that time; counts the evaluation.

@@ -108,9 +108,10 @@ static enum StepResult step(struct Instance *instance, double length, double *re
   struct Situation *situation = instance->situation;
   double end = situation->time + length;
   if (sundials_tiny_step(instance, end)) return STEP_DONE;
-  if (instance->solver_is_stale && !restart(instance, bdf)) return STEP_FAILED;
+  if ((instance->solver_is_stale || situation->changed) && !restart(instance, bdf)) return STEP_FAILED;
   if (!limit_step(instance, bdf, length)) return STEP_FAILED;
   instance->solver_is_stale = false;
+  situation->changed = 0;
   realtype time = situation->time;
   long before = 0, after = 0;
   if (!sundials_succeeded(instance, CVodeGetNumSteps(bdf->cvode, &before), "CVodeGetNumSteps")) return STEP_FAILED;

@@ -43,7 +43,7 @@ bool sundials_tiny_step(struct Instance *instance, double end) {
   if (!solver_derivatives(instance, time, instance->state, derivative)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) instance->state[i] += step * derivative[i];
   instance->situation->statistics[STATISTIC_STEPS]++;
-  instance->solver_is_stale = true;
+  instance->situation->changed = 1;
   return true;
 }
 

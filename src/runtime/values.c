@@ -88,7 +88,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
                                                       : &instance->parameter[variable->index];
   if (*target == value) return;
   *target = value;
-  instance->solver_is_stale = true;
+  instance->situation->changed = 1;
   if (variable->kind == VARIABLE_PARAMETER) instance->prepared_is_stale = true;
 }
 

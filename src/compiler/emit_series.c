@@ -1,0 +1,380 @@
+#include "emit_series.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "emit_accelerations.h"
+#include "memory.h"
+
+/* Systems up to this many recurrences an order get code of their own for each order. */
+enum { UNROLLED_RECURRENCES = 40 };
+
+struct SeriesWriter {
+  struct Emitter *emitter;
+  const struct SeriesPlan *plan;
+  size_t *uses;
+  size_t *row; /* for each node: 1 + its row of the workspace, 0 for none */
+  bool *done;  /* for each node: written in the current order */
+  Node *nodes; /* those with a row, ascending */
+  size_t node_count, acceleration_row, recurrences;
+  char *order_text; /* the statements for coefficient k */
+  bool is_unrolled;
+};
+
+/* Whether all coefficients but the first are 0. */
+static bool is_constant(const struct SeriesWriter *writer, Node node) {
+  return (writer->emitter->graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+}
+
+/* Nodes that change in time and are computed: each gets a row. */
+static void assign_rows(struct SeriesWriter *writer) {
+  const struct Statements *statements = writer->emitter->statements;
+  const struct SeriesPlan *plan = writer->plan;
+  size_t size = writer->emitter->graph->count;
+  bool *needed = allocate(size, sizeof *needed);
+  for (size_t i = 0; i < plan->count; i++) needed[plan->targets[i]] = true;
+  for (Node node = (Node)size; node-- > 0;) {
+    if (!needed[node] || is_fetched(statements, node)) continue;
+    struct Expression expression = expression_of(statements, node, writer->uses);
+    needed[expression.left] = true;
+    if (expression.arity == 2) needed[expression.right] = true;
+  }
+  for (Node node = 0; node < size; node++) {
+    if (!needed[node] || is_fetched(statements, node)) continue;
+    writer->nodes[writer->node_count] = node;
+    writer->row[node] = ++writer->node_count;
+  }
+  writer->acceleration_row = writer->node_count;
+  free(needed);
+}
+
+static void write_row(const struct SeriesWriter *writer, Node node) {
+  const struct Emitter *emitter = writer->emitter;
+  FILE *file = emitter->file;
+  if (writer->row[node] > 0) {
+    fprintf(file, "w[%zu]", writer->row[node] - 1);
+    return;
+  }
+  const struct Symbol *symbol = graph_symbol_of(emitter->graph, node);
+  if (symbol->kind == TIME) fputs("time", file);
+  else if (symbol->kind == INPUT) fprintf(file, "input[%d]", symbol->index);
+  else if (symbol->kind == COORDINATE) fprintf(file, "x[%d]", symbol->index);
+  else if (symbol->kind == VELOCITY) fprintf(file, "x[%zu]", emitter->n + (size_t)symbol->index);
+  else fprintf(file, "w[%zu]", writer->acceleration_row + (size_t)symbol->index);
+}
+
+/* The coefficient k >= 1 of an operand. */
+static void write_coefficient(const struct SeriesWriter *writer, Node node) {
+  if (is_constant(writer, node)) {
+    fputs("0.0", writer->emitter->file);
+    return;
+  }
+  write_row(writer, node);
+  fputs("[k]", writer->emitter->file);
+}
+
+/* name(k, rows...) with an optional further argument before the rows. */
+static void write_recurrence(struct SeriesWriter *writer, const char *name, Node further, const Node *rows, int count) {
+  FILE *file = writer->emitter->file;
+  fprintf(file, "series_%s(k, ", name);
+  if (further != ZERO) {
+    statements_operand(writer->emitter->statements, further);
+    fputs(", ", file);
+  }
+  for (int i = 0; i < count; i++) {
+    fputs(i > 0 ? ", " : "", file);
+    write_row(writer, rows[i]);
+  }
+  fputs(")", file);
+  writer->recurrences++;
+}
+
+static void write_product(struct SeriesWriter *writer, Node left, Node right) {
+  FILE *file = writer->emitter->file;
+  if (is_constant(writer, left) || is_constant(writer, right)) {
+    Node factor = is_constant(writer, left) ? left : right;
+    statements_operand(writer->emitter->statements, factor);
+    fputs(" * ", file);
+    write_coefficient(writer, factor == left ? right : left);
+  } else write_recurrence(writer, "product", ZERO, (const Node[]){left, right}, 2);
+}
+
+/* name(k, a_k, rows...): recurrences whose first argument is a coefficient; sign is "-" or "". */
+static void write_ratio(struct SeriesWriter *writer, const char *name, const char *sign, Node top, Node below,
+                        Node node) {
+  FILE *file = writer->emitter->file;
+  fprintf(file, "series_%s(k, %s", name, sign);
+  write_coefficient(writer, top);
+  fputs(", ", file);
+  write_row(writer, below);
+  fputs(", ", file);
+  write_row(writer, node);
+  fputs(")", file);
+  writer->recurrences++;
+}
+
+static void write_quotient(struct SeriesWriter *writer, Node left, Node right, Node node) {
+  if (!is_constant(writer, right)) {
+    write_ratio(writer, "quotient", "", left, right, node);
+    return;
+  }
+  write_coefficient(writer, left);
+  fputs(" / ", writer->emitter->file);
+  statements_operand(writer->emitter->statements, right);
+}
+
+static void write_power(struct SeriesWriter *writer, Node base, Node exponent, Node node) {
+  const struct Graph *graph = writer->emitter->graph;
+  Node auxiliary = writer->plan->auxiliary[node];
+  double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : 0.5 / 7; /* any broken number */
+  if (n == 2.0) write_recurrence(writer, "square", ZERO, &base, 1);
+  else if (n == -1.0) write_ratio(writer, "quotient", "", ONE, base, node);
+  else if (n == 0.5) write_recurrence(writer, "root", ZERO, (const Node[]){base, node}, 2);
+  else if (!is_constant(writer, exponent))
+    write_recurrence(writer, "integral", ZERO, (const Node[]){auxiliary, node}, 2);
+  else if (auxiliary == ZERO) write_recurrence(writer, "power", exponent, (const Node[]){base, node}, 2);
+  else if (graph_value(graph, graph->vertices[auxiliary].right) * 2.0 == n)
+    write_recurrence(writer, "square", ZERO, &auxiliary, 1);
+  else write_product(writer, auxiliary, base);
+}
+
+/* y' = x' a, written with the series of x' where x is a coordinate. */
+static void write_integral(struct SeriesWriter *writer, const char *sign, Node operand, Node factor) {
+  const struct Emitter *emitter = writer->emitter;
+  const struct Vertex *vertex = &emitter->graph->vertices[operand];
+  fputs(sign, emitter->file);
+  bool is_coordinate = vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE;
+  if (is_coordinate)
+    operand = emitter->program->model->velocities.items[graph_symbol_of(emitter->graph, operand)->index].node;
+  write_recurrence(writer, is_coordinate ? "integral_of" : "integral", ZERO, (const Node[]){operand, factor}, 2);
+}
+
+static void write_function(struct SeriesWriter *writer, Node node) {
+  const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
+  Node operand = vertex->left, auxiliary = writer->plan->auxiliary[node];
+  switch (vertex->operation) {
+  case COSINE: write_integral(writer, "-", operand, auxiliary); return;
+  case SINE:
+  case SINH:
+  case COSH:
+  case TANGENT:
+  case TANH: write_integral(writer, "", operand, auxiliary); return;
+  case EXPONENTIAL: write_integral(writer, "", operand, node); return;
+  case LOGARITHM: write_ratio(writer, "ratio_integral", "", operand, operand, node); return;
+  case ARCCOSINE: write_ratio(writer, "ratio_integral", "-", operand, auxiliary, node); return;
+  case ATAN2:
+    write_recurrence(writer, "angle", ZERO, (const Node[]){operand, vertex->right, auxiliary, node}, 4);
+    return;
+  default: write_ratio(writer, "ratio_integral", "", operand, auxiliary, node);
+  }
+}
+
+static void write_value(struct SeriesWriter *writer, Node node) {
+  struct Expression expression = expression_of(writer->emitter->statements, node, writer->uses);
+  FILE *file = writer->emitter->file;
+  Node left = expression.left, right = expression.right;
+  switch (expression.form) {
+  case FORM_NEGATION:
+    fputs("-", file);
+    write_coefficient(writer, left);
+    return;
+  case FORM_SUM:
+  case FORM_DIFFERENCE:
+    if (!is_constant(writer, left)) write_coefficient(writer, left);
+    if (expression.form == FORM_DIFFERENCE) fputs(is_constant(writer, left) ? "-" : " - ", file);
+    else if (!is_constant(writer, left) && !is_constant(writer, right)) fputs(" + ", file);
+    if (!is_constant(writer, right)) write_coefficient(writer, right);
+    else if (expression.form == FORM_DIFFERENCE) fputs("0.0", file);
+    return;
+  case FORM_PRODUCT: write_product(writer, left, right); return;
+  case FORM_QUOTIENT: write_quotient(writer, left, right, node); return;
+  case FORM_POWER: write_power(writer, left, right, node); return;
+  case FORM_FUNCTION: write_function(writer, node); return;
+  }
+}
+
+static void write_next(struct SeriesWriter *writer, Node node) {
+  FILE *file = writer->emitter->file;
+  if (writer->done[node]) return;
+  writer->done[node] = true;
+  fputs("  ", file);
+  write_row(writer, node);
+  fputs("[k] = ", file);
+  write_value(writer, node);
+  fputs(";\n", file);
+  /* The sine and the cosine of one argument need each other, one coefficient behind. */
+  enum Operation operation = writer->emitter->graph->vertices[node].operation;
+  if (operation == SINE || operation == COSINE || operation == SINH || operation == COSH)
+    write_next(writer, writer->plan->auxiliary[node]);
+}
+
+/* M_0 a_k = b_k - sum over l of M_l a_(k-l) in each large block. */
+static void write_block_order(struct SeriesWriter *writer, size_t block) {
+  struct Emitter *emitter = writer->emitter;
+  const struct Equations *equations = emitter->equations;
+  size_t n = emitter->n, count = 0, *place = allocate(n, sizeof *place);
+  for (size_t i = 0; i < n; i++)
+    if (equations->block[i] == block) place[i] = count++;
+  fprintf(emitter->file, "    double y%zu[%zu];\n", block, count);
+  for (size_t i = 0; i < n; i++) {
+    if (equations->block[i] != block) continue;
+    fprintf(emitter->file, "    y%zu[%zu] = ", block, place[i]);
+    write_coefficient(writer, equations->right_side[i]);
+    for (size_t j = 0; j < n; j++) {
+      Node mass = equations->mass[(i > j ? i : j) * n + (i > j ? j : i)];
+      if (equations->block[j] != block || is_constant(writer, mass)) continue;
+      fputs(" - series_rest(k, ", emitter->file);
+      write_row(writer, mass);
+      fprintf(emitter->file, ", w[%zu])", writer->acceleration_row + j);
+      writer->recurrences++;
+    }
+    fputs(";\n", emitter->file);
+  }
+  fprintf(emitter->file, "    ldlt_solve(%zu, mass%zu, y%zu);\n", count, block, block);
+  for (size_t i = 0; i < n; i++)
+    if (equations->block[i] == block)
+      fprintf(emitter->file, "    w[%zu][k] = y%zu[%zu];\n", writer->acceleration_row + i, block, place[i]);
+  free(place);
+}
+
+/* The coefficient k + 1 of the state from coefficient k of its derivative. */
+static void write_state_order(struct SeriesWriter *writer) {
+  struct Emitter *emitter = writer->emitter;
+  const struct Equations *equations = emitter->equations;
+  size_t n = emitter->n;
+  for (size_t i = 0; i < n; i++) {
+    fprintf(emitter->file, "    x[%zu][k + 1] = x[%zu][k] * (1.0 / (k + 1));\n    x[%zu][k + 1] = ", i, n + i, n + i);
+    write_coefficient(writer, equations->acceleration[i]);
+    fputs(" * (1.0 / (k + 1));\n", emitter->file);
+  }
+  if (emitter->states == 2 * n) return;
+  fprintf(emitter->file, "    x[%zu][k + 1] = ", 2 * n);
+  write_coefficient(writer, equations->power);
+  fputs(" * (1.0 / (k + 1));\n", emitter->file);
+}
+
+static void write_order(struct SeriesWriter *writer) {
+  const struct Equations *equations = writer->emitter->equations;
+  for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
+  for (size_t block = 0; block < equations->block_count; block++)
+    if (!equations->explicit_form && !equations->unrolled[block]) write_block_order(writer, block);
+  write_state_order(writer);
+}
+
+/* The text of one order, and how many recurrences it has. */
+static char *order_text(struct SeriesWriter *writer) {
+  FILE *file = writer->emitter->file;
+  char *text = NULL;
+  size_t length = 0;
+  writer->emitter->file = writer->emitter->statements->file = open_memstream(&text, &length);
+  if (writer->emitter->file == NULL) {
+    fputs("lagc: out of memory\n", stderr);
+    exit(1);
+  }
+  write_order(writer);
+  fclose(writer->emitter->file);
+  writer->emitter->file = writer->emitter->statements->file = file;
+  return text;
+}
+
+/* What series_next() may need beside k, x and w: its type, its name, and what series() passes for it. */
+static const struct {
+  const char *use, *declaration, *argument;
+} further_arguments[] = {
+    {"p[", "const double *p", "point->parameter"},
+    {"c[", "const double *c", "point->prepared"},
+    {"time", "const double *time", "time"},
+    {"input[", "const Series *restrict input", "input"},
+};
+
+/* The declarations or the arguments that the text of an order uses. */
+static void write_further(const struct SeriesWriter *writer, bool declare) {
+  for (size_t i = 0; i < sizeof further_arguments / sizeof *further_arguments; i++)
+    if (strstr(writer->order_text, further_arguments[i].use) != NULL)
+      fprintf(writer->emitter->file, "%s, ",
+              declare ? further_arguments[i].declaration : further_arguments[i].argument);
+}
+
+static void write_next_function(const struct SeriesWriter *writer) {
+  FILE *file = writer->emitter->file;
+  fprintf(file, "/* Coefficient k of all series, k + 1 of the state; %zu recurrences */\n", writer->recurrences);
+  fputs("static SERIES_INLINE void series_next(int k, ", file);
+  write_further(writer, true);
+  fprintf(file, "Series *restrict x, Series *restrict w) {\n%s}\n\n", writer->order_text);
+}
+
+/* The orders from 1 on; in small systems each is a call with a constant order, which the compiler unrolls. */
+static void write_orders(const struct SeriesWriter *writer) {
+  FILE *file = writer->emitter->file;
+  fputs("  for (int k = 1; k < order; k++) {\n", file);
+  if (writer->is_unrolled) {
+    fputs("    switch (k) {\n", file);
+    for (int k = 1; k + 1 < SERIES_LENGTH; k++) {
+      fprintf(file, "    case %d: series_next(%d, ", k, k);
+      write_further(writer, false);
+      fputs("x, w); break;\n", file);
+    }
+    fputs("    default: break;\n    }\n", file);
+  } else fputs(writer->order_text, file);
+  fputs("  }\n", file);
+}
+
+/* Coefficient 0 of all series and 1 of the state. */
+static void write_start(struct SeriesWriter *writer) {
+  struct Emitter *emitter = writer->emitter;
+  size_t n = emitter->n;
+  fprintf(emitter->file, "  double a[%zu];\n", n);
+  statements_emit(emitter->statements, writer->plan->targets, writer->plan->count);
+  emit_accelerations(emitter, "a");
+  for (size_t i = 0; i < writer->node_count; i++) {
+    fprintf(emitter->file, "  w[%zu][0] = ", i);
+    statements_operand(emitter->statements, writer->nodes[i]);
+    fputs(";\n", emitter->file);
+  }
+  for (size_t i = 0; i < n; i++) {
+    fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n  x[%zu][0] = point->state[%zu];\n", i, i, n + i, n + i);
+    fprintf(emitter->file, "  x[%zu][1] = point->state[%zu];\n  x[%zu][1] = a[%zu];\n", i, n + i, n + i, i);
+    if (is_looped(emitter->equations, i))
+      fprintf(emitter->file, "  w[%zu][0] = a[%zu];\n", writer->acceleration_row + i, i);
+  }
+  if (emitter->states == 2 * n) return;
+  fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n", 2 * n, 2 * n);
+  fprintf(emitter->file, "  x[%zu][1] = ", 2 * n);
+  statements_operand(emitter->statements, emitter->equations->power);
+  fputs(";\n", emitter->file);
+}
+
+static void series_body(struct Emitter *emitter, size_t unused) {
+  struct SeriesWriter *writer = emitter->series;
+  (void)unused;
+  if (strstr(writer->order_text, "time") != NULL) fputs("  const Series time = {point->time, 1.0};\n", emitter->file);
+  write_start(writer);
+  write_orders(writer);
+  fputs("  return 0;\n", emitter->file);
+}
+
+size_t emit_series(struct Emitter *emitter) {
+  size_t size = emitter->graph->count;
+  struct SeriesWriter writer = {.emitter = emitter,
+                                .plan = emitter->program->series,
+                                .row = allocate(size, sizeof(size_t)),
+                                .done = allocate(size, sizeof(bool)),
+                                .nodes = allocate(size, sizeof(Node))};
+  writer.uses = count_uses(emitter->statements, writer.plan->targets, writer.plan->count);
+  assign_rows(&writer);
+  writer.order_text = order_text(&writer);
+  writer.is_unrolled = !has_loops(emitter->equations) && writer.recurrences <= UNROLLED_RECURRENCES;
+  if (writer.is_unrolled) write_next_function(&writer);
+  emitter->series = &writer;
+  emit_function(emitter, "Taylor coefficients of the state up to the order",
+                "int series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
+                "Series *restrict w)",
+                series_body, 0);
+  size_t rows = writer.node_count + (has_loops(emitter->equations) ? emitter->n : 0);
+  free(writer.order_text);
+  free(writer.uses);
+  free(writer.row);
+  free(writer.done);
+  free(writer.nodes);
+  return rows;
+}

@@ -1,0 +1,10 @@
+/* C for the Taylor coefficients of the motion, by the recurrences of series.h. */
+#ifndef EMIT_SERIES_H
+#define EMIT_SERIES_H
+
+#include "emitter.h"
+
+/* Writes the function series(); returns how many rows of workspace it needs. */
+size_t emit_series(struct Emitter *emitter);
+
+#endif

@@ -1,0 +1,137 @@
+#include "series.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+#include "simplify.h"
+
+static void append(struct SeriesPlan *plan, Node node) {
+  plan->targets = reallocate(plan->targets, plan->count + 1, sizeof *plan->targets);
+  plan->targets[plan->count++] = node;
+}
+
+static Node square(struct Graph *graph, Node node) {
+  return graph_node(graph, POWER, node, graph_constant(graph, 2.0));
+}
+
+/* sign + factor * node^2 */
+static Node square_plus(struct Graph *graph, double sign, double factor, Node node) {
+  return add(graph, graph_constant(graph, sign), scale(graph, factor, square(graph, node)));
+}
+
+static bool is_constant_in_time(const struct Graph *graph, Node node) {
+  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+}
+
+/* Whole powers come from smaller ones, so that a base of 0 is no pole; variable exponents by exp and log. */
+static Node auxiliary_of_power(struct Graph *graph, const struct Vertex *vertex) {
+  if (!is_constant_in_time(graph, vertex->right))
+    return multiply(graph, vertex->right, function(graph, LOGARITHM, vertex->left, ZERO));
+  double exponent = graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
+  if (exponent != floor(exponent) || exponent < 3.0) return ZERO;
+  double lower = fmod(exponent, 2.0) == 0.0 ? exponent / 2.0 : exponent - 1.0;
+  return graph_node(graph, POWER, vertex->left, graph_constant(graph, lower));
+}
+
+/* With y for the node and x for its operand: y' = x' a, or x' / a for the inverse functions, and a is returned. */
+static Node auxiliary_of(struct Graph *graph, Node node) {
+  const struct Vertex vertex = graph->vertices[node];
+  switch (vertex.operation) {
+  case SINE: return graph_node(graph, COSINE, vertex.left, ZERO);
+  case COSINE: return graph_node(graph, SINE, vertex.left, ZERO);
+  case SINH: return graph_node(graph, COSH, vertex.left, ZERO);
+  case COSH: return graph_node(graph, SINH, vertex.left, ZERO);
+  case TANGENT: return square_plus(graph, 1.0, 1.0, node);
+  case TANH: return square_plus(graph, 1.0, -1.0, node);
+  case ARCSINE:
+  case ARCCOSINE: return power_number(graph, square_plus(graph, 1.0, -1.0, vertex.left), 0.5);
+  case ARCTANGENT: return square_plus(graph, 1.0, 1.0, vertex.left);
+  case ARSINH: return power_number(graph, square_plus(graph, 1.0, 1.0, vertex.left), 0.5);
+  case ARCOSH: return power_number(graph, square_plus(graph, -1.0, 1.0, vertex.left), 0.5);
+  case ARTANH: return square_plus(graph, 1.0, -1.0, vertex.left);
+  case ATAN2: return add(graph, square(graph, vertex.left), square(graph, vertex.right));
+  case POWER: return auxiliary_of_power(graph, &vertex);
+  default: return ZERO;
+  }
+}
+
+static bool has_kink(enum Operation operation) {
+  return operation == MINIMUM || operation == MAXIMUM || operation == ABSOLUTE || operation == SIGN ||
+         operation == LESS;
+}
+
+const char *kink_of(const struct Graph *graph, const struct Equations *equations) {
+  bool *needed = allocate(graph->count, sizeof *needed);
+  const char *kink = NULL;
+  graph_mark(graph, equations->residual, equations->count, needed);
+  for (Node node = 0; node < graph->count; node++)
+    if (needed[node] && has_kink(graph->vertices[node].operation) && !is_constant_in_time(graph, node))
+      kink = operation_name(graph->vertices[node].operation);
+  free(needed);
+  return kink;
+}
+
+static void append_equations(struct SeriesPlan *plan, const struct Equations *equations) {
+  size_t n = equations->count;
+  for (size_t i = 0; i < n; i++) {
+    if (equations->explicit_form || equations->unrolled[equations->block[i]]) {
+      append(plan, equations->acceleration[i]);
+      continue;
+    }
+    append(plan, equations->right_side[i]);
+    for (size_t j = 0; j <= i; j++)
+      if (equations->block[j] == equations->block[i]) append(plan, equations->mass[i * n + j]);
+  }
+}
+
+/* Adds the auxiliary nodes of all nodes that the targets need, and theirs, until there are no new ones. */
+static void close(struct SeriesPlan *plan, struct Graph *graph, const char **kink) {
+  bool *visited = NULL;
+  size_t known = 0;
+  for (bool grown = true; grown && *kink == NULL && !graph->overflow;) {
+    size_t size = graph->count;
+    bool *needed = allocate(size, sizeof *needed);
+    visited = reallocate(visited, size, sizeof *visited);
+    for (; known < size; known++) visited[known] = false;
+    graph_mark(graph, plan->targets, plan->count, needed);
+    grown = false;
+    for (Node node = 0; node < size; node++) {
+      if (!needed[node] || visited[node] || is_constant_in_time(graph, node)) continue;
+      visited[node] = grown = true;
+      if (has_kink(graph->vertices[node].operation)) *kink = operation_name(graph->vertices[node].operation);
+      Node auxiliary = auxiliary_of(graph, node);
+      if (auxiliary != ZERO) append(plan, auxiliary);
+    }
+    free(needed);
+  }
+  free(visited);
+}
+
+struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equations *equations, bool with_power,
+                                      const char **kink) {
+  struct SeriesPlan *plan = allocate(1, sizeof *plan);
+  *kink = NULL;
+  append_equations(plan, equations);
+  if (with_power) append(plan, equations->power);
+  close(plan, graph, kink);
+  if (*kink != NULL) {
+    series_plan_free(plan);
+    return NULL;
+  }
+  size_t size = graph->count;
+  bool *needed = allocate(size, sizeof *needed);
+  graph_mark(graph, plan->targets, plan->count, needed);
+  plan->auxiliary = allocate(size, sizeof *plan->auxiliary);
+  for (Node node = 0; node < size; node++)
+    if (needed[node] && !is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
+  free(needed);
+  return plan;
+}
+
+void series_plan_free(struct SeriesPlan *plan) {
+  if (plan == NULL) return;
+  free(plan->targets);
+  free(plan->auxiliary);
+  free(plan);
+}

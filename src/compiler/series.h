@@ -1,0 +1,25 @@
+/* What Taylor series of the motion need beside the equations themselves. */
+#ifndef SERIES_PLAN_H
+#define SERIES_PLAN_H
+
+#include "lagrange.h"
+
+/*
+ * The nodes whose series are computed: accelerations (or M and the right side of large blocks), the power of the
+ * forces where its work is asked for, and the auxiliary nodes that recurrences rest on, such as cos(x) for sin(x).
+ */
+struct SeriesPlan {
+  Node *targets;
+  size_t count;
+  Node *auxiliary; /* for each node of the graph, the node that its recurrence needs beside its operands; ZERO: none */
+};
+
+/* The name of a function with a kink in the equations of motion, such as "min"; NULL where there is none. */
+const char *kink_of(const struct Graph *graph, const struct Equations *equations);
+
+/* NULL where a function with a kink, which *kink then names, has no Taylor series. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equations *equations, bool with_power,
+                                      const char **kink);
+void series_plan_free(struct SeriesPlan *plan);
+
+#endif

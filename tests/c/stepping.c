@@ -1,0 +1,57 @@
+/*
+ * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS [REFERENCE=VALUE ...]. Prints the
+ * seconds of the fastest repeat, then the first OUTPUTS variables at the end.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "fmu_library.h"
+
+static double seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int prepare(const struct FmuLibrary *fmu, fmi2Component c, double tolerance, int count, char **starts) {
+  if (fmu->fmi2Reset(c) != fmi2OK || fmu->fmi2SetupExperiment(c, fmi2True, tolerance, 0.0, fmi2False, 0.0) != fmi2OK)
+    return 0;
+  for (int i = 0; i < count; i++) {
+    char *rest;
+    fmi2ValueReference reference = (fmi2ValueReference)strtoul(starts[i], &rest, 10);
+    double value = strtod(rest + 1, NULL);
+    if (fmu->fmi2SetReal(c, &reference, 1, &value) != fmi2OK) return 0;
+  }
+  return fmu->fmi2EnterInitializationMode(c) == fmi2OK && fmu->fmi2ExitInitializationMode(c) == fmi2OK;
+}
+
+int main(int count, char **words) {
+  if (count < 8) return 2;
+  struct FmuLibrary fmu = fmu_library_open(words[1]);
+  const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
+  double tolerance = strtod(words[3], NULL), end = strtod(words[4], NULL), best = 1e300;
+  long steps = strtol(words[5], NULL, 10), repeats = strtol(words[6], NULL, 10), outputs = strtol(words[7], NULL, 10);
+  fmi2Component c = fmu.fmi2Instantiate("bench", fmi2CoSimulation, words[2], NULL, &callbacks, fmi2False, fmi2False);
+  if (c == NULL) return 1;
+  for (long i = 0; i < repeats; i++) {
+    if (!prepare(&fmu, c, tolerance, count - 8, words + 8)) return 1;
+    double start = seconds();
+    for (long k = 0; k < steps; k++) {
+      double from = end * (double)k / (double)steps, to = end * (double)(k + 1) / (double)steps;
+      if (fmu.fmi2DoStep(c, from, to - from, fmi2True) != fmi2OK) return 1;
+    }
+    double taken = seconds() - start;
+    if (taken < best) best = taken;
+  }
+  printf("%.9g", best);
+  for (fmi2ValueReference reference = 0; reference < (fmi2ValueReference)outputs; reference++) {
+    double value;
+    if (fmu.fmi2GetReal(c, &reference, 1, &value) != fmi2OK) return 1;
+    printf(" %.17g", value);
+  }
+  putchar('\n');
+  fmu.fmi2FreeInstance(c);
+  fmu_library_close(&fmu);
+  return 0;
+}
