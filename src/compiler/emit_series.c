@@ -13,10 +13,12 @@ struct SeriesWriter {
   struct Emitter *emitter;
   const struct SeriesPlan *plan;
   size_t *uses;
-  size_t *row; /* for each node: 1 + its row of the workspace, 0 for none */
-  bool *done;  /* for each node: written in the current order */
-  Node *nodes; /* those with a row, ascending */
-  size_t node_count, acceleration_row, recurrences;
+  size_t *row;     /* for each node: 1 + its row of the workspace, 0 for none */
+  bool *done;      /* for each node: written in the current order */
+  Node *nodes;     /* those with a row, ascending */
+  size_t *inverse; /* for each node: 1 + the row of the inverse of its first coefficient, 0 for none */
+  size_t *rate;    /* for each node: 1 + the row of its time derivative, 0 for none */
+  size_t node_count, row_count, acceleration_row, recurrences;
   char *order_text; /* the statements for coefficient k */
   bool is_unrolled;
 };
@@ -45,6 +47,7 @@ static void assign_rows(struct SeriesWriter *writer) {
     writer->row[node] = ++writer->node_count;
   }
   writer->acceleration_row = writer->node_count;
+  writer->row_count = writer->node_count + (has_loops(writer->emitter->equations) ? writer->emitter->n : 0);
   free(needed);
 }
 
@@ -99,11 +102,10 @@ static void write_product(struct SeriesWriter *writer, Node left, Node right) {
   } else write_recurrence(writer, "product", ZERO, (const Node[]){left, right}, 2);
 }
 
-/* name(k, a_k, rows...): recurrences whose first argument is a coefficient; sign is "-" or "". */
-static void write_ratio(struct SeriesWriter *writer, const char *name, const char *sign, Node top, Node below,
-                        Node node) {
+/* c' = a' / b for the inverse functions, where a_k stands first; sign is "-" or "". */
+static void write_ratio_integral(struct SeriesWriter *writer, const char *sign, Node top, Node below, Node node) {
   FILE *file = writer->emitter->file;
-  fprintf(file, "series_%s(k, %s", name, sign);
+  fprintf(file, "series_ratio_integral(k, %s", sign);
   write_coefficient(writer, top);
   fputs(", ", file);
   write_row(writer, below);
@@ -113,9 +115,23 @@ static void write_ratio(struct SeriesWriter *writer, const char *name, const cha
   writer->recurrences++;
 }
 
+/* top / below; the inverse of below's first coefficient has a place of its own. */
+static void write_series_quotient(struct SeriesWriter *writer, Node top, Node below, Node node) {
+  FILE *file = writer->emitter->file;
+  if (writer->inverse[below] == 0) writer->inverse[below] = ++writer->row_count;
+  fputs("series_quotient(k, ", file);
+  write_coefficient(writer, top);
+  fprintf(file, ", w[%zu][0], ", writer->inverse[below] - 1);
+  write_row(writer, below);
+  fputs(", ", file);
+  write_row(writer, node);
+  fputs(")", file);
+  writer->recurrences++;
+}
+
 static void write_quotient(struct SeriesWriter *writer, Node left, Node right, Node node) {
   if (!is_constant(writer, right)) {
-    write_ratio(writer, "quotient", "", left, right, node);
+    write_series_quotient(writer, left, right, node);
     return;
   }
   write_coefficient(writer, left);
@@ -123,30 +139,67 @@ static void write_quotient(struct SeriesWriter *writer, Node left, Node right, N
   statements_operand(writer->emitter->statements, right);
 }
 
+/* The row of the time derivative of an operand: that of a velocity, or one of the workspace. */
+static void write_rate_row(struct SeriesWriter *writer, Node operand) {
+  const struct Emitter *emitter = writer->emitter;
+  const struct Vertex *vertex = &emitter->graph->vertices[operand];
+  bool is_coordinate = vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE;
+  if (is_coordinate)
+    write_row(writer, emitter->program->model->velocities.items[graph_symbol_of(emitter->graph, operand)->index].node);
+  else fprintf(emitter->file, "w[%zu]", writer->rate[operand] - 1);
+}
+
+/* Coefficient k - 1 of the time derivative, once for all functions of the operand. */
+static void write_rate(struct SeriesWriter *writer, Node operand) {
+  const struct Emitter *emitter = writer->emitter;
+  const struct Vertex *vertex = &emitter->graph->vertices[operand];
+  if (vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE) return;
+  if (writer->rate[operand] > 0) return;
+  writer->rate[operand] = ++writer->row_count;
+  fprintf(emitter->file, "  w[%zu][k - 1] = k * ", writer->rate[operand] - 1);
+  write_coefficient(writer, operand);
+  fputs(";\n", emitter->file);
+}
+
+/* y' = x' a */
+static void write_integral(struct SeriesWriter *writer, const char *sign, Node operand, Node factor) {
+  fprintf(writer->emitter->file, "%sseries_integral(k, ", sign);
+  write_rate_row(writer, operand);
+  fputs(", ", writer->emitter->file);
+  write_row(writer, factor);
+  fputs(")", writer->emitter->file);
+  writer->recurrences++;
+}
+
+/* The operand of a function that is written with write_integral(); ZERO for others. */
+static Node integrated_operand(const struct SeriesWriter *writer, Node node) {
+  const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
+  switch (vertex->operation) {
+  case SINE:
+  case COSINE:
+  case SINH:
+  case COSH:
+  case TANGENT:
+  case TANH:
+  case EXPONENTIAL: return vertex->left;
+  case POWER: return is_constant(writer, vertex->right) ? ZERO : writer->plan->auxiliary[node];
+  default: return ZERO;
+  }
+}
+
 static void write_power(struct SeriesWriter *writer, Node base, Node exponent, Node node) {
   const struct Graph *graph = writer->emitter->graph;
   Node auxiliary = writer->plan->auxiliary[node];
   double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : 0.5 / 7; /* any broken number */
   if (n == 2.0) write_recurrence(writer, "square", ZERO, &base, 1);
-  else if (n == -1.0) write_ratio(writer, "quotient", "", ONE, base, node);
+  else if (n == -1.0) write_series_quotient(writer, ONE, base, node);
   else if (n == 0.5) write_recurrence(writer, "root", ZERO, (const Node[]){base, node}, 2);
-  else if (!is_constant(writer, exponent))
-    write_recurrence(writer, "integral", ZERO, (const Node[]){auxiliary, node}, 2);
+  else if (!is_constant(writer, exponent)) write_integral(writer, "", auxiliary, node);
   else if (auxiliary == ZERO) write_recurrence(writer, "power", exponent, (const Node[]){base, node}, 2);
+  else if (n < 0.0) write_series_quotient(writer, ONE, auxiliary, node);
   else if (graph_value(graph, graph->vertices[auxiliary].right) * 2.0 == n)
     write_recurrence(writer, "square", ZERO, &auxiliary, 1);
   else write_product(writer, auxiliary, base);
-}
-
-/* y' = x' a, written with the series of x' where x is a coordinate. */
-static void write_integral(struct SeriesWriter *writer, const char *sign, Node operand, Node factor) {
-  const struct Emitter *emitter = writer->emitter;
-  const struct Vertex *vertex = &emitter->graph->vertices[operand];
-  fputs(sign, emitter->file);
-  bool is_coordinate = vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE;
-  if (is_coordinate)
-    operand = emitter->program->model->velocities.items[graph_symbol_of(emitter->graph, operand)->index].node;
-  write_recurrence(writer, is_coordinate ? "integral_of" : "integral", ZERO, (const Node[]){operand, factor}, 2);
 }
 
 static void write_function(struct SeriesWriter *writer, Node node) {
@@ -160,12 +213,12 @@ static void write_function(struct SeriesWriter *writer, Node node) {
   case TANGENT:
   case TANH: write_integral(writer, "", operand, auxiliary); return;
   case EXPONENTIAL: write_integral(writer, "", operand, node); return;
-  case LOGARITHM: write_ratio(writer, "ratio_integral", "", operand, operand, node); return;
-  case ARCCOSINE: write_ratio(writer, "ratio_integral", "-", operand, auxiliary, node); return;
+  case LOGARITHM: write_ratio_integral(writer, "", operand, operand, node); return;
+  case ARCCOSINE: write_ratio_integral(writer, "-", operand, auxiliary, node); return;
   case ATAN2:
     write_recurrence(writer, "angle", ZERO, (const Node[]){operand, vertex->right, auxiliary, node}, 4);
     return;
-  default: write_ratio(writer, "ratio_integral", "", operand, auxiliary, node);
+  default: write_ratio_integral(writer, "", operand, auxiliary, node);
   }
 }
 
@@ -193,10 +246,24 @@ static void write_value(struct SeriesWriter *writer, Node node) {
   }
 }
 
+static void write_next(struct SeriesWriter *writer, Node node);
+
+/* Auxiliary nodes may be younger than those that need them, so that numeric order alone does not do. */
+static void write_needed(struct SeriesWriter *writer, Node node) {
+  const struct Graph *graph = writer->emitter->graph;
+  struct Expression expression = expression_of(writer->emitter->statements, node, writer->uses);
+  write_next(writer, expression.left);
+  if (expression.arity == 2) write_next(writer, expression.right);
+  if (graph->vertices[node].operation == POWER) write_next(writer, writer->plan->auxiliary[node]);
+}
+
 static void write_next(struct SeriesWriter *writer, Node node) {
   FILE *file = writer->emitter->file;
-  if (writer->done[node]) return;
+  if (writer->row[node] == 0 || writer->done[node]) return;
   writer->done[node] = true;
+  write_needed(writer, node);
+  Node operand = integrated_operand(writer, node);
+  if (operand != ZERO) write_rate(writer, operand);
   fputs("  ", file);
   write_row(writer, node);
   fputs("[k] = ", file);
@@ -306,17 +373,27 @@ static void write_next_function(const struct SeriesWriter *writer) {
 /* The orders from 1 on; in small systems each is a call with a constant order, which the compiler unrolls. */
 static void write_orders(const struct SeriesWriter *writer) {
   FILE *file = writer->emitter->file;
-  fputs("  for (int k = 1; k < order; k++) {\n", file);
-  if (writer->is_unrolled) {
-    fputs("    switch (k) {\n", file);
-    for (int k = 1; k + 1 < SERIES_LENGTH; k++) {
-      fprintf(file, "    case %d: series_next(%d, ", k, k);
-      write_further(writer, false);
-      fputs("x, w); break;\n", file);
-    }
-    fputs("    default: break;\n    }\n", file);
-  } else fputs(writer->order_text, file);
-  fputs("  }\n", file);
+  if (!writer->is_unrolled) {
+    fprintf(file, "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n  return 0;\n", writer->order_text);
+    return;
+  }
+  fputs("  for (int k = 1; k < order; k++) {\n    switch (k) {\n", file);
+  for (int k = 1; k + 1 < SERIES_LENGTH; k++) {
+    fprintf(file, "    case %d: series_next(%d, ", k, k);
+    write_further(writer, false);
+    fputs("x, w); break;\n", file);
+  }
+  fputs("    default: break;\n    }\n  }\n  return 0;\n", file);
+}
+
+static void write_inverses(const struct SeriesWriter *writer) {
+  const struct Emitter *emitter = writer->emitter;
+  for (Node node = 0; node < emitter->graph->count; node++) {
+    if (writer->inverse[node] == 0) continue;
+    fprintf(emitter->file, "  w[%zu][0] = 1.0 / ", writer->inverse[node] - 1);
+    statements_operand(emitter->statements, node);
+    fputs(";\n", emitter->file);
+  }
 }
 
 /* Coefficient 0 of all series and 1 of the state. */
@@ -331,6 +408,7 @@ static void write_start(struct SeriesWriter *writer) {
     statements_operand(emitter->statements, writer->nodes[i]);
     fputs(";\n", emitter->file);
   }
+  write_inverses(writer);
   for (size_t i = 0; i < n; i++) {
     fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n  x[%zu][0] = point->state[%zu];\n", i, i, n + i, n + i);
     fprintf(emitter->file, "  x[%zu][1] = point->state[%zu];\n  x[%zu][1] = a[%zu];\n", i, n + i, n + i, i);
@@ -350,7 +428,6 @@ static void series_body(struct Emitter *emitter, size_t unused) {
   if (strstr(writer->order_text, "time") != NULL) fputs("  const Series time = {point->time, 1.0};\n", emitter->file);
   write_start(writer);
   write_orders(writer);
-  fputs("  return 0;\n", emitter->file);
 }
 
 size_t emit_series(struct Emitter *emitter) {
@@ -358,6 +435,8 @@ size_t emit_series(struct Emitter *emitter) {
   struct SeriesWriter writer = {.emitter = emitter,
                                 .plan = emitter->program->series,
                                 .row = allocate(size, sizeof(size_t)),
+                                .rate = allocate(size, sizeof(size_t)),
+                                .inverse = allocate(size, sizeof(size_t)),
                                 .done = allocate(size, sizeof(bool)),
                                 .nodes = allocate(size, sizeof(Node))};
   writer.uses = count_uses(emitter->statements, writer.plan->targets, writer.plan->count);
@@ -370,11 +449,12 @@ size_t emit_series(struct Emitter *emitter) {
                 "int series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
                 "Series *restrict w)",
                 series_body, 0);
-  size_t rows = writer.node_count + (has_loops(emitter->equations) ? emitter->n : 0);
   free(writer.order_text);
   free(writer.uses);
   free(writer.row);
+  free(writer.rate);
+  free(writer.inverse);
   free(writer.done);
   free(writer.nodes);
-  return rows;
+  return writer.row_count;
 }

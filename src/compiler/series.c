@@ -24,11 +24,16 @@ static bool is_constant_in_time(const struct Graph *graph, Node node) {
   return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
 }
 
-/* Whole powers come from smaller ones, so that a base of 0 is no pole; variable exponents by exp and log. */
+/*
+ * Whole powers come from smaller ones, so that a base of 0 is no pole, and negative ones are quotients; variable
+ * exponents go by exp and log.
+ */
 static Node auxiliary_of_power(struct Graph *graph, const struct Vertex *vertex) {
   if (!is_constant_in_time(graph, vertex->right))
     return multiply(graph, vertex->right, function(graph, LOGARITHM, vertex->left, ZERO));
   double exponent = graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
+  if (exponent == -0.5 || (exponent == floor(exponent) && exponent < -1.0))
+    return graph_node(graph, POWER, vertex->left, graph_constant(graph, -exponent));
   if (exponent != floor(exponent) || exponent < 3.0) return ZERO;
   double lower = fmod(exponent, 2.0) == 0.0 ? exponent / 2.0 : exponent - 1.0;
   return graph_node(graph, POWER, vertex->left, graph_constant(graph, lower));

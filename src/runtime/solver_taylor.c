@@ -84,8 +84,8 @@ static double norm(const struct Taylor *taylor, int64_t order) {
 static double radius(const struct Taylor *taylor) {
   double order = (double)taylor->saved->order;
   double last = norm(taylor, taylor->saved->order), before = norm(taylor, taylor->saved->order - 1);
-  double shorter = fmin(pow(last, -1.0 / order), pow(before, -1.0 / (order - 1.0)));
-  return isfinite(last + before) ? shorter * exp(-2.0 - 0.7 / (order - 1.0)) : 0.0;
+  if (!isfinite(last + before)) return 0.0;
+  return exp(-fmax(log(last) / order, log(before) / (order - 1.0)) - 2.0 - 0.7 / (order - 1.0));
 }
 
 /*

@@ -1,0 +1,291 @@
+"""The Taylor solver: its coefficients against 50 digits, its order, its accuracy at the limit of doubles."""
+
+import re
+import struct
+import subprocess
+
+import fmpy
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from fmpy.fmi2 import FMU2Slave
+
+import fmu
+from fmu import ROOT, archive
+from mechanics import System, time
+from systems_in_sympy import DEFINITIONS, system
+from test_motion import kepler, largest_error, pendulum_angle
+
+LENGTH = 24  # of a series in the saved state
+DIGITS = 50
+ORDER = 12
+
+SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu.all_names()
+           and not name.endswith("Linear") and name not in ("ParticleCartesian", "ElasticPendulum")]
+
+
+def series_of(instance):
+    """(origin, reach, order, coefficients[state][order]) that the instance holds, from its serialized state."""
+    state = instance.fmu.getFMUstate()
+    data = instance.fmu.serializeFMUstate(state)
+    instance.free_state(state)
+    count = instance.description.numberOfContinuousStates
+    block = count * LENGTH * 8
+    x = np.frombuffer(data[-block:]).reshape(count, LENGTH)
+    origin, reach, order = struct.unpack_from("=ddq", data, len(data) - block - count * 8 - 24)
+    return origin, reach, order, x
+
+
+class Power:
+    """
+    A truncated power series of 50-digit numbers. Functions are composed with their own Taylor series about the first
+    coefficient: no recurrence of the kind that is tested.
+    """
+
+    def __init__(self, coefficients):
+        self.c = list(coefficients)
+
+    @staticmethod
+    def of(value, length):
+        return value if isinstance(value, Power) else Power([mpmath.mpf(value)] + [mpmath.mpf(0)] * (length - 1))
+
+    def __add__(self, other):
+        other = Power.of(other, len(self.c))
+        return Power(a + b for a, b in zip(self.c, other.c))
+
+    def __mul__(self, other):
+        if not isinstance(other, Power):
+            return Power(a * other for a in self.c)
+        n = len(self.c)
+        return Power(mpmath.fsum(self.c[j] * other.c[k - j] for j in range(k + 1)) for k in range(n))
+
+    def __neg__(self):
+        return self * -1
+
+    def __sub__(self, other):
+        return self + -Power.of(other, len(self.c))
+
+    def __rsub__(self, other):
+        return -self + other
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def apply(self, function):
+        n = len(self.c)
+        derivatives = mpmath.taylor(function, self.c[0], n - 1)
+        rest = Power([mpmath.mpf(0), *self.c[1:]])
+        result = Power.of(derivatives[-1], n)
+        for coefficient in reversed(derivatives[:-1]):
+            result = result * rest + coefficient
+        return result
+
+    def __truediv__(self, other):
+        return self * Power.of(other, len(self.c)).apply(lambda x: 1 / x)
+
+    def __rtruediv__(self, other):
+        return self.apply(lambda x: 1 / x) * other
+
+    def __pow__(self, other):
+        if isinstance(other, Power):
+            return (self.apply(mpmath.log) * other).apply(mpmath.exp)
+        return self.apply(lambda x: x ** mpmath.mpf(other))
+
+    def __rpow__(self, other):
+        return (self * mpmath.log(other)).apply(mpmath.exp)
+
+
+def on_series(name):
+    def function(x):
+        return x.apply(getattr(mpmath, name)) if isinstance(x, Power) else getattr(mpmath, name)(x)
+
+    return function
+
+
+NAMES = ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt"]
+FUNCTIONS = {name: on_series(name) for name in NAMES} | {
+    "atan2": lambda y, x: on_series("atan")(y / x),
+    "pi": mpmath.pi,
+}
+
+
+def solve(matrix, right):
+    """Gauss's elimination of series."""
+    n = len(right)
+    rows = [list(row) + [r] for row, r in zip(matrix, right)]
+    for k in range(n):
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
+    solution = [None] * n
+    for k in reversed(range(n)):
+        total = rows[k][n]
+        for j in range(k + 1, n):
+            total = total - rows[k][j] * solution[j]
+        solution[k] = total / rows[k][k]
+    return solution
+
+
+def exact_series(definition, values, order):
+    """Coefficients of the states by ever longer series: each order of the accelerations gives the next of the states."""
+    with mpmath.workdps(DIGITS):
+        n = len(definition.q)
+        flat = [*definition.mass, *(sum(terms) for terms in definition.terms)]
+        evaluate = sp.lambdify(definition.arguments, flat, modules=[FUNCTIONS], cse=True)
+        x = [[mpmath.mpf(values[s])] for s in [*definition.q, *definition.v]]
+        for k in range(order):
+            length = k + 1
+            time = Power(([mpmath.mpf(values[definition.arguments[0]]), mpmath.mpf(1)] + [mpmath.mpf(0)] * length)[:length])
+            states = [Power(c[:length]) for c in x]
+            constants = [mpmath.mpf(values[s]) for s in [*definition.inputs, *definition.parameters]]
+            numbers = [Power.of(number, length) for number in evaluate(time, *states, *constants)]
+            mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
+            a = solve(mass, numbers[n * n :])
+            for i in range(n):
+                x[i].append(x[n + i][k] / (k + 1))
+                x[n + i].append(a[i].c[k] / (k + 1))
+        return np.array([[float(c) for c in row] for row in x])
+
+
+def compare(name, values, instance, order=ORDER, bound=1e-12):
+    definition = system(name)
+    exact = exact_series(definition, values, order)
+    _, _, highest, ours = series_of(instance)
+    assert highest >= order
+    ours = ours[: len(exact), : order + 1]
+    # In units of the sizes that the step length makes equal: c_k grows like radius^-k.
+    size = np.max(np.abs(exact), axis=0)
+    assert np.all(np.abs(ours - exact) <= bound * (size + np.abs(exact)))
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_coefficients(name, open_fmu):
+    definition = system(name)
+    random = np.random.default_rng(12)
+    instance = open_fmu(name)
+    for _ in range(2):
+        values = {symbol: random.uniform(0.4, 1.3) for symbol in definition.arguments}
+        instance.reset()
+        start = values[definition.arguments[0]]
+        instance.initialize({s.name: v for s, v in values.items() if s.name != "time"}, 1e-12, start_time=start)
+        instance.step(1e-9)
+        compare(name, values, instance, 7 if name == "ChainPendulum" else ORDER)
+
+
+OPERATIONS = [
+    "q*w + q/(2 + w)", "q^2 + q^3 + q^4 + q^5 + q^7", "q^-1 + q^-2 + q^-3", "q^0.5 + q^-0.5 + q^1.5 + q^-2.7",
+    "q^p + 2^q + q^w", "sqrt(q*w)", "sin(q)", "cos(q)", "sin(q*w) + cos(q*w)", "tan(q/2)", "exp(q) + exp(q*w)",
+    "log(q + w)", "asin(q/3)", "acos(q/3)", "atan(q*w)", "atan2(q, w)", "sinh(q)", "cosh(q*w)", "tanh(q)", "asinh(q)",
+    "acosh(1 + q*w)", "atanh(q/4)", "time*q + sin(time) + exp(-time^2)", "u*q",
+]  # fmt: skip
+
+
+def test_every_operation(tmp_path):
+    """Each operation of the expression language as the force on a mass of its own."""
+    names = [(f"q{i}", f"w{i}") for i in range(len(OPERATIONS))]
+    own = lambda text, i: re.sub(r"\b([qw])\b", rf"\g<1>{i}", text)
+    parts = [
+        f'<coordinate name="q{i}" velocity="w{i}" start="0.7" velocityStart="0.9"/><particle mass="1" x="q{i}"/>'
+        f'<force coordinate="q{i}">{own(expression, i)}</force>'
+        for i, expression in enumerate(OPERATIONS)
+    ]
+    folder = tmp_path / "systems" / "Operations"
+    folder.mkdir(parents=True)
+    (folder / "system.xml").write_text(
+        '<system name="Operations"><parameter name="p" start="1.7"/><input name="u" start="0.6"/>'
+        + "".join(parts) + '<solver method="taylor" tolerance="1e-12"/></system>'
+    )
+    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", f"-DSYSTEMS={folder.parent}"], check=True)
+    unzipped = fmpy.extract(tmp_path / "build" / "fmu" / "Operations.fmu", tmp_path / "unzipped")
+    description = fmpy.read_model_description(unzipped)
+    slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier="Operations", instanceName="i")
+    slave.instantiate()
+    slave.setupExperiment(startTime=0.3)
+    slave.enterInitializationMode()
+    slave.exitInitializationMode()
+    slave.doStep(0.3, 1e-9)
+    state = slave.getFMUstate()
+    data = slave.serializeFMUstate(state)
+    slave.freeFMUstate(state)
+    slave.terminate()
+    slave.freeInstance()
+    rows = np.frombuffer(data[-2 * len(names) * LENGTH * 8 :]).reshape(2, len(names), LENGTH)[:, :, : ORDER + 1]
+    q, w, u, p = sp.symbols("q w u p")
+    for i, expression in enumerate(OPERATIONS):
+        force = sp.sympify(expression.replace("^", "**"), locals=dict(q=q, w=w, u=u, p=p, time=time))
+        definition = System([q], [w], w**2 / 2, sp.Integer(0), [force], [u], [p])
+        exact = exact_series(definition, {time: 0.3, q: 0.7, w: 0.9, u: 0.6, p: 1.7}, ORDER)
+        size = np.max(np.abs(exact), axis=0)
+        assert np.all(np.abs(rows[:, i] - exact) <= 1e-12 * (size + np.abs(exact))), expression
+
+
+def test_truncation_has_the_order_of_the_series(open_fmu):
+    """The series cut off after the term m is wrong by a term of order m + 1."""
+    instance = open_fmu("SimplePendulum").initialize(dict(theta=2.0, l=1.0, g=1.0), 1e-14)
+    instance.step(1e-9)
+    _, _, _, x = series_of(instance)
+    for m in (5, 9, 13):
+        error = lambda h: abs(sum(x[0][j] * h**j for j in range(m + 1)) - pendulum_angle(2.0, mpmath.mpf(1), mpmath.mpf(h)))
+        order = np.log2(error(0.8) / error(0.4))
+        # Odd coefficients vanish at the turning point, so that the first term left out is of even order.
+        assert order == pytest.approx(m + 1, abs=0.8)
+
+
+def test_order_and_steps_follow_the_tolerance(open_fmu):
+    instance = open_fmu("DoublePendulum")
+    orders, steps = [], []
+    for tolerance in (1e-3, 1e-6, 1e-10, 1e-15):
+        instance.reset().initialize(tolerance=tolerance)
+        instance.run(5, 0.5)
+        orders.append(series_of(instance)[2])
+        steps.append(instance.fmu.getInteger(instance.vr("solverSteps"))[0])
+    assert orders == sorted(set(orders)) and orders[-1] <= LENGTH - 2
+    assert max(steps) < 3 * min(steps), "the order grows instead of the number of steps"
+
+
+def test_dense_output_spares_series(open_fmu):
+    """Where nothing changes, a short communication step is read from the series that is there."""
+    instance = open_fmu("SimplePendulum").initialize(tolerance=1e-12)
+    instance.run(10, 10)
+    once = instance.fmu.getInteger(instance.vr("solverSteps"))[0]
+    instance.reset().initialize(tolerance=1e-12)
+    instance.run(10, 0.001)
+    often = instance.fmu.getInteger(instance.vr("solverSteps"))[0]
+    assert once == often
+
+
+@pytest.mark.parametrize("e", [0.0, 0.9])
+def test_kepler_at_the_limit_of_doubles(open_fmu, e):
+    a = 1.0
+    values = dict(m=1, mu=1, r=a * (1 - e), vr=0, theta=0, omega=np.sqrt(1 - e * e) / (a - a * e) ** 2)
+    rows = open_fmu("ParticlePolar").initialize(values, 1e-14).run(10, 0.5, "particle.x", "particle.y")
+    # The start values are rounded to doubles; near the centre the motion multiplies that.
+    assert largest_error(rows, lambda t: kepler(1, a, e, mpmath.mpf(t))) < (2e-14 if e == 0 else 2e-12)
+
+
+@pytest.mark.parametrize("theta0", [0.3, 2.0, 3.0])
+def test_pendulum_at_the_limit_of_doubles(open_fmu, theta0):
+    rows = open_fmu("SimplePendulum").initialize(dict(g=1, l=1, theta=theta0), 1e-14).run(20, 0.5, "theta")
+    exact = lambda t: [pendulum_angle(theta0, mpmath.mpf(1), mpmath.mpf(t))]
+    assert largest_error(rows, exact) < 2e-14 / np.cos(theta0 / 2) ** 2
+
+
+def test_energy_over_a_million_periods(open_fmu):
+    """Rounding alone is a random walk: with n steps of relative size 1e-16 about 1e-16 sqrt(n)."""
+    instance = open_fmu("SimplePendulum").initialize(dict(g=1, l=1, theta=1), 1e-15)
+    period = 6.699975664370452712701
+    start = instance.get("totalEnergy")
+    worst = 0.0
+    for i in range(100):
+        target = 1e6 * period * (i + 1) / 100
+        instance.step(target - instance.time)
+        instance.time = target
+        worst = max(worst, abs(instance.get("totalEnergy") - start) / start)
+    steps = instance.fmu.getInteger(instance.vr("solverSteps"))[0]
+    assert worst < 3 * 2.2e-16 * np.sqrt(steps)
+
+
+def test_fmus_with_series_link_nothing():
+    for name in SYSTEMS:
+        data = fmu.library(name).read_bytes()
+        assert b"SUNDIALS" not in data and archive(name).stat().st_size < 125_000
