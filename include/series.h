@@ -35,7 +35,7 @@ static SERIES_INLINE double series_dot1(const double *a, const double *b) {
 
 #define SERIES_DOT(n, half, rest)                                                                                      \
   static SERIES_INLINE double series_dot##n(const double *a, const double *b) {                                        \
-    return series_dot##half(a, b) + series_dot##rest(a + half, b - half);                                              \
+    return series_dot##half(a, b) + series_dot##rest(a + (half), b - (half));                                          \
   }
 SERIES_DOT(2, 1, 1)
 SERIES_DOT(3, 2, 1)

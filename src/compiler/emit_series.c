@@ -374,7 +374,8 @@ static void write_next_function(const struct SeriesWriter *writer) {
 static void write_orders(const struct SeriesWriter *writer) {
   FILE *file = writer->emitter->file;
   if (!writer->is_unrolled) {
-    fprintf(file, "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n  return 0;\n", writer->order_text);
+    fprintf(file, "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n  return 0;\n",
+            writer->order_text);
     return;
   }
   fputs("  for (int k = 1; k < order; k++) {\n    switch (k) {\n", file);
