@@ -7,7 +7,13 @@
 
 #include <stddef.h>
 
+#if defined(_WIN32)
+#define FMI2_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
 #define FMI2_EXPORT __attribute__((visibility("default")))
+#else
+#define FMI2_EXPORT
+#endif
 
 #define fmi2True 1
 #define fmi2False 0

@@ -11,7 +11,36 @@
 #include "model_structure.h"
 #include "xml_output.h"
 
-static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model, const struct Interface *interface) {
+/* The runtime's files but for solvers, NULL at the end; the build writes it. */
+extern const char *const runtime_sources[];
+
+static void write_file(xmlTextWriterPtr writer, const char *name) {
+  xmlTextWriterStartElement(writer, BAD_CAST "File");
+  write_attribute(writer, "name", name);
+  xmlTextWriterEndElement(writer);
+}
+
+static bool has_large_blocks(const struct Equations *equations) {
+  for (size_t block = 0; block < equations->block_count && !equations->explicit_form; block++)
+    if (!equations->unrolled[block]) return true;
+  return false;
+}
+
+/* FMUs without SUNDIALS are complete in C. */
+static void write_sources(xmlTextWriterPtr writer, const struct Equations *equations,
+                          const struct Interface *interface) {
+  if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return;
+  xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
+  write_file(writer, "system.c");
+  for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
+  if (interface->method == SOLVER_TAYLOR) write_file(writer, "solver_taylor.c");
+  if (interface->method == SOLVER_EXACT) write_file(writer, "solver_exact.c");
+  if (has_large_blocks(equations)) write_file(writer, "ldlt.c");
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
+                             const struct Interface *interface) {
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
   bool uses_sundials = interface->method == SOLVER_ERK || interface->method == SOLVER_BDF;
@@ -21,6 +50,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   /* SUNDIALS allocates with malloc, so that these FMUs have no use for the caller's functions. */
   if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
+  write_sources(writer, equations, interface);
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
   write_attribute(writer, "modelIdentifier", model->name);
@@ -30,6 +60,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   write_attribute(writer, "maxOutputDerivativeOrder", "1");
   if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
+  write_sources(writer, equations, interface);
   xmlTextWriterEndElement(writer);
 }
 
@@ -161,7 +192,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Model *model, con
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", "structured");
   write_attribute(writer, "numberOfEventIndicators", "0");
-  write_interfaces(writer, model, interface);
+  write_interfaces(writer, model, equations, interface);
   write_units(writer, interface);
   write_log_categories(writer);
   write_experiment(writer, model);
