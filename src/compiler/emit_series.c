@@ -5,28 +5,10 @@
 
 #include "emit_accelerations.h"
 #include "memory.h"
+#include "recurrences.h"
 
 /* Systems up to this many recurrences an order get code of their own for each order. */
 enum { UNROLLED_RECURRENCES = 40 };
-
-struct SeriesWriter {
-  struct Emitter *emitter;
-  const struct SeriesPlan *plan;
-  size_t *uses;
-  size_t *row;     /* for each node: 1 + its row of the workspace, 0 for none */
-  bool *done;      /* for each node: written in the current order */
-  Node *nodes;     /* those with a row, ascending */
-  size_t *inverse; /* for each node: 1 + the row of the inverse of its first coefficient, 0 for none */
-  size_t *rate;    /* for each node: 1 + the row of its time derivative, 0 for none */
-  size_t node_count, row_count, acceleration_row, recurrences;
-  char *order_text; /* the statements for coefficient k */
-  bool is_unrolled;
-};
-
-/* Whether all coefficients but the first are 0. */
-static bool is_constant(const struct SeriesWriter *writer, Node node) {
-  return (writer->emitter->graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
-}
 
 /* Nodes that change in time and are computed: each gets a row. */
 static void assign_rows(struct SeriesWriter *writer) {
@@ -49,201 +31,6 @@ static void assign_rows(struct SeriesWriter *writer) {
   writer->acceleration_row = writer->node_count;
   writer->row_count = writer->node_count + (has_loops(writer->emitter->equations) ? writer->emitter->n : 0);
   free(needed);
-}
-
-static void write_row(const struct SeriesWriter *writer, Node node) {
-  const struct Emitter *emitter = writer->emitter;
-  FILE *file = emitter->file;
-  if (writer->row[node] > 0) {
-    fprintf(file, "w[%zu]", writer->row[node] - 1);
-    return;
-  }
-  const struct Symbol *symbol = graph_symbol_of(emitter->graph, node);
-  if (symbol->kind == TIME) fputs("time", file);
-  else if (symbol->kind == INPUT) fprintf(file, "input[%d]", symbol->index);
-  else if (symbol->kind == COORDINATE) fprintf(file, "x[%d]", symbol->index);
-  else if (symbol->kind == VELOCITY) fprintf(file, "x[%zu]", emitter->n + (size_t)symbol->index);
-  else fprintf(file, "w[%zu]", writer->acceleration_row + (size_t)symbol->index);
-}
-
-/* The coefficient k >= 1 of an operand. */
-static void write_coefficient(const struct SeriesWriter *writer, Node node) {
-  if (is_constant(writer, node)) {
-    fputs("0.0", writer->emitter->file);
-    return;
-  }
-  write_row(writer, node);
-  fputs("[k]", writer->emitter->file);
-}
-
-/* name(k, rows...) with an optional further argument before the rows. */
-static void write_recurrence(struct SeriesWriter *writer, const char *name, Node further, const Node *rows, int count) {
-  FILE *file = writer->emitter->file;
-  fprintf(file, "series_%s(k, ", name);
-  if (further != ZERO) {
-    statements_operand(writer->emitter->statements, further);
-    fputs(", ", file);
-  }
-  for (int i = 0; i < count; i++) {
-    fputs(i > 0 ? ", " : "", file);
-    write_row(writer, rows[i]);
-  }
-  fputs(")", file);
-  writer->recurrences++;
-}
-
-static void write_product(struct SeriesWriter *writer, Node left, Node right) {
-  FILE *file = writer->emitter->file;
-  if (is_constant(writer, left) || is_constant(writer, right)) {
-    Node factor = is_constant(writer, left) ? left : right;
-    statements_operand(writer->emitter->statements, factor);
-    fputs(" * ", file);
-    write_coefficient(writer, factor == left ? right : left);
-  } else write_recurrence(writer, "product", ZERO, (const Node[]){left, right}, 2);
-}
-
-/* c' = a' / b for the inverse functions, where a_k stands first; sign is "-" or "". */
-static void write_ratio_integral(struct SeriesWriter *writer, const char *sign, Node top, Node below, Node node) {
-  FILE *file = writer->emitter->file;
-  fprintf(file, "series_ratio_integral(k, %s", sign);
-  write_coefficient(writer, top);
-  fputs(", ", file);
-  write_row(writer, below);
-  fputs(", ", file);
-  write_row(writer, node);
-  fputs(")", file);
-  writer->recurrences++;
-}
-
-/* top / below; the inverse of below's first coefficient has a place of its own. */
-static void write_series_quotient(struct SeriesWriter *writer, Node top, Node below, Node node) {
-  FILE *file = writer->emitter->file;
-  if (writer->inverse[below] == 0) writer->inverse[below] = ++writer->row_count;
-  fputs("series_quotient(k, ", file);
-  write_coefficient(writer, top);
-  fprintf(file, ", w[%zu][0], ", writer->inverse[below] - 1);
-  write_row(writer, below);
-  fputs(", ", file);
-  write_row(writer, node);
-  fputs(")", file);
-  writer->recurrences++;
-}
-
-static void write_quotient(struct SeriesWriter *writer, Node left, Node right, Node node) {
-  if (!is_constant(writer, right)) {
-    write_series_quotient(writer, left, right, node);
-    return;
-  }
-  write_coefficient(writer, left);
-  fputs(" / ", writer->emitter->file);
-  statements_operand(writer->emitter->statements, right);
-}
-
-/* The row of the time derivative of an operand: that of a velocity, or one of the workspace. */
-static void write_rate_row(struct SeriesWriter *writer, Node operand) {
-  const struct Emitter *emitter = writer->emitter;
-  const struct Vertex *vertex = &emitter->graph->vertices[operand];
-  bool is_coordinate = vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE;
-  if (is_coordinate)
-    write_row(writer, emitter->program->model->velocities.items[graph_symbol_of(emitter->graph, operand)->index].node);
-  else fprintf(emitter->file, "w[%zu]", writer->rate[operand] - 1);
-}
-
-/* Coefficient k - 1 of the time derivative, once for all functions of the operand. */
-static void write_rate(struct SeriesWriter *writer, Node operand) {
-  const struct Emitter *emitter = writer->emitter;
-  const struct Vertex *vertex = &emitter->graph->vertices[operand];
-  if (vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE) return;
-  if (writer->rate[operand] > 0) return;
-  writer->rate[operand] = ++writer->row_count;
-  fprintf(emitter->file, "  w[%zu][k - 1] = k * ", writer->rate[operand] - 1);
-  write_coefficient(writer, operand);
-  fputs(";\n", emitter->file);
-}
-
-/* y' = x' a */
-static void write_integral(struct SeriesWriter *writer, const char *sign, Node operand, Node factor) {
-  fprintf(writer->emitter->file, "%sseries_integral(k, ", sign);
-  write_rate_row(writer, operand);
-  fputs(", ", writer->emitter->file);
-  write_row(writer, factor);
-  fputs(")", writer->emitter->file);
-  writer->recurrences++;
-}
-
-/* The operand of a function that is written with write_integral(); ZERO for others. */
-static Node integrated_operand(const struct SeriesWriter *writer, Node node) {
-  const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
-  switch (vertex->operation) {
-  case SINE:
-  case COSINE:
-  case SINH:
-  case COSH:
-  case TANGENT:
-  case TANH:
-  case EXPONENTIAL: return vertex->left;
-  case POWER: return is_constant(writer, vertex->right) ? ZERO : writer->plan->auxiliary[node];
-  default: return ZERO;
-  }
-}
-
-static void write_power(struct SeriesWriter *writer, Node base, Node exponent, Node node) {
-  const struct Graph *graph = writer->emitter->graph;
-  Node auxiliary = writer->plan->auxiliary[node];
-  double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : 0.5 / 7; /* any broken number */
-  if (n == 2.0) write_recurrence(writer, "square", ZERO, &base, 1);
-  else if (n == -1.0) write_series_quotient(writer, ONE, base, node);
-  else if (n == 0.5) write_recurrence(writer, "root", ZERO, (const Node[]){base, node}, 2);
-  else if (!is_constant(writer, exponent)) write_integral(writer, "", auxiliary, node);
-  else if (auxiliary == ZERO) write_recurrence(writer, "power", exponent, (const Node[]){base, node}, 2);
-  else if (n < 0.0) write_series_quotient(writer, ONE, auxiliary, node);
-  else if (graph_value(graph, graph->vertices[auxiliary].right) * 2.0 == n)
-    write_recurrence(writer, "square", ZERO, &auxiliary, 1);
-  else write_product(writer, auxiliary, base);
-}
-
-static void write_function(struct SeriesWriter *writer, Node node) {
-  const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
-  Node operand = vertex->left, auxiliary = writer->plan->auxiliary[node];
-  switch (vertex->operation) {
-  case COSINE: write_integral(writer, "-", operand, auxiliary); return;
-  case SINE:
-  case SINH:
-  case COSH:
-  case TANGENT:
-  case TANH: write_integral(writer, "", operand, auxiliary); return;
-  case EXPONENTIAL: write_integral(writer, "", operand, node); return;
-  case LOGARITHM: write_ratio_integral(writer, "", operand, operand, node); return;
-  case ARCCOSINE: write_ratio_integral(writer, "-", operand, auxiliary, node); return;
-  case ATAN2:
-    write_recurrence(writer, "angle", ZERO, (const Node[]){operand, vertex->right, auxiliary, node}, 4);
-    return;
-  default: write_ratio_integral(writer, "", operand, auxiliary, node);
-  }
-}
-
-static void write_value(struct SeriesWriter *writer, Node node) {
-  struct Expression expression = expression_of(writer->emitter->statements, node, writer->uses);
-  FILE *file = writer->emitter->file;
-  Node left = expression.left, right = expression.right;
-  switch (expression.form) {
-  case FORM_NEGATION:
-    fputs("-", file);
-    write_coefficient(writer, left);
-    return;
-  case FORM_SUM:
-  case FORM_DIFFERENCE:
-    if (!is_constant(writer, left)) write_coefficient(writer, left);
-    if (expression.form == FORM_DIFFERENCE) fputs(is_constant(writer, left) ? "-" : " - ", file);
-    else if (!is_constant(writer, left) && !is_constant(writer, right)) fputs(" + ", file);
-    if (!is_constant(writer, right)) write_coefficient(writer, right);
-    else if (expression.form == FORM_DIFFERENCE) fputs("0.0", file);
-    return;
-  case FORM_PRODUCT: write_product(writer, left, right); return;
-  case FORM_QUOTIENT: write_quotient(writer, left, right, node); return;
-  case FORM_POWER: write_power(writer, left, right, node); return;
-  case FORM_FUNCTION: write_function(writer, node); return;
-  }
 }
 
 static void write_next(struct SeriesWriter *writer, Node node);
@@ -289,7 +76,7 @@ static void write_block_order(struct SeriesWriter *writer, size_t block) {
     write_coefficient(writer, equations->right_side[i]);
     for (size_t j = 0; j < n; j++) {
       Node mass = equations->mass[(i > j ? i : j) * n + (i > j ? j : i)];
-      if (equations->block[j] != block || is_constant(writer, mass)) continue;
+      if (equations->block[j] != block || is_constant_series(writer, mass)) continue;
       fputs(" - series_rest(k, ", emitter->file);
       write_row(writer, mass);
       fprintf(emitter->file, ", w[%zu])", writer->acceleration_row + j);
