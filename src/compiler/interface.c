@@ -74,9 +74,10 @@ static void append_bodies(struct Interface *interface, const struct Model *model
 
 static void append_statistics(struct Interface *interface) {
   append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
-  if (interface->method == SOLVER_EXACT || interface->method == SOLVER_TAYLOR) return;
+  if (interface->method == SOLVER_EXACT) return;
   append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
-         "evaluations of the equations of motion");
+         interface->method == SOLVER_TAYLOR ? "series of the equations of motion"
+                                            : "evaluations of the equations of motion");
   if (interface->method == SOLVER_BDF)
     append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
            "evaluations of the Jacobian matrix");

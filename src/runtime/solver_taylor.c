@@ -106,6 +106,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   }
   instance->singular =
       lagrangian.series(&point, (int)saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
+  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
   if (instance->singular != 0) return false;
   double reach = fmin(radius(taylor), 1e300);
   if (lagrangian.depends_on_time) reach = fmin(reach, communication_step);
