@@ -118,3 +118,15 @@ def test_sizes():
     for name, archive, shared, sundials, _ in sizes():
         assert archive < (125_000 if sundials == 0 else 115_000)
         assert shared < (340_000 if sundials == 0 else 340_000)
+
+
+@pytest.mark.parametrize("force, solver", [("u*sin(q)", "taylor"), ("u - abs(w)*w", "erk")])
+def test_default_solver(force, solver, tmp_path):
+    """Taylor series where the equations have them, else the method for functions with kinks."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Default"><input name="u"/><coordinate name="q" velocity="w"/><particle mass="1" x="q"/>'
+        f'<force coordinate="q">{force}</force></system>'
+    )
+    result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert f".solver = &solver_{solver}," in (tmp_path / "out" / "system.c").read_text()
