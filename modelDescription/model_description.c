@@ -20,12 +20,6 @@ static void write_file(xmlTextWriterPtr writer, const char *name) {
   xmlTextWriterEndElement(writer);
 }
 
-static bool has_large_blocks(const struct Equations *equations) {
-  for (size_t block = 0; block < equations->block_count && !equations->explicit_form; block++)
-    if (!equations->unrolled[block]) return true;
-  return false;
-}
-
 /* FMUs without SUNDIALS are complete in C. */
 static void write_sources(xmlTextWriterPtr writer, const struct Equations *equations,
                           const struct Interface *interface) {
@@ -35,7 +29,7 @@ static void write_sources(xmlTextWriterPtr writer, const struct Equations *equat
   for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
   if (interface->method == SOLVER_TAYLOR) write_file(writer, "solver_taylor.c");
   if (interface->method == SOLVER_EXACT) write_file(writer, "solver_exact.c");
-  if (has_large_blocks(equations)) write_file(writer, "ldlt.c");
+  if (has_loops(equations)) write_file(writer, "ldlt.c");
   xmlTextWriterEndElement(writer);
 }
 

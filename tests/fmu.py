@@ -86,6 +86,26 @@ def callbacks_of(logger, allocate=fmpy.calloc, release=fmpy.free, environment=No
     return callbacks
 
 
+class Memory:
+    """The caller's functions: they count, and the allocation numbered fatal returns NULL."""
+
+    def __init__(self, fatal=None):
+        self.alive, self.count, self.fatal = set(), 0, fatal
+
+    def allocate(self, number, size):
+        self.count += 1
+        if self.count == self.fatal:
+            return 0
+        address = fmpy.calloc(number, size)
+        self.alive.add(address)
+        return address
+
+    def release(self, address):
+        if address:
+            self.alive.remove(address)
+            fmpy.free(address)
+
+
 class Instance:
     """
     One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where

@@ -9,7 +9,6 @@ import math
 import sys
 from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 
-import fmpy
 from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2EventInfo
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
@@ -36,8 +35,8 @@ class Calls(RuleBasedStateMachine):
         name=st.sampled_from(fmu.all_names()), kind=st.sampled_from([FMU2Slave, FMU2Model]), logging=st.booleans()
     )
     def instantiate(self, name, kind, logging):
-        self.alive = set()
-        callbacks = fmu.callbacks_of(self.log, self.allocate, self.release)
+        self.memory = fmu.Memory()
+        callbacks = fmu.callbacks_of(self.log, self.memory.allocate, self.memory.release)
         self.instance = fmu.Instance(name, kind=kind, logging=logging, callbacks=callbacks)
         self.table = COMMON_CS if kind is FMU2Slave else ME
         self.states = CS_STATES if kind is FMU2Slave else ME_STATES
@@ -46,16 +45,6 @@ class Calls(RuleBasedStateMachine):
 
     def log(self, environment, name, status, category, message):
         assert status in (OK, WARNING, DISCARD, ERROR) and category.startswith(b"log") and message
-
-    def allocate(self, count, size):
-        address = fmpy.calloc(count, size)
-        self.alive.add(address)
-        return address
-
-    def release(self, address):
-        if address:
-            self.alive.remove(address)
-            fmpy.free(address)
 
     def call(self, function, *words):
         """Calls, checks the status against the table, and follows errors."""
@@ -309,7 +298,7 @@ class Calls(RuleBasedStateMachine):
             for state, *_ in self.saved:
                 self.call("fmi2FreeFMUstate", byref(state))
             self.instance.free()
-            assert not self.alive
+            assert not self.memory.alive
 
 
 def main():

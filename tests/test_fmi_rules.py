@@ -281,29 +281,9 @@ def test_null_logger():
 # --- Memory (rule 16) ---
 
 
-class Memory:
-    """The caller's functions: they count, and the allocation numbered fatal returns NULL."""
-
-    def __init__(self, fatal=None):
-        self.alive, self.count, self.fatal = set(), 0, fatal
-
-    def allocate(self, number, size):
-        self.count += 1
-        if self.count == self.fatal:
-            return 0
-        address = fmpy.calloc(number, size)
-        self.alive.add(address)
-        return address
-
-    def release(self, address):
-        if address:
-            self.alive.remove(address)
-            fmpy.free(address)
-
-
 def test_memory_of_the_caller(name):
     """All of it comes from the caller's functions and goes back; or none, where the FMU says so."""
-    memory, own = Memory(), fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
+    memory, own = fmu.Memory(), fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
     allocate = None if own else memory.allocate
     instance = fmu.Instance(name, callbacks=fmu.callbacks_of(None, allocate, memory.release)).initialize()
     instance.step(0.1)
@@ -322,7 +302,7 @@ def test_steps_allocate_nothing(name):
 def test_memory_runs_out(name):
     """Each allocation in turn returns NULL: an error, no crash, and nothing leaks."""
     for fatal in range(1, 9):
-        messages, memory, instance = [], Memory(fatal), None
+        messages, memory, instance = [], fmu.Memory(fatal), None
         log = lambda *words: messages.append(words[4].decode())
         try:
             instance = fmu.Instance(name, callbacks=fmu.callbacks_of(log, memory.allocate, memory.release)).initialize()

@@ -4,16 +4,8 @@
 
 #include "memory.h"
 
-bool is_looped(const struct Equations *equations, size_t coordinate) {
-  return !equations->explicit_form && !equations->unrolled[equations->block[coordinate]];
-}
-
-static bool is_of_parameters(const struct Graph *graph, Node node) {
-  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
-}
-
 bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
-  return is_of_parameters(graph, pivot->value) && is_of_parameters(graph, pivot->scale);
+  return graph_is_constant_in_time(graph, pivot->value) && graph_is_constant_in_time(graph, pivot->scale);
 }
 
 struct NodeList acceleration_targets(const struct Emitter *emitter) {
@@ -80,16 +72,6 @@ static void emit_array(const struct Emitter *emitter, const char *name, size_t b
 /* Multiplications, divisions and additions of factoring and solving a block of this size. */
 static size_t factor_operations(size_t n) {
   return n * (n * n - 1) / 3 + n * (n - 1) + 2 * n * (n - 1) + n;
-}
-
-static bool block_is_looped(const struct Equations *equations, size_t block) {
-  return !equations->explicit_form && !equations->unrolled[block];
-}
-
-bool has_loops(const struct Equations *equations) {
-  for (size_t block = 0; block < equations->block_count; block++)
-    if (block_is_looped(equations, block)) return true;
-  return false;
 }
 
 /* Factors a large block and solves it for its accelerations, written to target. */

@@ -4,12 +4,6 @@
 
 #include "emitter.h"
 
-/* Whether the coordinate belongs to a block that ldlt_factor() solves. */
-bool is_looped(const struct Equations *equations, size_t coordinate);
-
-/* Whether any block is. */
-bool has_loops(const struct Equations *equations);
-
 /* Whether the pivot depends on parameters alone, so that prepare() checks it. */
 bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
 

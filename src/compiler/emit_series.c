@@ -111,7 +111,7 @@ static void write_order(struct SeriesWriter *writer) {
   const struct Equations *equations = writer->emitter->equations;
   for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
   for (size_t block = 0; block < equations->block_count; block++)
-    if (!equations->explicit_form && !equations->unrolled[block]) write_block_order(writer, block);
+    if (block_is_looped(equations, block)) write_block_order(writer, block);
   write_state_order(writer);
 }
 

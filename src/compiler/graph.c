@@ -178,6 +178,10 @@ bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind
   return ((unsigned)graph->vertices[node].kinds >> kind & 1u) != 0;
 }
 
+bool graph_is_constant_in_time(const struct Graph *graph, Node node) {
+  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+}
+
 void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags) {
   memset(flags, 0, graph->count * sizeof *flags);
   Node last = 0;

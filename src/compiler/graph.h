@@ -112,6 +112,9 @@ double operation_evaluate(enum Operation operation, double left, double right);
 /* Whether the node depends on a symbol of this kind. */
 bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind);
 
+/* Whether the node is made of numbers and parameters alone, so that it does not change in time. */
+bool graph_is_constant_in_time(const struct Graph *graph, Node node);
+
 /* Marks every node that the targets need, themselves included; flags has one element a node, zeroed here. */
 void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags);
 

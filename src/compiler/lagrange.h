@@ -43,6 +43,15 @@ enum { UNROLL_LIMIT = 8 };
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);
 void equations_free(struct Equations *equations);
 
+/* Whether a block is so large that ldlt_factor() solves it at run time. */
+bool block_is_looped(const struct Equations *equations, size_t block);
+
+/* Whether the coordinate belongs to such a block. */
+bool is_looped(const struct Equations *equations, size_t coordinate);
+
+/* Whether there is such a block. */
+bool has_loops(const struct Equations *equations);
+
 /* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. */
 void equations_solve(struct Graph *graph, const struct Equations *equations, const Node *right_side, Node *solution);
 

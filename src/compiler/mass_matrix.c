@@ -176,3 +176,17 @@ void mass_matrix_factor(struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < n; i++)
     if (!equations->unrolled[equations->block[i]]) equations->acceleration[i] = model->accelerations[i];
 }
+
+bool block_is_looped(const struct Equations *equations, size_t block) {
+  return !equations->explicit_form && !equations->unrolled[block];
+}
+
+bool is_looped(const struct Equations *equations, size_t coordinate) {
+  return !equations->explicit_form && !equations->unrolled[equations->block[coordinate]];
+}
+
+bool has_loops(const struct Equations *equations) {
+  for (size_t block = 0; block < equations->block_count; block++)
+    if (block_is_looped(equations, block)) return true;
+  return false;
+}

@@ -1,7 +1,9 @@
 #include "recurrences.h"
 
+#include <math.h>
+
 bool is_constant_series(const struct SeriesWriter *writer, Node node) {
-  return (writer->emitter->graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+  return graph_is_constant_in_time(writer->emitter->graph, node);
 }
 
 void write_row(const struct SeriesWriter *writer, Node node) {
@@ -91,21 +93,22 @@ static void write_quotient(struct SeriesWriter *writer, Node left, Node right, N
   statements_operand(writer->emitter->statements, right);
 }
 
+static bool is_coordinate(const struct SeriesWriter *writer, Node node) {
+  const struct Graph *graph = writer->emitter->graph;
+  return graph->vertices[node].operation == SYMBOL && graph_symbol_of(graph, node)->kind == COORDINATE;
+}
+
 /* The row of the time derivative of an operand: that of a velocity, or one of the workspace. */
 static void write_rate_row(struct SeriesWriter *writer, Node operand) {
   const struct Emitter *emitter = writer->emitter;
-  const struct Vertex *vertex = &emitter->graph->vertices[operand];
-  bool is_coordinate = vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE;
-  if (is_coordinate)
+  if (is_coordinate(writer, operand))
     write_row(writer, emitter->program->model->velocities.items[graph_symbol_of(emitter->graph, operand)->index].node);
   else fprintf(emitter->file, "w[%zu]", writer->rate[operand] - 1);
 }
 
 void write_rate(struct SeriesWriter *writer, Node operand) {
   const struct Emitter *emitter = writer->emitter;
-  const struct Vertex *vertex = &emitter->graph->vertices[operand];
-  if (vertex->operation == SYMBOL && graph_symbol_of(emitter->graph, operand)->kind == COORDINATE) return;
-  if (writer->rate[operand] > 0) return;
+  if (is_coordinate(writer, operand) || writer->rate[operand] > 0) return;
   writer->rate[operand] = ++writer->row_count;
   fprintf(emitter->file, "  w[%zu][k - 1] = k * ", writer->rate[operand] - 1);
   write_coefficient(writer, operand);
@@ -140,7 +143,7 @@ Node integrated_operand(const struct SeriesWriter *writer, Node node) {
 static void write_power(struct SeriesWriter *writer, Node base, Node exponent, Node node) {
   const struct Graph *graph = writer->emitter->graph;
   Node auxiliary = writer->plan->auxiliary[node];
-  double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : 0.5 / 7; /* any broken number */
+  double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : NAN;
   if (n == 2.0) write_recurrence(writer, "square", ZERO, &base, 1);
   else if (n == -1.0) write_series_quotient(writer, ONE, base, node);
   else if (n == 0.5) write_recurrence(writer, "root", ZERO, (const Node[]){base, node}, 2);

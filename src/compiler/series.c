@@ -20,16 +20,12 @@ static Node square_plus(struct Graph *graph, double sign, double factor, Node no
   return add(graph, graph_constant(graph, sign), scale(graph, factor, square(graph, node)));
 }
 
-static bool is_constant_in_time(const struct Graph *graph, Node node) {
-  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
-}
-
 /*
  * Whole powers come from smaller ones, so that a base of 0 is no pole, and negative ones are quotients; variable
  * exponents go by exp and log.
  */
 static Node auxiliary_of_power(struct Graph *graph, const struct Vertex *vertex) {
-  if (!is_constant_in_time(graph, vertex->right))
+  if (!graph_is_constant_in_time(graph, vertex->right))
     return multiply(graph, vertex->right, function(graph, LOGARITHM, vertex->left, ZERO));
   double exponent = graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
   if (exponent == -0.5 || (exponent == floor(exponent) && exponent < -1.0))
@@ -71,7 +67,7 @@ const char *kink_of(const struct Graph *graph, const struct Equations *equations
   const char *kink = NULL;
   graph_mark(graph, equations->residual, equations->count, needed);
   for (Node node = 0; node < graph->count; node++)
-    if (needed[node] && has_kink(graph->vertices[node].operation) && !is_constant_in_time(graph, node))
+    if (needed[node] && has_kink(graph->vertices[node].operation) && !graph_is_constant_in_time(graph, node))
       kink = operation_name(graph->vertices[node].operation);
   free(needed);
   return kink;
@@ -80,7 +76,7 @@ const char *kink_of(const struct Graph *graph, const struct Equations *equations
 static void append_equations(struct SeriesPlan *plan, const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
-    if (equations->explicit_form || equations->unrolled[equations->block[i]]) {
+    if (!is_looped(equations, i)) {
       append(plan, equations->acceleration[i]);
       continue;
     }
@@ -102,7 +98,7 @@ static void close(struct SeriesPlan *plan, struct Graph *graph, const char **kin
     graph_mark(graph, plan->targets, plan->count, needed);
     grown = false;
     for (Node node = 0; node < size; node++) {
-      if (!needed[node] || visited[node] || is_constant_in_time(graph, node)) continue;
+      if (!needed[node] || visited[node] || graph_is_constant_in_time(graph, node)) continue;
       visited[node] = grown = true;
       if (has_kink(graph->vertices[node].operation)) *kink = operation_name(graph->vertices[node].operation);
       Node auxiliary = auxiliary_of(graph, node);
@@ -129,7 +125,7 @@ struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equation
   graph_mark(graph, plan->targets, plan->count, needed);
   plan->auxiliary = allocate(size, sizeof *plan->auxiliary);
   for (Node node = 0; node < size; node++)
-    if (needed[node] && !is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
+    if (needed[node] && !graph_is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
   free(needed);
   return plan;
 }

@@ -29,7 +29,7 @@ static bool is_leaf(const struct Graph *graph, Node node) {
 }
 
 static bool is_of_parameters(const struct Graph *graph, Node node) {
-  return !is_leaf(graph, node) && (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+  return !is_leaf(graph, node) && graph_is_constant_in_time(graph, node);
 }
 
 bool is_fetched(const struct Statements *statements, Node node) {

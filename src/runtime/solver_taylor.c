@@ -4,9 +4,7 @@
  * step reaches past the communication point; the series is evaluated there, and goes on to serve the next communication
  * step unless inputs, parameters or the state were changed. The situation holds all that a step depends on.
  */
-#include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "evaluate.h"
 #include "log.h"
