@@ -66,7 +66,8 @@ struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t variable_count, result_count;
-  size_t series_rows; /* of workspace for series() */
+  size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
+  int output_derivative_order;            /* the highest that fmi2GetRealOutputDerivatives knows */
   const struct ScalarVariable *variables;
   const struct Result *results;
   const double *nominal; /* state_count: scales of the absolute tolerance */
@@ -94,6 +95,12 @@ struct Lagrangian {
    * w[series_rows] is workspace.
    */
   int (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
+  /*
+   * Taylor coefficients y[result_count] up to order of the results that are outputs, from those of the inputs, and of
+   * the state up to order + 1; w[output_series_rows] is workspace.
+   */
+  void (*output_series)(const struct Point *point, int order, const Series *input, const Series *x, Series *w,
+                        Series *y);
   /* d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
   void (*linear)(const double *parameter, const double *prepared, double *matrix);
 };

@@ -51,7 +51,8 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
   if (model->inputs.count > 0) write_attribute(writer, "canInterpolateInputs", "true");
   /* Every system has outputs: its coordinates, or those that it names. */
-  write_attribute(writer, "maxOutputDerivativeOrder", "1");
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
+                                    interface->output_derivative_order);
   if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, equations, interface);

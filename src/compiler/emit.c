@@ -159,7 +159,9 @@ static void announce_all(struct Emitter *emitter) {
     append_nodes(&targets, &node, 1);
   }
   append_nodes(&targets, program->result_along, program->interface->result_count);
-  if (program->series != NULL) append_nodes(&targets, program->series->targets, program->series->count);
+  const struct SeriesPlan *const plans[] = {program->series, program->output_series};
+  for (int i = 0; i < 2; i++)
+    if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets, plans[i]->count);
   statements_announce(emitter->statements, targets.nodes, targets.count);
   statements_settle(emitter->statements);
   free(targets.nodes);
@@ -191,6 +193,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
     emit_function(&emitter, "Jacobian matrix", "int jacobian(const struct Point *point, double *jacobian)",
                   jacobian_body, 0);
   if (program->series != NULL) emitter.series_rows = emit_series(&emitter);
+  if (program->output_series != NULL) emitter.output_series_rows = emit_output_series(&emitter);
   if (program->linear != NULL)
     emit_function(&emitter, "A, B and c", "void linear(const double *p, const double *c, double *matrix)", linear_body,
                   0);

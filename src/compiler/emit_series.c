@@ -28,8 +28,7 @@ static void assign_rows(struct SeriesWriter *writer) {
     writer->nodes[writer->node_count] = node;
     writer->row[node] = ++writer->node_count;
   }
-  writer->acceleration_row = writer->node_count;
-  writer->row_count = writer->node_count + (has_loops(writer->emitter->equations) ? writer->emitter->n : 0);
+  writer->row_count = writer->node_count;
   free(needed);
 }
 
@@ -115,8 +114,14 @@ static void write_order(struct SeriesWriter *writer) {
   write_state_order(writer);
 }
 
-/* The text of one order, and how many recurrences it has. */
-static char *order_text(struct SeriesWriter *writer) {
+/* Rows for the series of the accelerations themselves. */
+static void add_acceleration_rows(struct SeriesWriter *writer) {
+  writer->acceleration_row = writer->row_count;
+  writer->row_count += writer->emitter->n;
+}
+
+/* The text of one order. */
+static char *order_text(struct SeriesWriter *writer, void (*write)(struct SeriesWriter *)) {
   FILE *file = writer->emitter->file;
   char *text = NULL;
   size_t length = 0;
@@ -125,7 +130,7 @@ static char *order_text(struct SeriesWriter *writer) {
     fputs("lagc: out of memory\n", stderr);
     exit(1);
   }
-  write_order(writer);
+  write(writer);
   fclose(writer->emitter->file);
   writer->emitter->file = writer->emitter->statements->file = file;
   return text;
@@ -184,6 +189,22 @@ static void write_inverses(const struct SeriesWriter *writer) {
   }
 }
 
+/* Coefficient 0 of all rows. */
+static void write_first(struct SeriesWriter *writer) {
+  struct Emitter *emitter = writer->emitter;
+  for (size_t i = 0; i < writer->node_count; i++) {
+    fprintf(emitter->file, "  w[%zu][0] = ", i);
+    statements_operand(emitter->statements, writer->nodes[i]);
+    fputs(";\n", emitter->file);
+  }
+  write_inverses(writer);
+}
+
+static void declare_time(const struct SeriesWriter *writer) {
+  if (strstr(writer->order_text, "time") != NULL)
+    fputs("  const Series time = {point->time, 1.0};\n", writer->emitter->file);
+}
+
 /* Coefficient 0 of all series and 1 of the state. */
 static void write_start(struct SeriesWriter *writer) {
   struct Emitter *emitter = writer->emitter;
@@ -191,12 +212,7 @@ static void write_start(struct SeriesWriter *writer) {
   fprintf(emitter->file, "  double a[%zu];\n", n);
   statements_emit(emitter->statements, writer->plan->targets, writer->plan->count);
   emit_accelerations(emitter, "a");
-  for (size_t i = 0; i < writer->node_count; i++) {
-    fprintf(emitter->file, "  w[%zu][0] = ", i);
-    statements_operand(emitter->statements, writer->nodes[i]);
-    fputs(";\n", emitter->file);
-  }
-  write_inverses(writer);
+  write_first(writer);
   for (size_t i = 0; i < n; i++) {
     fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n  x[%zu][0] = point->state[%zu];\n", i, i, n + i, n + i);
     fprintf(emitter->file, "  x[%zu][1] = point->state[%zu];\n  x[%zu][1] = a[%zu];\n", i, n + i, n + i, i);
@@ -213,23 +229,39 @@ static void write_start(struct SeriesWriter *writer) {
 static void series_body(struct Emitter *emitter, size_t unused) {
   struct SeriesWriter *writer = emitter->series;
   (void)unused;
-  if (strstr(writer->order_text, "time") != NULL) fputs("  const Series time = {point->time, 1.0};\n", emitter->file);
+  declare_time(writer);
   write_start(writer);
   write_orders(writer);
 }
 
-size_t emit_series(struct Emitter *emitter) {
+static struct SeriesWriter writer_create(struct Emitter *emitter, const struct SeriesPlan *plan) {
   size_t size = emitter->graph->count;
   struct SeriesWriter writer = {.emitter = emitter,
-                                .plan = emitter->program->series,
+                                .plan = plan,
+                                .uses = count_uses(emitter->statements, plan->targets, plan->count),
                                 .row = allocate(size, sizeof(size_t)),
                                 .rate = allocate(size, sizeof(size_t)),
                                 .inverse = allocate(size, sizeof(size_t)),
                                 .done = allocate(size, sizeof(bool)),
                                 .nodes = allocate(size, sizeof(Node))};
-  writer.uses = count_uses(emitter->statements, writer.plan->targets, writer.plan->count);
   assign_rows(&writer);
-  writer.order_text = order_text(&writer);
+  return writer;
+}
+
+static void writer_free(struct SeriesWriter *writer) {
+  free(writer->order_text);
+  free(writer->uses);
+  free(writer->row);
+  free(writer->rate);
+  free(writer->inverse);
+  free(writer->done);
+  free(writer->nodes);
+}
+
+size_t emit_series(struct Emitter *emitter) {
+  struct SeriesWriter writer = writer_create(emitter, emitter->program->series);
+  if (has_loops(emitter->equations)) add_acceleration_rows(&writer);
+  writer.order_text = order_text(&writer, write_order);
   writer.is_unrolled = !has_loops(emitter->equations) && writer.recurrences <= UNROLLED_RECURRENCES;
   if (writer.is_unrolled) write_next_function(&writer);
   emitter->series = &writer;
@@ -237,12 +269,59 @@ size_t emit_series(struct Emitter *emitter) {
                 "int series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
                 "Series *restrict w)",
                 series_body, 0);
-  free(writer.order_text);
-  free(writer.uses);
-  free(writer.row);
-  free(writer.rate);
-  free(writer.inverse);
-  free(writer.done);
-  free(writer.nodes);
+  writer_free(&writer);
+  return writer.row_count;
+}
+
+static bool uses_accelerations(const struct SeriesWriter *writer) {
+  for (size_t i = 0; i < writer->plan->count; i++)
+    if (graph_depends_on(writer->emitter->graph, writer->plan->targets[i], ACCELERATION)) return true;
+  return false;
+}
+
+/* Coefficient k of all rows and of the outputs; the accelerations are the derivatives of the velocities. */
+static void write_output_order(struct SeriesWriter *writer) {
+  const struct Emitter *emitter = writer->emitter;
+  size_t n = emitter->n;
+  for (size_t i = 0; uses_accelerations(writer) && i < n; i++)
+    fprintf(emitter->file, "    w[%zu][k] = (k + 1) * x[%zu][k + 1];\n", writer->acceleration_row + i, n + i);
+  for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
+  const struct VariableList *outputs = &emitter->program->model->outputs;
+  for (size_t i = 0; i < outputs->count; i++) {
+    fprintf(emitter->file, "    y[%zu][k] = ", i);
+    write_coefficient(writer, outputs->items[i].node);
+    fputs(";\n", emitter->file);
+  }
+}
+
+static void output_series_body(struct Emitter *emitter, size_t unused) {
+  struct SeriesWriter *writer = emitter->series;
+  (void)unused;
+  declare_time(writer);
+  if (uses_accelerations(writer)) {
+    fprintf(emitter->file, "  double a[%zu];\n", emitter->n);
+    for (size_t i = 0; i < emitter->n; i++)
+      fprintf(emitter->file, "  a[%zu] = w[%zu][0] = x[%zu][1];\n", i, writer->acceleration_row + i, emitter->n + i);
+  }
+  statements_emit(emitter->statements, writer->plan->targets, writer->plan->count);
+  write_first(writer);
+  for (size_t i = 0; i < emitter->program->model->outputs.count; i++) {
+    fprintf(emitter->file, "  y[%zu][0] = ", i);
+    statements_operand(emitter->statements, emitter->program->model->outputs.items[i].node);
+    fputs(";\n", emitter->file);
+  }
+  fprintf(emitter->file, "  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n", writer->order_text);
+}
+
+size_t emit_output_series(struct Emitter *emitter) {
+  struct SeriesWriter writer = writer_create(emitter, emitter->program->output_series);
+  if (uses_accelerations(&writer)) add_acceleration_rows(&writer);
+  writer.order_text = order_text(&writer, write_output_order);
+  emitter->series = &writer;
+  emit_function(emitter, "Taylor coefficients of the outputs up to the order",
+                "void output_series(const struct Point *point, int order, const Series *restrict input, "
+                "const Series *restrict x, Series *restrict w, Series *restrict y)",
+                output_series_body, 0);
+  writer_free(&writer);
   return writer.row_count;
 }

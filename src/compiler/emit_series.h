@@ -7,4 +7,7 @@
 /* Writes the function series(); returns how many rows of workspace it needs. */
 size_t emit_series(struct Emitter *emitter);
 
+/* Writes the function output_series(), for the outputs that are results; returns its rows of workspace. */
+size_t emit_output_series(struct Emitter *emitter);
+
 #endif

@@ -125,6 +125,9 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",
           moves ? "directional" : "NULL");
   if (program->series != NULL) fprintf(file, "    .series_rows = %zu,\n    .series = series,\n", emitter->series_rows);
+  fprintf(file, "    .output_derivative_order = %d,\n", interface->output_derivative_order);
+  if (program->output_series != NULL)
+    fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", emitter->output_series_rows);
   fprintf(file, "    .jacobian = %s,\n    .linear = %s,\n};\n", program->jacobian != NULL ? "jacobian" : "NULL",
           program->linear != NULL ? "linear" : "NULL");
 }

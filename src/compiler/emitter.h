@@ -13,9 +13,9 @@ struct Emitter {
   const struct Equations *equations;
   const struct Graph *graph;
   struct Statements *statements;
-  size_t n, states;            /* coordinates, state variables */
-  struct SeriesWriter *series; /* while series() is written */
-  size_t series_rows;          /* of workspace that series() needs */
+  size_t n, states;                       /* coordinates, state variables */
+  struct SeriesWriter *series;            /* while series() is written */
+  size_t series_rows, output_series_rows; /* of workspace that series() and output_series() need */
 };
 
 /* A growing list of nodes. */

@@ -99,13 +99,23 @@ static enum SolverMethod method_of(const struct Model *model, const struct Equat
   if (model->coordinates.count == 0) return SOLVER_NONE;
   if (model->method != SOLVER_DEFAULT) return model->method;
   if (model->linearized) return SOLVER_EXACT;
-  return kink_of(model->graph, equations) == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
+  return kink_of(model->graph, equations->residual, equations->count) == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
+}
+
+/* Higher derivatives than the first are read from Taylor series, which end at a kink. */
+static int output_derivative_order(const struct Interface *interface, const struct Model *model) {
+  if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return 1;
+  const char *kink = NULL;
+  for (size_t i = 0; i < model->outputs.count && kink == NULL; i++)
+    kink = kink_of(model->graph, &model->outputs.items[i].node, 1);
+  return kink == NULL ? OUTPUT_ORDER : 1;
 }
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
   interface->method = method_of(model, equations);
+  interface->output_derivative_order = output_derivative_order(interface, model);
   interface->depends_on_time = uses_time(model, equations);
   interface->state_count = 2 * n + (model->work_line > 0 ? 1 : 0);
   if (interface->depends_on_time) {

@@ -12,12 +12,15 @@ struct InterfaceVariable {
   Node node;                   /* the value; ZERO for statistics */
 };
 
+enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
+
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
   size_t state_count, result_count;
   bool depends_on_time;
   enum SolverMethod method; /* the one that is used */
+  int output_derivative_order;
 };
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations);

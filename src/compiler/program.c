@@ -63,11 +63,21 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
 }
 
 static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
-  const char *kink;
-  program->series = series_plan_create(model->graph, program->equations, model->work_line > 0, &kink);
-  if (program->series == NULL)
+  const struct Equations *equations = program->equations;
+  const char *kink = kink_of(model->graph, equations->residual, equations->count);
+  if (kink == NULL) program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
+  else
     report_error(diagnostics, model->solver_line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
+}
+
+static void create_output_series(struct Program *program, const struct Model *model) {
+  size_t count = model->outputs.count;
+  if (count == 0 || program->interface->output_derivative_order == 1) return;
+  Node *outputs = allocate(count, sizeof *outputs);
+  for (size_t i = 0; i < count; i++) outputs[i] = model->outputs.items[i].node;
+  program->output_series = series_plan_of_outputs(model->graph, outputs, count);
+  free(outputs);
 }
 
 struct Program *program_create(struct Model *model, const struct Equations *equations,
@@ -97,6 +107,7 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   if (interface->method == SOLVER_BDF) create_jacobian(program, graph);
   free(seeds);
   if (interface->method == SOLVER_TAYLOR) create_series(program, model, diagnostics);
+  create_output_series(program, model);
   if (graph->overflow)
     report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",
                  NODE_LIMIT);
@@ -109,6 +120,7 @@ void program_free(struct Program *program) {
   if (program == NULL) return;
   linear_system_free(program->linear);
   series_plan_free(program->series);
+  series_plan_free(program->output_series);
   free(program->along);
   free(program->jacobian);
   free(program->power_jacobian);

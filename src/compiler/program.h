@@ -11,9 +11,10 @@ struct Program {
   const struct Model *model;
   const struct Equations *equations;
   const struct Interface *interface;
-  struct LinearSystem *linear; /* NULL unless the solver is exact */
-  struct SeriesPlan *series;   /* NULL unless the solver is taylor */
-  Node *along;                 /* derivative of the accelerations, or right sides for it in large blocks */
+  struct LinearSystem *linear;      /* NULL unless the solver is exact */
+  struct SeriesPlan *series;        /* of the motion; NULL unless the solver is taylor */
+  struct SeriesPlan *output_series; /* NULL where outputs have no derivatives above the first, or are variables */
+  Node *along;                      /* derivative of the accelerations, or right sides for it in large blocks */
   Node power_along;
   Node *jacobian; /* count rows by state_count columns, as along for each state; NULL unless the solver asks */
   Node *power_jacobian;

@@ -62,10 +62,10 @@ static bool has_kink(enum Operation operation) {
          operation == LESS;
 }
 
-const char *kink_of(const struct Graph *graph, const struct Equations *equations) {
+const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count) {
   bool *needed = allocate(graph->count, sizeof *needed);
   const char *kink = NULL;
-  graph_mark(graph, equations->residual, equations->count, needed);
+  graph_mark(graph, nodes, count, needed);
   for (Node node = 0; node < graph->count; node++)
     if (needed[node] && has_kink(graph->vertices[node].operation) && !graph_is_constant_in_time(graph, node))
       kink = operation_name(graph->vertices[node].operation);
@@ -87,10 +87,10 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
 }
 
 /* Adds the auxiliary nodes of all nodes that the targets need, and theirs, until there are no new ones. */
-static void close(struct SeriesPlan *plan, struct Graph *graph, const char **kink) {
+static void close(struct SeriesPlan *plan, struct Graph *graph) {
   bool *visited = NULL;
   size_t known = 0;
-  for (bool grown = true; grown && *kink == NULL && !graph->overflow;) {
+  for (bool grown = true; grown && !graph->overflow;) {
     size_t size = graph->count;
     bool *needed = allocate(size, sizeof *needed);
     visited = reallocate(visited, size, sizeof *visited);
@@ -100,7 +100,6 @@ static void close(struct SeriesPlan *plan, struct Graph *graph, const char **kin
     for (Node node = 0; node < size; node++) {
       if (!needed[node] || visited[node] || graph_is_constant_in_time(graph, node)) continue;
       visited[node] = grown = true;
-      if (has_kink(graph->vertices[node].operation)) *kink = operation_name(graph->vertices[node].operation);
       Node auxiliary = auxiliary_of(graph, node);
       if (auxiliary != ZERO) append(plan, auxiliary);
     }
@@ -109,17 +108,9 @@ static void close(struct SeriesPlan *plan, struct Graph *graph, const char **kin
   free(visited);
 }
 
-struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equations *equations, bool with_power,
-                                      const char **kink) {
-  struct SeriesPlan *plan = allocate(1, sizeof *plan);
-  *kink = NULL;
-  append_equations(plan, equations);
-  if (with_power) append(plan, equations->power);
-  close(plan, graph, kink);
-  if (*kink != NULL) {
-    series_plan_free(plan);
-    return NULL;
-  }
+/* The plan with its targets given. */
+static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
+  close(plan, graph);
   size_t size = graph->count;
   bool *needed = allocate(size, sizeof *needed);
   graph_mark(graph, plan->targets, plan->count, needed);
@@ -128,6 +119,19 @@ struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equation
     if (needed[node] && !graph_is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
   free(needed);
   return plan;
+}
+
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power) {
+  struct SeriesPlan *plan = allocate(1, sizeof *plan);
+  append_equations(plan, equations);
+  if (with_power) append(plan, equations->power);
+  return finish(plan, graph);
+}
+
+struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count) {
+  struct SeriesPlan *plan = allocate(1, sizeof *plan);
+  for (size_t i = 0; i < count; i++) append(plan, outputs[i]);
+  return finish(plan, graph);
 }
 
 void series_plan_free(struct SeriesPlan *plan) {

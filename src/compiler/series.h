@@ -14,12 +14,14 @@ struct SeriesPlan {
   Node *auxiliary; /* for each node of the graph, the node that its recurrence needs beside its operands; ZERO: none */
 };
 
-/* The name of a function with a kink in the equations of motion, such as "min"; NULL where there is none. */
-const char *kink_of(const struct Graph *graph, const struct Equations *equations);
+/* The name of a function with a kink, which has no Taylor series, below the nodes, such as "min"; NULL for none. */
+const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 
-/* NULL where a function with a kink, which *kink then names, has no Taylor series. Free with series_plan_free(). */
-struct SeriesPlan *series_plan_create(struct Graph *graph, const struct Equations *equations, bool with_power,
-                                      const char **kink);
+/* For the motion; the equations have no kink. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
+
+/* For expressions of the motion, without kinks. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);
 void series_plan_free(struct SeriesPlan *plan);
 
 #endif

@@ -28,13 +28,13 @@ struct Point solver_point(struct Instance *instance, double time, const double *
 /* The polynomials of the inputs, continued from the end of the step. */
 static void advance_inputs(struct Instance *instance, double end) {
   if (!instance->situation->input_derivatives_set) return;
-  double s = end - instance->situation->time;
   size_t n = lagrangian.input_count;
   for (size_t i = 0; i < n; i++) {
-    double *d = instance->input_derivatives + i;
-    instance->input[i] += s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
-    d[0] += s * (d[n] + s / 2 * d[2 * n]);
-    d[n] += s * d[2 * n];
+    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
+    expand_input(instance, i, end, coefficient);
+    instance->input[i] = coefficient[0];
+    derivative[0] = coefficient[1];
+    derivative[n] = 2.0 * coefficient[2];
   }
   instance->situation->changed = 1;
 }

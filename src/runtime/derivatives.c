@@ -1,4 +1,4 @@
-/* Directional derivatives (section 2.1.9), derivatives of inputs and outputs (section 4.2.1). */
+/* Directional derivatives (section 2.1.9) and derivatives of inputs (section 4.2.1). */
 #include <math.h>
 #include <string.h>
 
@@ -130,34 +130,16 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   return fmi2OK;
 }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                                        const fmi2Integer order[], fmi2Real value[]) {
-  static const char *const name = "fmi2GetRealOutputDerivatives";
-  struct Instance *instance = c;
-  if (instance == NULL) return fmi2Error;
-  if (!check_call(instance, FUNCTION_GET_OUTPUT_DERIVATIVES, name) || !check_array(instance, vr, nvr, name, "vr") ||
-      !check_array(instance, order, nvr, name, "order") || !check_array(instance, value, nvr, name, "value"))
-    return fmi2Error;
-  for (size_t i = 0; i < nvr; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, vr[i], false, name);
-    if (variable == NULL) return fmi2Error;
-    if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", name, variable->name);
-    if (order[i] != 1)
-      return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1", name, order[i],
-                       variable->name);
-  }
-  fmi2Status status = evaluate_prepare(instance);
+fmi2Status derivatives_in_time(struct Instance *instance, const fmi2ValueReference *vr, size_t nvr, double *value) {
   struct Point point = evaluate_point(instance);
   struct Direction direction = direction_create(instance);
   direction.seed.time = 1.0;
   direction.seed.input = instance->input_derivatives;
-  if (status == fmi2OK && lagrangian.derivatives != NULL) {
-    if (!evaluate_derivatives(instance, &point, direction.state)) {
-      log_singularity(instance, fmi2Discard, point.time);
-      status = fmi2Discard;
-    }
+  if (lagrangian.derivatives != NULL && !evaluate_derivatives(instance, &point, direction.state)) {
+    log_singularity(instance, fmi2Discard, point.time);
+    return fmi2Discard;
   }
-  if (status == fmi2OK) status = follow(instance, &point, &direction);
+  fmi2Status status = follow(instance, &point, &direction);
   for (size_t i = 0; i < nvr && status == fmi2OK; i++)
     value[i] = evaluate_along(&lagrangian.variables[vr[i]], &point, &direction.seed, direction.derivative,
                               direction.derivative_along);

@@ -48,12 +48,21 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   return sum == 0.0; /* infinities and NaN leave a NaN */
 }
 
-void evaluate_inputs(const struct Instance *instance, double time, double *input) {
+void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
   double s = time - instance->situation->time;
+  size_t n = lagrangian.input_count;
+  const double *d = instance->input_derivatives + i;
+  coefficient[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
+  coefficient[1] = d[0] + s * (d[n] + s / 2 * d[2 * n]);
+  coefficient[2] = (d[n] + s * d[2 * n]) / 2;
+  coefficient[3] = d[2 * n] / 6;
+}
+
+void evaluate_inputs(const struct Instance *instance, double time, double *input) {
   for (size_t i = 0; i < lagrangian.input_count; i++) {
-    const double *d = instance->input_derivatives + i;
-    size_t n = lagrangian.input_count;
-    input[i] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
+    double coefficient[INPUT_ORDER + 1];
+    expand_input(instance, i, time, coefficient);
+    input[i] = coefficient[0];
   }
 }
 

@@ -19,7 +19,10 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
 /* Logs why evaluate_derivatives() returned false, as a message of this status. */
 void log_singularity(const struct Instance *instance, fmi2Status status, double time);
 
-/* The inputs at time, as polynomials that start at situation->time; input[input_count]. */
+/* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
+void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
+
+/* The inputs at time; input[input_count]. */
 void evaluate_inputs(const struct Instance *instance, double time, double *input);
 
 /* The value of a Real variable. Returns fmi2Discard after logging where it is not finite. */
@@ -31,5 +34,8 @@ fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVaria
  */
 double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
                       const double *derivative, const double *derivative_along);
+
+/* d value / dt of outputs, with the inputs' first derivatives. Returns fmi2Discard after logging a singularity. */
+fmi2Status derivatives_in_time(struct Instance *instance, const fmi2ValueReference *vr, size_t nvr, double *value);
 
 #endif

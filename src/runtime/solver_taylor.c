@@ -54,20 +54,6 @@ static void destroy(struct Instance *instance) {
   instance->solver_memory = NULL;
 }
 
-/* The polynomials of the inputs, about the origin. */
-static void expand_inputs(const struct Instance *instance, struct Taylor *taylor) {
-  double s = taylor->saved->origin - instance->situation->time;
-  size_t n = lagrangian.input_count;
-  for (size_t i = 0; i < n; i++) {
-    const double *d = instance->input_derivatives + i;
-    double *u = taylor->input[i];
-    u[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
-    u[1] = d[0] + s * (d[n] + s / 2 * d[2 * n]);
-    u[2] = (d[n] + s * d[2 * n]) / 2;
-    u[3] = d[2 * n] / 6;
-  }
-}
-
 /* The largest coefficient of this order, in units of the variables' scales. */
 static double norm(const struct Taylor *taylor, int64_t order) {
   double largest = 0.0;
@@ -94,7 +80,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   struct Saved *saved = taylor->saved;
   double *state = instance->work;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] = taylor->x[i][0];
-  expand_inputs(instance, taylor);
+  for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, saved->origin, taylor->input[i]);
   struct Point point = evaluate_point(instance);
   point.time = saved->origin;
   point.state = state;

@@ -1,0 +1,145 @@
+"""
+Motions to any number of digits: Taylor series of SymPy's equations in FLINT's ball arithmetic. Nothing here is shared
+with the FMUs: the derivation is SymPy's, functions of series are FLINT's, and the mass matrix is eliminated by Gauss.
+"""
+
+from contextlib import contextmanager
+
+import numpy as np
+import sympy as sp
+from flint import arb, arb_series, ctx
+
+
+def on_series(name):
+    def function(x):
+        return getattr(x if isinstance(x, arb_series) else arb(x), name)()
+
+    return function
+
+
+def on_exponentials(name):
+    """The hyperbolic functions, which FLINT has for numbers alone."""
+    def function(x):
+        if not isinstance(x, arb_series):
+            return getattr(arb(x), name)()
+        root = lambda sign: (x * x + sign).sqrt()
+        formulas = {
+            "sinh": lambda: (x.exp() - (-x).exp()) / 2, "cosh": lambda: (x.exp() + (-x).exp()) / 2,
+            "tanh": lambda: 1 - 2 / ((2 * x).exp() + 1), "asinh": lambda: (x + root(1)).log(),
+            "acosh": lambda: (x + root(-1)).log(), "atanh": lambda: ((1 + x) / (1 - x)).log() / 2,
+        }  # fmt: skip
+        return formulas[name]()
+
+    return function
+
+
+def number(value):
+    """A number as SymPy writes it: an integer, or mpmath's (sign, mantissa, exponent, bits)."""
+    if not isinstance(value, tuple):
+        return arb(value)
+    sign, mantissa, exponent, _ = value
+    return (-1) ** sign * arb(int(mantissa)) * arb(2) ** int(exponent)
+
+
+FUNCTIONS = {name: on_series(name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")}
+FUNCTIONS |= {name: on_exponentials(name) for name in ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh")}
+FUNCTIONS |= {"atan2": lambda y, x: FUNCTIONS["atan"](y / x), "mpf": number}
+
+
+@contextmanager
+def precision(digits, length):
+    """FLINT's working precision, and the number of coefficients that it keeps."""
+    before = ctx.prec, ctx.cap
+    ctx.dps, ctx.cap = digits, length
+    try:
+        yield
+    finally:
+        ctx.prec, ctx.cap = before
+
+
+def solve(matrix, right):
+    """Gauss's elimination; the elements are numbers or series."""
+    n = len(right)
+    rows = [[*row, r] for row, r in zip(matrix, right)]
+    for k in range(n):
+        for i in range(k + 1, n):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = rows[i][: k + 1] + [a - factor * b for a, b in zip(rows[i][k + 1 :], rows[k][k + 1 :])]
+    solution = [None] * n
+    for k in reversed(range(n)):
+        total = rows[k][n]
+        for j in range(k + 1, n):
+            total = total - rows[k][j] * solution[j]
+        solution[k] = total / rows[k][k]
+    return solution
+
+
+def coefficient(series, k):
+    if isinstance(series, arb_series):
+        return series[k] if k < len(series) else arb(0)
+    return arb(series) if k == 0 else arb(0)
+
+
+class Motion:
+    """The motion of a system of systems_in_sympy from values by symbol name, as trajectory() and coefficients()."""
+
+    def __init__(self, definition, values, digits=40):
+        self.definition, self.digits = definition, digits
+        n = len(definition.q)
+        self.constants = [values[s.name] for s in [*definition.inputs, *definition.parameters]]
+        self.start = [values[s.name] for s in [*definition.q, *definition.v]]
+        flat = [*definition.mass, *(sum(terms) for terms in definition.terms)]
+        with precision(digits, 1):
+            functions = FUNCTIONS | {"pi": arb.pi()}
+        self.evaluate = sp.lambdify(definition.arguments, flat, modules=[functions, "mpmath"], cse=True)
+        self.n = n
+
+    def _accelerations(self, time, states):
+        numbers = self.evaluate(time, *states, *map(arb, self.constants))
+        mass = [numbers[i * self.n : (i + 1) * self.n] for i in range(self.n)]
+        return solve(mass, numbers[self.n * self.n :])
+
+    def coefficients(self, time, state, order):
+        """
+        Those of the states up to order: each order of the accelerations gives the next of the states. Radii of the
+        balls are dropped each time: they would grow far beyond the errors that rounding really makes.
+        """
+        n, x = self.n, [[arb(value)] for value in state]
+        for k in range(order):
+            with precision(self.digits, k + 1):
+                a = self._accelerations(arb_series([time, 1]), [arb_series(row) for row in x])
+                for i in range(n):
+                    x[i].append((x[n + i][k] / (k + 1)).mid())
+                    x[n + i].append((coefficient(a[i], k) / (k + 1)).mid())
+        return x
+
+    def trajectory(self, times, start_time=0.0):
+        """The states at the ascending times, as arrays of doubles; errors are about 10^(10 - digits) a step."""
+        order, rows = self.digits, []
+        time, state = arb(start_time), [arb(value) for value in self.start]
+        with precision(self.digits, order + 1):
+            x, reach = self._series(time, state, order)
+            for target in map(arb, times):
+                while target > time + reach:
+                    time, state = time + reach, self._at(x, reach)
+                    x, reach = self._series(time, state, order)
+                rows.append([float(value) for value in self._at(x, target - time)])
+        return np.array(rows)
+
+    def _series(self, time, state, order):
+        x = self.coefficients(time, state, order)
+        tolerance = 10.0 ** (10 - self.digits)
+        size = lambda k: max(abs(float(row[k])) for row in x) or 1e-300
+        reach = min((tolerance / size(k)) ** (1 / k) for k in (order - 1, order))
+        return x, arb(float(reach)).mid()
+
+    @staticmethod
+    def _at(x, s):
+        """Horner's rule."""
+        values = []
+        for row in x:
+            total = arb(0)
+            for c in reversed(row):
+                total = total * s + c
+            values.append(total.mid())
+        return values
