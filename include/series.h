@@ -14,53 +14,110 @@ enum { SERIES_LENGTH = 24 };
 
 typedef double Series[SERIES_LENGTH];
 
-/* For functions that are compiled anew for each order; SERIES_ROLLED asks for one copy that serves all orders. */
-#if defined(__GNUC__) && !defined(SERIES_ROLLED)
+/* For functions that are compiled anew for each order; with SERIES_ROLLED one copy serves all orders. */
+#ifdef __GNUC__
 #define SERIES_INLINE inline __attribute__((always_inline))
 #define SERIES_NOT_INLINE __attribute__((noinline, unused))
-#define SERIES_IS_CONSTANT(n) __builtin_constant_p(n)
 #else
 #define SERIES_INLINE inline
 #define SERIES_NOT_INLINE inline
+#endif
+#if defined(__GNUC__) && !defined(SERIES_ROLLED)
+#define SERIES_IS_CONSTANT(n) __builtin_constant_p(n)
+#else
 #define SERIES_IS_CONSTANT(n) 0
 #endif
 
+#ifdef __has_builtin
+#if __has_builtin(__builtin_shufflevector)
+#define SERIES_HAS_VECTORS
+#endif
+#endif
+
+/* Two neighbouring products, which the processor computes as one where the compiler can say so. */
+#ifdef SERIES_HAS_VECTORS
+typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
+
+static SERIES_INLINE Pair pair_product(const double *a, const double *b) {
+  Pair forwards, backwards;
+  __builtin_memcpy(&forwards, a, sizeof forwards);
+  __builtin_memcpy(&backwards, b - 1, sizeof backwards);
+  return forwards * __builtin_shufflevector(backwards, backwards, 1, 0);
+}
+
+static SERIES_INLINE Pair pair_sum(Pair a, Pair b) {
+  return a + b;
+}
+
+static SERIES_INLINE double pair_total(Pair a) {
+  return a[0] + a[1];
+}
+#else
+typedef struct Pair {
+  double first, second;
+} Pair;
+
+static SERIES_INLINE Pair pair_product(const double *a, const double *b) {
+  return (Pair){a[0] * b[0], a[1] * b[-1]};
+}
+
+static SERIES_INLINE Pair pair_sum(Pair a, Pair b) {
+  return (Pair){a.first + b.first, a.second + b.second};
+}
+
+static SERIES_INLINE double pair_total(Pair a) {
+  return a.first + a.second;
+}
+#endif
+
 /*
- * sum of a[j] b[-j] for j < n, b running backwards. The sum is a tree, so that few additions wait for one another and
- * rounding grows with the logarithm of n.
+ * sum of a[j] b[-j] for j < n, b running backwards, by pairs of neighbours. The sum is a tree, so that few additions
+ * wait for one another and rounding grows with the logarithm of n.
  */
+static SERIES_INLINE Pair series_pairs1(const double *a, const double *b) {
+  return pair_product(a, b);
+}
+
+#define SERIES_PAIRS(n, half, rest)                                                                                    \
+  static SERIES_INLINE Pair series_pairs##n(const double *a, const double *b) {                                        \
+    return pair_sum(series_pairs##half(a, b), series_pairs##rest(a + 2 * (half), b - 2 * (half)));                     \
+  }
+SERIES_PAIRS(2, 1, 1)
+SERIES_PAIRS(3, 2, 1)
+SERIES_PAIRS(4, 2, 2)
+SERIES_PAIRS(5, 3, 2)
+SERIES_PAIRS(6, 3, 3)
+SERIES_PAIRS(7, 4, 3)
+SERIES_PAIRS(8, 4, 4)
+SERIES_PAIRS(9, 5, 4)
+SERIES_PAIRS(10, 5, 5)
+SERIES_PAIRS(11, 6, 5)
+SERIES_PAIRS(12, 6, 6)
+#undef SERIES_PAIRS
+
+#define SERIES_DOT(even, odd, pairs)                                                                                   \
+  static SERIES_INLINE double series_dot##even(const double *a, const double *b) {                                     \
+    return pair_total(series_pairs##pairs(a, b));                                                                      \
+  }                                                                                                                    \
+  static SERIES_INLINE double series_dot##odd(const double *a, const double *b) {                                      \
+    return pair_total(series_pairs##pairs(a, b)) + a[(even)] * b[-(even)];                                             \
+  }
+SERIES_DOT(2, 3, 1)
+SERIES_DOT(4, 5, 2)
+SERIES_DOT(6, 7, 3)
+SERIES_DOT(8, 9, 4)
+SERIES_DOT(10, 11, 5)
+SERIES_DOT(12, 13, 6)
+SERIES_DOT(14, 15, 7)
+SERIES_DOT(16, 17, 8)
+SERIES_DOT(18, 19, 9)
+SERIES_DOT(20, 21, 10)
+SERIES_DOT(22, 23, 11)
+#undef SERIES_DOT
+
 static SERIES_INLINE double series_dot1(const double *a, const double *b) {
   return a[0] * b[0];
 }
-
-#define SERIES_DOT(n, half, rest)                                                                                      \
-  static SERIES_INLINE double series_dot##n(const double *a, const double *b) {                                        \
-    return series_dot##half(a, b) + series_dot##rest(a + (half), b - (half));                                          \
-  }
-SERIES_DOT(2, 1, 1)
-SERIES_DOT(3, 2, 1)
-SERIES_DOT(4, 2, 2)
-SERIES_DOT(5, 3, 2)
-SERIES_DOT(6, 3, 3)
-SERIES_DOT(7, 4, 3)
-SERIES_DOT(8, 4, 4)
-SERIES_DOT(9, 5, 4)
-SERIES_DOT(10, 5, 5)
-SERIES_DOT(11, 6, 5)
-SERIES_DOT(12, 6, 6)
-SERIES_DOT(13, 7, 6)
-SERIES_DOT(14, 7, 7)
-SERIES_DOT(15, 8, 7)
-SERIES_DOT(16, 8, 8)
-SERIES_DOT(17, 9, 8)
-SERIES_DOT(18, 9, 9)
-SERIES_DOT(19, 10, 9)
-SERIES_DOT(20, 10, 10)
-SERIES_DOT(21, 11, 10)
-SERIES_DOT(22, 11, 11)
-SERIES_DOT(23, 12, 11)
-SERIES_DOT(24, 12, 12)
-#undef SERIES_DOT
 
 static SERIES_INLINE double series_dot_by_size(int n, const double *a, const double *b) {
   switch (n) {
@@ -87,7 +144,6 @@ static SERIES_INLINE double series_dot_by_size(int n, const double *a, const dou
   case 21: return series_dot21(a, b);
   case 22: return series_dot22(a, b);
   case 23: return series_dot23(a, b);
-  case 24: return series_dot24(a, b);
   default: return 0.0;
   }
 }
@@ -101,25 +157,43 @@ static SERIES_INLINE double series_dot(int n, const double *a, const double *b) 
   return SERIES_IS_CONSTANT(n) ? series_dot_by_size(n, a, b) : series_dot_of_any_size(n, a, b);
 }
 
+static SERIES_INLINE double series_middle_by_size(int k, const double *a, const double *b) {
+  if (k < 3) return k == 2 ? a[1] * b[1] : 0.0;
+  return series_dot_by_size(k - 3, a + 2, b + k - 2) + (a[1] * b[k - 1] + a[k - 1] * b[1]);
+}
+
+static SERIES_NOT_INLINE double series_middle_of_any_size(int k, const double *a, const double *b) {
+  return series_middle_by_size(k, a, b);
+}
+
+/*
+ * The sum of a_j b_(k-j) without the ends j = 0 and j = k. The newest coefficients stand alone: a pair that holds one
+ * would wait until it has reached memory.
+ */
+static SERIES_INLINE double series_middle(int k, const double *a, const double *b) {
+  return SERIES_IS_CONSTANT(k) ? series_middle_by_size(k, a, b) : series_middle_of_any_size(k, a, b);
+}
+
 /* (a b)_k */
 static SERIES_INLINE double series_product(int k, const double *a, const double *b) {
-  return series_dot(k + 1, a, b + k);
+  return series_middle(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
 }
 
 /* (a b)_k without its first term a_0 b_k */
 static SERIES_INLINE double series_rest(int k, const double *a, const double *b) {
-  return series_dot(k, a + 1, b + k - 1);
+  return series_middle(k, a, b) + a[k] * b[0];
 }
 
 /* (a a)_k: each pair of different coefficients stands twice in the sum. */
 static SERIES_INLINE double series_square(int k, const double *a) {
-  double pairs = 2.0 * series_dot((k + 1) / 2, a, a + k);
-  return k % 2 == 0 ? pairs + a[k / 2] * a[k / 2] : pairs;
+  double half = a[0] * a[k];
+  if (k > 2) half += series_dot((k - 3) / 2, a + 2, a + k - 2) + a[1] * a[k - 1];
+  return k % 2 == 0 ? 2.0 * half + a[k / 2] * a[k / 2] : 2.0 * half;
 }
 
 /* (a / b)_k, where top is a_k, inverse is 1 / b_0 and c holds the quotient so far */
 static SERIES_INLINE double series_quotient(int k, double top, double inverse, const double *b, const double *c) {
-  return (top - series_rest(k, b, c)) * inverse;
+  return ((top - b[k] * c[0]) - series_middle(k, b, c)) * inverse;
 }
 
 /* (sqrt a)_k */
@@ -136,7 +210,9 @@ static inline double series_power(int k, double n, const double *a, const double
 
 /* c' = a' b: c_k, with the series of a' */
 static SERIES_INLINE double series_integral(int k, const double *rate, const double *b) {
-  return series_dot(k, rate, b + k - 1) * (1.0 / k);
+  if (k < 3) return (k == 1 ? rate[0] * b[0] : rate[0] * b[1] + rate[1] * b[0]) * (1.0 / k);
+  double old = series_dot(k - 3, rate + 1, b + k - 2) + (rate[0] * b[k - 1] + rate[k - 2] * b[1]);
+  return (old + rate[k - 1] * b[0]) * (1.0 / k);
 }
 
 /* c' = a' / b: c_k, where top is a_k */

@@ -176,7 +176,9 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
                             .n = program->equations->count,
                             .states = program->interface->state_count};
   announce_all(&emitter);
+  struct SeriesWriter *series = program->series == NULL ? NULL : series_writer_create(&emitter);
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
+  fputs(series != NULL && !series->is_unrolled ? "#define SERIES_ROLLED 1\n" : "", file);
   fputs("#include <math.h>\n#include <string.h>\n\n#include \"lagrangian.h\"\n", file);
   fputs(has_loops(emitter.equations) ? "#include \"ldlt.h\"\n" : "", file);
   fputs(emitter.n > 0 ? "#include \"solver.h\"\n\n" : "\n", file);
@@ -192,7 +194,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
   if (program->jacobian != NULL)
     emit_function(&emitter, "Jacobian matrix", "int jacobian(const struct Point *point, double *jacobian)",
                   jacobian_body, 0);
-  if (program->series != NULL) emitter.series_rows = emit_series(&emitter);
+  if (series != NULL) emitter.series_rows = emit_series(&emitter, series);
   if (program->output_series != NULL) emitter.output_series_rows = emit_output_series(&emitter);
   if (program->linear != NULL)
     emit_function(&emitter, "A, B and c", "void linear(const double *p, const double *c, double *matrix)", linear_body,

@@ -5,7 +5,6 @@
 
 #include "emit_accelerations.h"
 #include "memory.h"
-#include "recurrences.h"
 
 /* Systems up to this many recurrences an order get code of their own for each order. */
 enum { UNROLLED_RECURRENCES = 40 };
@@ -234,17 +233,18 @@ static void series_body(struct Emitter *emitter, size_t unused) {
   write_orders(writer);
 }
 
-static struct SeriesWriter writer_create(struct Emitter *emitter, const struct SeriesPlan *plan) {
+static struct SeriesWriter *writer_create(struct Emitter *emitter, const struct SeriesPlan *plan) {
   size_t size = emitter->graph->count;
-  struct SeriesWriter writer = {.emitter = emitter,
-                                .plan = plan,
-                                .uses = count_uses(emitter->statements, plan->targets, plan->count),
-                                .row = allocate(size, sizeof(size_t)),
-                                .rate = allocate(size, sizeof(size_t)),
-                                .inverse = allocate(size, sizeof(size_t)),
-                                .done = allocate(size, sizeof(bool)),
-                                .nodes = allocate(size, sizeof(Node))};
-  assign_rows(&writer);
+  struct SeriesWriter *writer = allocate(1, sizeof *writer);
+  *writer = (struct SeriesWriter){.emitter = emitter,
+                                  .plan = plan,
+                                  .uses = count_uses(emitter->statements, plan->targets, plan->count),
+                                  .row = allocate(size, sizeof(size_t)),
+                                  .rate = allocate(size, sizeof(size_t)),
+                                  .inverse = allocate(size, sizeof(size_t)),
+                                  .done = allocate(size, sizeof(bool)),
+                                  .nodes = allocate(size, sizeof(Node))};
+  assign_rows(writer);
   return writer;
 }
 
@@ -256,21 +256,27 @@ static void writer_free(struct SeriesWriter *writer) {
   free(writer->inverse);
   free(writer->done);
   free(writer->nodes);
+  free(writer);
 }
 
-size_t emit_series(struct Emitter *emitter) {
-  struct SeriesWriter writer = writer_create(emitter, emitter->program->series);
-  if (has_loops(emitter->equations)) add_acceleration_rows(&writer);
-  writer.order_text = order_text(&writer, write_order);
-  writer.is_unrolled = !has_loops(emitter->equations) && writer.recurrences <= UNROLLED_RECURRENCES;
-  if (writer.is_unrolled) write_next_function(&writer);
-  emitter->series = &writer;
+struct SeriesWriter *series_writer_create(struct Emitter *emitter) {
+  struct SeriesWriter *writer = writer_create(emitter, emitter->program->series);
+  if (has_loops(emitter->equations)) add_acceleration_rows(writer);
+  writer->order_text = order_text(writer, write_order);
+  writer->is_unrolled = !has_loops(emitter->equations) && writer->recurrences <= UNROLLED_RECURRENCES;
+  return writer;
+}
+
+size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer) {
+  size_t rows = writer->row_count;
+  if (writer->is_unrolled) write_next_function(writer);
+  emitter->series = writer;
   emit_function(emitter, "Taylor coefficients of the state up to the order",
                 "int series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
                 "Series *restrict w)",
                 series_body, 0);
-  writer_free(&writer);
-  return writer.row_count;
+  writer_free(writer);
+  return rows;
 }
 
 static bool uses_accelerations(const struct SeriesWriter *writer) {
@@ -314,14 +320,15 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
 }
 
 size_t emit_output_series(struct Emitter *emitter) {
-  struct SeriesWriter writer = writer_create(emitter, emitter->program->output_series);
-  if (uses_accelerations(&writer)) add_acceleration_rows(&writer);
-  writer.order_text = order_text(&writer, write_output_order);
-  emitter->series = &writer;
+  struct SeriesWriter *writer = writer_create(emitter, emitter->program->output_series);
+  if (uses_accelerations(writer)) add_acceleration_rows(writer);
+  writer->order_text = order_text(writer, write_output_order);
+  size_t rows = writer->row_count;
+  emitter->series = writer;
   emit_function(emitter, "Taylor coefficients of the outputs up to the order",
                 "void output_series(const struct Point *point, int order, const Series *restrict input, "
                 "const Series *restrict x, Series *restrict w, Series *restrict y)",
                 output_series_body, 0);
-  writer_free(&writer);
-  return writer.row_count;
+  writer_free(writer);
+  return rows;
 }

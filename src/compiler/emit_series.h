@@ -2,10 +2,13 @@
 #ifndef EMIT_SERIES_H
 #define EMIT_SERIES_H
 
-#include "emitter.h"
+#include "recurrences.h"
 
-/* Writes the function series(); returns how many rows of workspace it needs. */
-size_t emit_series(struct Emitter *emitter);
+/* Prepares series(); writer->is_unrolled then tells whether it gets code of its own for each order. */
+struct SeriesWriter *series_writer_create(struct Emitter *emitter);
+
+/* Writes the function series() and frees the writer; returns how many rows of workspace the function needs. */
+size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer);
 
 /* Writes the function output_series(), for the outputs that are results; returns its rows of workspace. */
 size_t emit_output_series(struct Emitter *emitter);

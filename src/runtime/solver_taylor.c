@@ -13,6 +13,7 @@
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.1;
 enum { STEP_LIMIT = 10000000 }; /* steps in one communication step */
+enum { STIFF_STEPS = 1000 };    /* in so many steps, a system that is not stiff moves */
 
 /* What the situation holds for this solver. */
 struct Saved {
@@ -54,11 +55,16 @@ static void destroy(struct Instance *instance) {
   instance->solver_memory = NULL;
 }
 
+static double scale(const struct Taylor *taylor, size_t i) {
+  double size = fabs(taylor->x[i][0]);
+  return size < lagrangian.nominal[i] ? lagrangian.nominal[i] : size;
+}
+
 /* The largest coefficient of this order, in units of the variables' scales. */
 static double norm(const struct Taylor *taylor, int64_t order) {
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double size = fabs(taylor->x[i][order]) / fmax(lagrangian.nominal[i], fabs(taylor->x[i][0]));
+    double size = fabs(taylor->x[i][order]) / scale(taylor, i);
     if (!(size <= largest)) largest = size;
   }
   return largest;
@@ -100,26 +106,37 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   return saved->reach > 0.0;
 }
 
-/* The change of variable i over s. */
+/* The change of variable i over s: Horner's rule for even and odd powers apart, which do not wait for one another. */
 static double change(const struct Taylor *taylor, size_t i, double s) {
-  const double *x = taylor->x[i];
-  double sum = x[taylor->saved->order];
-  for (int64_t j = taylor->saved->order - 1; j > 0; j--) sum = sum * s + x[j];
-  return sum * s;
+  const double *x = taylor->x[i], square = s * s;
+  int64_t j = taylor->saved->order;
+  double first = x[j], second = x[j - 1];
+  for (j -= 2; j > 1; j -= 2) {
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+  }
+  if (j == 1) return ((first * s + second) * s + x[1]) * s;
+  return (first * s + second) * s;
 }
 
-/* Moves the origin to the end of the series; what rounding takes from the state is carried along in low. */
-static void advance(struct Instance *instance, struct Taylor *taylor) {
+/*
+ * Moves the origin to the end of the series; what rounding takes from the state is carried along in low. Returns the
+ * largest change in units of the variables' scales.
+ */
+static double advance(struct Instance *instance, struct Taylor *taylor) {
   struct Saved *saved = taylor->saved;
+  double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double before = taylor->x[i][0], term = change(taylor, i, saved->reach) + taylor->low[i];
-    double sum = before + term, part = sum - before;
+    double sum = before + term, part = sum - before, moved = fabs(term) / scale(taylor, i);
+    if (moved > largest) largest = moved;
     taylor->low[i] = (before - (sum - part)) + (term - part);
     taylor->x[i][0] = sum;
   }
   saved->origin += saved->reach;
   saved->reach = 0.0;
   instance->situation->statistics[STATISTIC_STEPS]++;
+  return largest;
 }
 
 static void begin(struct Instance *instance, struct Taylor *taylor) {
@@ -139,7 +156,7 @@ static void evaluate_state(struct Instance *instance, const struct Taylor *taylo
     instance->state[i] = taylor->x[i][0] + (change(taylor, i, s) + taylor->low[i]);
 }
 
-/* The state is that of the origin. */
+/* The state becomes that of the origin. */
 static enum StepResult stop(struct Instance *instance, const struct Taylor *taylor, double end, const char *reason) {
   double origin = taylor->saved->origin;
   if (instance->singular != 0) log_singularity(instance, fmi2Discard, origin);
@@ -152,6 +169,25 @@ static enum StepResult stop(struct Instance *instance, const struct Taylor *tayl
   return STEP_PARTIAL;
 }
 
+/*
+ * Expands and advances until the series reaches the end; NULL, or the reason why it never does. Where a system is
+ * stiff, many steps hardly move it: none would need to be so short, but that its fast modes must not grow.
+ */
+static const char *reach(struct Instance *instance, struct Taylor *taylor, double length, double end) {
+  struct Saved *saved = taylor->saved;
+  double path = 0.0;
+  for (long steps = 1; saved->reach == 0.0 || end > saved->origin + saved->reach; steps++) {
+    if (saved->reach > 0.0) path += advance(instance, taylor);
+    if (!expand(instance, taylor, length)) return "the motion has a singularity there, or grows beyond all numbers";
+    if (steps == STEP_LIMIT) return "too many steps";
+    if (steps % STIFF_STEPS > 0) continue;
+    if (path < STIFF_STEPS * instance->situation->tolerance)
+      return "the system is stiff there, which asks for <solver method=\"bdf\"/> in system.xml";
+    path = 0.0;
+  }
+  return NULL;
+}
+
 static enum StepResult step(struct Instance *instance, double length, double *reached) {
   struct Taylor *taylor = instance->solver_memory;
   struct Saved *saved = taylor->saved;
@@ -159,21 +195,15 @@ static enum StepResult step(struct Instance *instance, double length, double *re
   bool is_new = instance->situation->changed || !(time >= saved->origin && time <= saved->origin + saved->reach);
   if (is_new) begin(instance, taylor);
   instance->situation->changed = 0;
-  for (long steps = 0; saved->reach == 0.0 || end > saved->origin + saved->reach; steps++) {
-    if (saved->reach > 0.0) advance(instance, taylor);
-    bool expanded = expand(instance, taylor, length);
-    if (expanded && steps < STEP_LIMIT) continue;
-    *reached = saved->origin;
-    return stop(instance, taylor, end,
-                expanded ? "too many steps" : "the motion has a singularity there, or grows beyond all numbers");
+  const char *problem = reach(instance, taylor, length, end);
+  if (problem == NULL) {
+    evaluate_state(instance, taylor, end);
+    for (size_t i = 0; i < lagrangian.state_count; i++)
+      if (!isfinite(instance->state[i])) problem = "the motion grows beyond all numbers";
   }
-  evaluate_state(instance, taylor, end);
-  for (size_t i = 0; i < lagrangian.state_count; i++) {
-    if (isfinite(instance->state[i])) continue;
-    *reached = saved->origin;
-    return stop(instance, taylor, end, "the motion grows beyond all numbers");
-  }
-  return STEP_DONE;
+  if (problem == NULL) return STEP_DONE;
+  *reached = saved->origin;
+  return stop(instance, taylor, end, problem);
 }
 
 const struct Solver solver_taylor = {.saved_size = saved_size, .create = create, .destroy = destroy, .step = step};

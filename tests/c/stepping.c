@@ -1,6 +1,7 @@
 /*
- * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS [REFERENCE=VALUE ...]. Prints the
- * seconds of the fastest repeat, then the first OUTPUTS variables at the end.
+ * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS [REFERENCE=VALUE ...].
+ * Prints the seconds of the fastest repeat, then a line with the first OUTPUTS variables for each of up to POINTS
+ * communication points that are evenly spaced.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,31 +27,44 @@ static int prepare(const struct FmuLibrary *fmu, fmi2Component c, double toleran
   return fmu->fmi2EnterInitializationMode(c) == fmi2OK && fmu->fmi2ExitInitializationMode(c) == fmi2OK;
 }
 
+static int step(const struct FmuLibrary *fmu, fmi2Component c, double end, long k, long steps) {
+  double from = end * (double)k / (double)steps, to = end * (double)(k + 1) / (double)steps;
+  return fmu->fmi2DoStep(c, from, to - from, fmi2True) == fmi2OK;
+}
+
+static int print_outputs(const struct FmuLibrary *fmu, fmi2Component c, long outputs) {
+  for (fmi2ValueReference reference = 0; reference < (fmi2ValueReference)outputs; reference++) {
+    double value;
+    if (fmu->fmi2GetReal(c, &reference, 1, &value) != fmi2OK) return 0;
+    printf("%.17g ", value);
+  }
+  putchar('\n');
+  return 1;
+}
+
 int main(int count, char **words) {
-  if (count < 8) return 2;
+  if (count < 9) return 2;
   struct FmuLibrary fmu = fmu_library_open(words[1]);
   const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
   double tolerance = strtod(words[3], NULL), end = strtod(words[4], NULL), best = 1e300;
   long steps = strtol(words[5], NULL, 10), repeats = strtol(words[6], NULL, 10), outputs = strtol(words[7], NULL, 10);
+  long points = strtol(words[8], NULL, 10);
   fmi2Component c = fmu.fmi2Instantiate("bench", fmi2CoSimulation, words[2], NULL, &callbacks, fmi2False, fmi2False);
   if (c == NULL) return 1;
   for (long i = 0; i < repeats; i++) {
-    if (!prepare(&fmu, c, tolerance, count - 8, words + 8)) return 1;
+    if (!prepare(&fmu, c, tolerance, count - 9, words + 9)) return 1;
     double start = seconds();
-    for (long k = 0; k < steps; k++) {
-      double from = end * (double)k / (double)steps, to = end * (double)(k + 1) / (double)steps;
-      if (fmu.fmi2DoStep(c, from, to - from, fmi2True) != fmi2OK) return 1;
-    }
+    for (long k = 0; k < steps; k++)
+      if (!step(&fmu, c, end, k, steps)) return 1;
     double taken = seconds() - start;
     if (taken < best) best = taken;
   }
-  printf("%.9g", best);
-  for (fmi2ValueReference reference = 0; reference < (fmi2ValueReference)outputs; reference++) {
-    double value;
-    if (fmu.fmi2GetReal(c, &reference, 1, &value) != fmi2OK) return 1;
-    printf(" %.17g", value);
+  printf("%.9g\n", best);
+  if (!prepare(&fmu, c, tolerance, count - 9, words + 9)) return 1;
+  for (long k = 0; k < steps; k++) {
+    if (!step(&fmu, c, end, k, steps)) return 1;
+    if ((k + 1) * points % steps < points && !print_outputs(&fmu, c, outputs)) return 1;
   }
-  putchar('\n');
   fmu.fmi2FreeInstance(c);
   fmu_library_close(&fmu);
   return 0;

@@ -1,0 +1,17 @@
+"""Stiff and extreme cases: right within a bound on the error and on the work, or refused with a clear message."""
+
+import pytest
+
+from extreme_cases import CASES, co_simulate, exchange_model
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_co_simulation(case):
+    outcome = co_simulate(case)
+    assert outcome.verdict == ("right" if case.refused is None else "refused"), outcome
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case.exchange is not None], ids=lambda case: case.name)
+def test_model_exchange(case):
+    outcome = exchange_model(case)
+    assert outcome.verdict == ("right" if case.exchange else "refused"), outcome
