@@ -1,0 +1,184 @@
+"""The same problems by other programs; each function returns (seconds, states at times_of(name)), or None."""
+
+import contextlib
+import functools
+import os
+import time
+
+import numpy as np
+import sympy
+from fmpy import extract, read_model_description, simulate_fmu
+from fmpy.fmi2 import FMU2Model
+from scipy.integrate import solve_ivp
+
+from fmu import archive
+from numerics.scenarios import SCENARIOS, states_of, times_of, values_of
+from systems_in_sympy import system
+
+
+def fastest(run, budget=2.0, repeats=10):
+    """The shortest time of several runs, within a budget of seconds, and the last result."""
+    best, spent, result = np.inf, 0.0, None
+    while repeats > 0 and (spent < budget or best == np.inf):
+        begin = time.perf_counter()
+        result = run()
+        taken = time.perf_counter() - begin
+        best, spent, repeats = min(best, taken), spent + taken, repeats - 1
+    return best, result
+
+
+PATIENCE = 20.0  # seconds, after which a run counts as never ending
+
+
+def impatient(function):
+    """The function, which raises TimeoutError from PATIENCE seconds on."""
+    deadline = time.perf_counter() + PATIENCE
+
+    def call(*arguments):
+        if time.perf_counter() > deadline:
+            raise TimeoutError
+        return function(*arguments)
+
+    return call
+
+
+def scipy_method(method):
+    def run(name, tolerance):
+        definition, values = system(name), values_of(name)
+        right_side = impatient(definition.right_side(lambda t: [values[u.name] for u in definition.inputs],
+                                                     [values[p.name] for p in definition.parameters]))  # fmt: skip
+        start = [values[s] for s in states_of(name)]
+        times = times_of(name)
+        solve = lambda: solve_ivp(right_side, (0, times[-1]), start, method=method, rtol=tolerance, atol=tolerance, t_eval=times)
+        seconds, solution = fastest(solve, 0.5, 5)
+        return (seconds, solution.y.T) if solution.success else None
+
+    return run
+
+
+def fmpy_cvode(name, tolerance):
+    """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
+    folder, description = extract(archive(name)), read_model_description(archive(name))
+    instance = FMU2Model(guid=description.guid, unzipDirectory=folder, instanceName="peer",
+                         modelIdentifier=description.modelExchange.modelIdentifier)  # fmt: skip
+    instance.instantiate()
+    end = SCENARIOS[name][1]
+
+    def simulate():
+        instance.reset()
+        return simulate_fmu(folder, model_description=description, fmu_instance=instance, fmi_type="ModelExchange", solver="CVode",
+                            stop_time=end, output_interval=end / 100, relative_tolerance=tolerance,
+                            start_values=SCENARIOS[name][0], output=states_of(name))  # fmt: skip
+
+    try:
+        with silence():
+            seconds, result = fastest(simulate, 0.5, 5)
+    except RuntimeError:
+        return None
+    finally:
+        instance.freeInstance()
+    rows = np.array([result[state] for state in states_of(name)]).T[1:]
+    return (seconds, rows) if len(rows) == 100 else None
+
+
+@contextlib.contextmanager
+def silence():
+    """What C libraries write to the standard error, too."""
+    saved, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 2)
+    try:
+        yield
+    finally:
+        os.dup2(saved, 2)
+        os.close(saved)
+        os.close(null)
+
+
+def heyoka_series(name, tolerance):
+    """The accelerations solved by SymPy, numbers for parameters; compilation is not in the time. At the end alone."""
+    integrator, start = heyoka_integrator(name)
+    integrator = type(integrator)(integrator.sys, start, tol=tolerance)
+    end = SCENARIOS[name][1]
+
+    def propagate():
+        integrator.time = 0.0
+        integrator.state[:] = start
+        integrator.propagate_until(end)
+
+    seconds, _ = fastest(propagate, 0.5, 200)
+    return seconds, np.array([integrator.state])
+
+
+@functools.cache
+def heyoka_integrator(name):
+    import heyoka
+
+    definition, values = system(name), values_of(name)
+    n, symbols = len(definition.q), [*definition.q, *definition.v]
+    fixed = {s: values[s.name] for s in [*definition.inputs, *definition.parameters]}
+    solved = definition.mass.LUsolve(sympy.Matrix([sum(terms) for terms in definition.terms]))
+    solved = [sympy.simplify(a).subs(fixed) for a in solved]
+    variables = dict(zip(symbols, heyoka.make_vars(*[s.name for s in symbols])))
+    clock = {sympy.Symbol("time"): heyoka.time}
+    right = [variables[v] for v in definition.v] + [heyoka.from_sympy(a, clock) for a in solved]
+    start = [values[s.name] for s in symbols]
+    return heyoka.taylor_adaptive(list(zip(variables.values(), right)), start), start
+
+
+CART = """<mujoco><option timestep="{h}" integrator="{integrator}" gravity="0 0 -{g}"><flag contact="disable"/></option>
+<worldbody><body><joint type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{M}" diaginertia="1e-12 1e-12 1e-12"/>
+<body><joint type="hinge" axis="0 1 0"/><inertial pos="0 0 {l}" mass="{m}" diaginertia="1e-12 1e-12 1e-12"/></body>
+</body></worldbody></mujoco>"""
+
+
+def chain_model(values, h, integrator, count=10):
+    link = '<body pos="0 0 {z}"><joint type="hinge" axis="0 -1 0"/><inertial pos="0 0 -{l}" mass="{m}" diaginertia="1e-12 1e-12 1e-12"/>'
+    bodies = "".join(link.format(z=0 if i == 0 else -values["l"], l=values["l"], m=values["m"]) for i in range(count))
+    return (f'<mujoco><option timestep="{h}" integrator="{integrator}" gravity="0 0 -{values["g"]}"><flag contact="disable"/></option>'
+            f'<worldbody>{bodies}{"</body>" * count}</worldbody></mujoco>')  # fmt: skip
+
+
+def mujoco_steps(integrator):
+    """MuJoCo with fixed steps; "tolerance" is the step size. The chain's joints are relative angles."""
+
+    def run(name, h):
+        import mujoco
+
+        values, times = values_of(name), times_of(name)
+        relative = name == "ChainPendulum"
+        text = chain_model(values, h, integrator) if relative else CART.format(h=h, integrator=integrator, **values)
+        model = mujoco.MjModel.from_xml_string(text)
+        data = mujoco.MjData(model)
+        n = model.nq
+        start = np.array([values[s] for s in states_of(name)])
+        angles = lambda x: np.diff(x, prepend=0.0) if relative else x
+        per_point = round(times[0] / h)
+
+        def simulate():
+            mujoco.mj_resetData(model, data)
+            data.qpos[:], data.qvel[:] = angles(start[:n]), angles(start[n:])
+            rows = []
+            for _ in times:
+                mujoco.mj_step(model, data, per_point)
+                rows.append(np.concatenate([np.cumsum(data.qpos), np.cumsum(data.qvel)] if relative else [data.qpos, data.qvel]))
+            return np.array(rows)
+
+        return fastest(simulate, 0.5, 5)
+
+    return run
+
+
+TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
+STEP_SIZES = [1e-2, 1e-3, 1e-4]
+
+# Name: (function, tolerances, the systems that it can express; None for all).
+PEERS = {
+    "SciPy DOP853": (scipy_method("DOP853"), TOLERANCES, None),
+    "SciPy LSODA": (scipy_method("LSODA"), TOLERANCES, None),
+    "SciPy Radau": (scipy_method("Radau"), TOLERANCES[:4], None),
+    "FMPy CVode (model exchange)": (fmpy_cvode, TOLERANCES, None),
+    # It needs the accelerations solved for in symbols, which does not end for ten rods.
+    "heyoka": (heyoka_series, [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 2.2e-16], [name for name in SCENARIOS if name != "ChainPendulum"]),
+    "MuJoCo RK4": (mujoco_steps("RK4"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),
+    "MuJoCo Euler": (mujoco_steps("Euler"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),
+}

@@ -1,0 +1,155 @@
+"""Error against run time: every system, solver, tolerance and communication step, and the same problems by others."""
+
+import csv
+import math
+import re
+from dataclasses import asdict, dataclass, fields
+
+import numpy as np
+
+from numerics.driver import SOLVERS, folder_of, step, work
+from numerics.peers import PEERS
+from numerics.scenarios import QUICK, SCENARIOS, error_at_end, errors, states_of
+
+LEVELS = [1e-6, 1e-10]  # errors at which the summary compares
+
+
+@dataclass
+class Sample:
+    system: str
+    method: str  # shipped, taylor, erk, bdf or a peer
+    tolerance: float  # or the step size, of methods with fixed steps
+    step: float  # communication step; 0 for peers
+    seconds: float
+    error: float  # the largest over the recorded communication points
+    error_at_end: float
+    steps: int = 0
+    evaluations: int = 0
+
+
+def sample_fmu(name, solver, tolerance, communication_step):
+    starts, end = SCENARIOS[name]
+    steps = 1 if communication_step == end else round(end / communication_step)
+    stepped = step(solver, name, starts, end, tolerance, steps, repeats=1)
+    if stepped is None:
+        return None
+    repeats = int(min(max(0.05 / stepped.seconds, 3), 500))
+    stepped = step(solver, name, starts, end, tolerance, steps, repeats)
+    states = stepped.columns(states_of(name))
+    counts = work(solver, name, starts, end, tolerance, 1 if steps == 1 else min(steps, 100))
+    return Sample(name, solver, tolerance, communication_step, stepped.seconds, errors(name, states).max(),
+                  error_at_end(name, states[-1]), *counts)  # fmt: skip
+
+
+def sample_peer(name, peer, tolerance):
+    function, _, _ = PEERS[peer]
+    try:
+        result = function(name, tolerance)
+    except (ImportError, TimeoutError):
+        return None
+    if result is None or not np.all(np.isfinite(result[1])):
+        return None
+    seconds, states = result
+    return Sample(name, peer, tolerance, 0.0, seconds, errors(name, states).max(), error_at_end(name, states[-1]))
+
+
+def own_solver(name):
+    """The method that the FMU is shipped with."""
+    code = (folder_of("shipped") / "systems" / name / "system.c").read_text()
+    return re.search(r"\.solver = &solver_(\w+),", code).group(1)
+
+
+def plan(quick):
+    """All (function, arguments) to sample."""
+    tolerances = [10.0**-k for k in (range(4, 13, 2) if quick else range(3, 15))]
+    tasks = []
+    for name in QUICK if quick else SCENARIOS:
+        end = SCENARIOS[name][1]
+        for solver in ["shipped", *(s for s in SOLVERS if s != own_solver(name))]:
+            for communication_step in [end, 0.01] if quick else [end, 0.1, 0.01, 0.001]:
+                tasks += [(sample_fmu, (name, solver, tolerance, communication_step)) for tolerance in tolerances]
+        for peer, (_, settings, systems) in PEERS.items():
+            if systems is None or name in systems:
+                tasks += [(sample_peer, (name, peer, setting)) for setting in (settings[1::2] if quick else settings)]
+    return tasks
+
+
+def collect(tasks, progress):
+    """Samples of the tasks; those that fail are counted in the second result, by method."""
+    samples, failures = [], {}
+    for function, arguments in tasks:
+        sample = function(*arguments)
+        if sample is None:
+            failures[arguments[1]] = failures.get(arguments[1], 0) + 1
+        else:
+            samples.append(sample)
+        progress(f"{arguments[0]}, {arguments[1]}")
+    return samples, failures
+
+
+def write_csv(samples, path):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(Sample)])
+        writer.writeheader()
+        writer.writerows(asdict(sample) for sample in samples)
+
+
+def best_seconds(samples, name, methods, level, steps=None):
+    """The shortest time to an error at the end of at most level; infinite where none got there."""
+    times = [s.seconds for s in samples if s.system == name and s.method in methods and s.error_at_end <= level
+             and (steps is None or s.step in (0.0, steps))]  # fmt: skip
+    return min(times, default=math.inf)
+
+
+def rivals(samples):
+    """Method groups beside the FMU as shipped."""
+    groups = {"SUNDIALS in the same FMU (the better of erk and bdf)": ["erk", "bdf"], "the same FMU with taylor": ["taylor"]}
+    groups |= {peer: [peer] for peer in PEERS if any(s.method == peer for s in samples)}
+    return groups
+
+
+def ratios(samples, level):
+    """For each rival: (its name, the ratios of its time to ours by system, systems where it never got there)."""
+    systems = list(dict.fromkeys(s.system for s in samples))
+    rows = []
+    for rival, methods in rivals(samples).items():
+        ratio, never = {}, []
+        for name in systems:
+            end = SCENARIOS[name][1]
+            ours = best_seconds(samples, name, ["shipped"], level, end)
+            theirs = best_seconds(samples, name, methods, level, end)
+            tried = any(s.system == name and s.method in methods for s in samples)
+            if not tried or not math.isfinite(ours):
+                continue
+            if math.isfinite(theirs):
+                ratio[name] = theirs / ours
+            else:
+                never.append(name)
+        rows.append((rival, ratio, never))
+    return rows
+
+
+def factor(value):
+    return f"{value:.2g}" if value < 10 else f"{value:,.0f}"
+
+
+def summary(samples):
+    """For the first screen, for each level: a sentence, and one for each rival."""
+    systems = list(dict.fromkeys(s.system for s in samples))
+    levels = []
+    for level in LEVELS:
+        rows = ratios(samples, level)
+        fastest = [name for name in systems if math.isfinite(best_seconds(samples, name, ["shipped"], level, SCENARIOS[name][1]))
+                   and all(ratio.get(name, math.inf) >= 1 for _, ratio, _ in rows)]  # fmt: skip
+        text = f"To an error of {level:g} at the end, the FMU as shipped is the fastest on {len(fastest)} of {len(systems)} systems."
+        levels.append((text, [verdict(*row) for row in rows if row[1] or row[2]]))
+    return levels
+
+
+def verdict(rival, ratio, never):
+    if not ratio:
+        return f"{rival}: never gets there"
+    values = sorted(ratio.values())
+    many = "systems" if len(values) > 1 else "system"
+    text = f"{rival}: {factor(float(np.median(values)))} times that time (median of {len(values)} {many}; {factor(values[0])} to {factor(values[-1])})"
+    return text + (f"; never on {', '.join(never)}" if never else "")

@@ -1,0 +1,258 @@
+"""
+Runs an FMU over a grid or a random sample. Each run starts from the FMU's own values but for those that vary, and ends
+as a row of one Parquet file: what varied, the states at the end, the error of the energy, the run time, and what went
+wrong. Finished runs are kept in parts beside the file until all are there, so that the same command goes on after a kill.
+"""
+
+import argparse
+import hashlib
+import io
+import itertools
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from distributed import Client, LocalCluster, as_completed
+from fmpy import read_model_description
+
+from progress import Progress
+
+ROOT = Path(__file__).resolve().parent.parent
+CHUNK = 250  # runs a task
+IN_FLIGHT = 3  # tasks a worker thread, so that memory does not grow with the number of runs
+
+
+def variation(text):
+    """NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,..."""
+    name, separator, values = text.partition("=")
+    try:
+        if not separator:
+            raise ValueError
+        if ":" not in values:
+            return name, np.array([float(value) for value in values.split(",")])
+        first, last, *count = values.split(":")
+        if len(count) > 1 or (count and int(count[0]) < 1):
+            raise ValueError
+        return name, (float(first), float(last), int(count[0]) if count else None)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
+
+
+def known_name(name, description):
+    """The variable of this name; theta0 is the start value of theta."""
+    names = [v.name for v in description.modelVariables if v.start is not None and v.type == "Real"]
+    if name in names:
+        return name
+    if name.endswith("0") and name[:-1] in names:
+        return name[:-1]
+    sys.exit(f"scripts/sweep: '{name}' has no start value in {description.modelName}; these have one: {', '.join(names)}")
+
+
+def points(variations, random, seed):
+    """A row of values for each run."""
+    if random:
+        generator, columns = np.random.default_rng(seed), []
+        for _, values in variations:
+            spread = generator.uniform(*values[:2], random) if isinstance(values, tuple) else generator.choice(values, random)
+            columns.append(spread)
+        return np.array(columns).T
+    axes = []
+    for name, values in variations:
+        if isinstance(values, tuple) and values[2] is None:
+            sys.exit(f"scripts/sweep: '{name}' has no COUNT; expected {name}=FROM:TO:COUNT, or --random RUNS")
+        axes.append(np.linspace(*values) if isinstance(values, tuple) else values)
+    return np.array(list(itertools.product(*axes)))
+
+
+opened = {}  # in a worker: the FMU's instance by the digest of its archive
+
+
+def open_instance(archive):
+    """One instance a worker, which every run resets."""
+    import hashlib
+    import tempfile
+
+    from fmpy import extract, read_model_description
+    from fmpy.fmi2 import FMU2Slave
+
+    digest = hashlib.sha256(archive).hexdigest()
+    if digest not in opened:
+        folder = tempfile.mkdtemp(prefix="sweep-")
+        (Path(folder) / "system.fmu").write_bytes(archive)
+        unzipped = extract(str(Path(folder) / "system.fmu"), folder)
+        description = read_model_description(unzipped)
+        slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, instanceName="sweep",
+                          modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
+        slave.instantiate()
+        opened[digest] = slave, description
+    return opened[digest]
+
+
+def run_chunk(archive, numbers, rows, names, settings):
+    """A table of the results of some runs, as Parquet in bytes."""
+    import time
+
+    from fmpy.fmi1 import FMICallException
+
+    slave, description = open_instance(archive)
+    references = {v.name: v.valueReference for v in description.modelVariables}
+    states = [unknown.variable.derivative.name for unknown in description.derivatives]
+    energies = [n for n in ("totalEnergy", "kineticEnergy", "nonConservativeWork") if n in references]
+    varied = [references[name] for name in names]
+    ends = [references[name] for name in states]
+    watched = [references[name] for name in energies]
+    columns = {"run": list(numbers)} | {name: list(column) for name, column in zip(names, np.transpose(rows))}
+    results = {f"{state}_end": [] for state in states} | {"energyError": [], "runTime": [], "problem": []}
+    for row in rows:
+        begin, end, problem, error = time.perf_counter(), [np.nan] * len(states), None, np.nan
+        try:
+            slave.reset()
+            slave.setupExperiment(tolerance=settings["tolerance"], startTime=0.0)
+            slave.setReal(varied, list(row))
+            slave.enterInitializationMode()
+            slave.exitInitializationMode()
+            before = slave.getReal(watched) if watched else []
+            for k in range(settings["steps"]):
+                start, stop = (settings["stop"] * (k + i) / settings["steps"] for i in (0, 1))
+                slave.doStep(start, stop - start)
+            end = slave.getReal(ends) if ends else []
+            if watched:
+                after = slave.getReal(watched)
+                work = after[2] - before[2] if len(watched) > 2 else 0.0
+                scale = max(abs(before[0]), before[1], after[1]) or 1.0
+                error = (after[0] - before[0] - work) / scale
+        except FMICallException as exception:
+            problem = str(exception)
+        results["energyError"].append(error)
+        results["runTime"].append(time.perf_counter() - begin)
+        results["problem"].append(problem)
+        for state, value in zip(states, end):
+            results[f"{state}_end"].append(value)
+    table = pa.table(columns | results, schema=None)
+    table = table.set_column(table.schema.get_field_index("problem"), "problem", pa.array(results["problem"], pa.string()))
+    buffer = io.BytesIO()
+    pq.write_table(table, buffer)
+    return buffer.getvalue()
+
+
+class Parts:
+    """Finished chunks beside the result, in a folder whose name tells which plan they belong to."""
+
+    def __init__(self, output, plan):
+        digest = hashlib.sha256(json.dumps(plan, sort_keys=True).encode()).hexdigest()[:16]
+        self.folder = output.with_suffix("").parent / f"{output.stem}.parts-{digest}"
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def path(self, chunk):
+        return self.folder / f"{chunk:06}.parquet"
+
+    def write(self, chunk, data):
+        temporary = self.path(chunk).with_suffix(".part")
+        temporary.write_bytes(data)
+        os.replace(temporary, self.path(chunk))
+
+    def join(self, output, count):
+        """One file of all parts in the order of the runs, a part at a time."""
+        temporary, writer = output.with_suffix(".part"), None
+        for chunk in range(count):
+            table = pq.read_table(self.path(chunk))
+            writer = writer or pq.ParquetWriter(temporary, table.schema)
+            writer.write_table(table)
+        writer.close()
+        os.replace(temporary, output)
+        shutil.rmtree(self.folder)
+
+
+def simulate(client, archive, rows, names, settings, parts):
+    """Keeps a few tasks a worker in flight; writes each as it arrives."""
+    count = -(-len(rows) // CHUNK)
+    waiting = [chunk for chunk in range(count) if not parts.path(chunk).exists()]
+    done = sum(min(CHUNK, len(rows) - chunk * CHUNK) for chunk in range(count) if parts.path(chunk).exists())
+    if done:
+        print(f"{done} of {len(rows)} runs are there already")
+    progress, chunks = Progress(len(rows), done), {}
+
+    def submit(chunk):
+        numbers = range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(rows)))
+        future = client.submit(run_chunk, archive, numbers, rows[numbers.start : numbers.stop], names, settings, pure=False, retries=3)
+        chunks[future.key] = chunk
+        return future
+
+    width = IN_FLIGHT * max(1, sum(client.nthreads().values()))
+    queue = as_completed([submit(chunk) for chunk in waiting[:width]])
+    waiting = waiting[width:]
+    for future in queue:
+        chunk = chunks.pop(future.key)
+        parts.write(chunk, future.result())
+        if waiting:
+            queue.add(submit(waiting.pop(0)))
+        progress("runs", min(CHUNK, len(rows) - chunk * CHUNK))
+    return count
+
+
+def print_summary(output):
+    table = pq.read_table(output, columns=["energyError", "runTime", "problem"])
+    problems = [p for p in table["problem"].to_pylist() if p is not None]
+    errors = np.abs(np.array(table["energyError"].to_pylist(), dtype=float))
+    print(f"{table.num_rows} runs, {len(problems)} failed")
+    if problems:
+        print(f"the first failure: {problems[0]}")
+    if np.any(np.isfinite(errors)):
+        print(f"largest relative error of the energy: {np.nanmax(errors):.3g}")
+    print(f"result  {output.resolve()}")
+
+
+def arguments_of():
+    parser = argparse.ArgumentParser(prog="scripts/sweep", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("system", help="the name of a system, or an FMU")
+    parser.add_argument("--vary", action="append", type=variation, required=True, metavar="NAME=FROM:TO:COUNT",
+                        help="or NAME=VALUE,VALUE,...; several make a grid. theta0 is the start value of theta")  # fmt: skip
+    parser.add_argument("--random", type=int, metavar="RUNS", help="a random sample of the ranges instead of a grid")
+    parser.add_argument("--seed", type=int, default=0, help="of the random sample")
+    parser.add_argument("--stop", type=float, metavar="S", help="the end of each run; default: that of the FMU")
+    parser.add_argument("--step", type=float, metavar="S", help="communication step; default: the whole run")
+    parser.add_argument("--tolerance", type=float, help="relative tolerance; default: that of the FMU")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; default: a process for each core")
+    parser.add_argument("--output", type=Path, help="default: build/results/SYSTEM-sweep.parquet")
+    return parser.parse_args()
+
+
+def main():
+    arguments = arguments_of()
+    path = Path(arguments.system)
+    path = path if path.suffix == ".fmu" else ROOT / "build" / "fmu" / f"{arguments.system}.fmu"
+    if not path.exists():
+        sys.exit(f"scripts/sweep: there is no {path}")
+    description = read_model_description(path)
+    names = [known_name(name, description) for name, _ in arguments.vary]
+    if len(set(names)) < len(names):
+        sys.exit("scripts/sweep: a variable varies twice")
+    rows = points(arguments.vary, arguments.random, arguments.seed)
+    experiment = description.defaultExperiment
+    stop = arguments.stop or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
+    steps = max(1, round(stop / arguments.step)) if arguments.step else 1
+    settings = {"stop": stop, "steps": steps, "tolerance": arguments.tolerance}
+    output = arguments.output or ROOT / "build" / "results" / f"{description.modelName}-sweep.parquet"
+    output.parent.mkdir(parents=True, exist_ok=True)
+    archive = path.read_bytes()
+    plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), **settings}
+    parts = Parts(output, plan)
+    if arguments.scheduler:
+        client = Client(arguments.scheduler)
+    else:
+        client = Client(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None))
+    with client:
+        count = simulate(client, archive, rows, names, settings, parts)
+        if not arguments.scheduler:
+            client.cluster.close()
+    parts.join(output, count)
+    print_summary(output)
+
+
+if __name__ == "__main__":
+    main()
