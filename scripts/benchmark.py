@@ -1,121 +1,104 @@
 """
 Run time of the Taylor solver at equal error, beside the best of SUNDIALS through the same FMU interface, a Taylor loop
-written by hand, and heyoka. The error is the largest of the states at the end, relative to max(1, |state|), against
-SciPy's DOP853 at its tightest tolerance on SymPy's equations (itself good to about 1e-12). Times are the minimum of
-several repeats of the doStep loop alone.
+written by hand, and heyoka at its default tolerance; then chains of 1 to 32 rods. Times are the minimum of several
+repeats of the doStep loop alone, in microseconds; errors are those at the end against 20 digits.
 """
 
+import math
+import re
 import subprocess
-import sys
-import time
-from pathlib import Path
 
-import numpy as np
-import sympy
-from scipy.integrate import solve_ivp
-
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
-
-import fmu
-from systems_in_sympy import system
+from coupling.slaves import Slave
+from fmu import ROOT
+from numerics.driver import step
+from numerics.peers import heyoka_series
+from numerics.scenarios import SCENARIOS, error_at_end, states_of
 
 ERROR = 1e-10
-# Start values, and the time to simulate: the chaotic double pendulum multiplies errors beyond reach soon after 5 s.
-PROBLEMS = {
-    "SimplePendulum": ({}, 10.0),
-    "InvertedPendulumCart": ({}, 10.0),
-    "ParticlePolar": (dict(r=0.1, omega=np.sqrt(0.19) / 0.01), 10.0),
-    "DoublePendulum": ({}, 5.0),
-}
-TOLERANCES = [10.0**-k for k in range(5, 16)]
+NAMES = ["SimplePendulum", "InvertedPendulumCart", "ParticlePolar", "DoublePendulum"]
+TOLERANCES = [10.0**-k for k in range(5, 17)]
+RODS = [1, 2, 4, 8, 16, 32]
 
 
-def stepping(build, name, starts, end, tolerance, steps, repeats):
-    """(seconds, states at the end)"""
-    guid = fmu.description(name).guid if build == ROOT / "build" else guid_in(build, name)
-    references = fmu.references(name)
-    count = len(fmu.states_of(name))
-    words = [ROOT / "build/bin/stepping", build / f"systems/{name}/binaries/linux64/{name}.so", guid, tolerance, end, steps,
-             repeats, count, *(f"{references[variable]}={value}" for variable, value in starts.items())]
-    result = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    if result.returncode != 0:
-        return None
-    seconds, *states = map(float, result.stdout.split())
-    return seconds, np.array(states)
-
-
-def guid_in(build, name):
-    text = (build / f"systems/{name}/modelDescription.xml").read_text()
-    return text.split('guid="')[1].split('"')[0]
-
-
-def reference(name, starts, end):
-    definition = system(name)
-    given = {v.name: float(v.start) for v in fmu.description(name).modelVariables if v.start is not None} | starts
-    right = definition.right_side(lambda t: [given[u.name] for u in definition.inputs],
-                                  [given[p.name] for p in definition.parameters])
-    start = [given[s.name] for s in [*definition.q, *definition.v]]
-    return solve_ivp(right, (0, end), start, method="DOP853", rtol=2.3e-14, atol=1e-15).y[:, -1]
-
-
-def best_time(builds, name, starts, end, exact, steps, repeats):
-    """The shortest time of all runs whose error is at most ERROR, over builds and tolerances."""
+def best_time(solvers, name, steps, error):
+    """The shortest time of all runs with at most this error, over solvers and tolerances."""
+    starts, end = SCENARIOS[name]
     times = []
-    for build in builds:
+    for solver in solvers:
         for tolerance in TOLERANCES:
-            run = stepping(build, name, starts, end, tolerance, steps, repeats)
-            if run and np.max(np.abs(run[1] - exact) / np.maximum(1, np.abs(exact))) <= ERROR:
-                times.append(run[0])
-    return min(times, default=np.nan)
+            first = step(solver, name, starts, end, tolerance, steps, 1)
+            if first is None or error_at_end(name, first.columns(states_of(name))[-1]) > error:
+                continue
+            repeats = int(min(max(0.05 / first.seconds, 3), 500))
+            times.append(step(solver, name, starts, end, tolerance, steps, repeats).seconds * 1e6)
+    return min(times, default=math.nan)
 
 
-def heyoka_time(name, starts, end):
-    """heyoka's compiled integrator at its default tolerance; compilation not counted."""
-    try:
-        import heyoka
-    except ImportError:
-        return np.nan
-    definition = system(name)
-    given = {v.name: float(v.start) for v in fmu.description(name).modelVariables if v.start is not None} | starts
-    fixed = {s: given[s.name] for s in [*definition.inputs, *definition.parameters]}
-    solved = definition.mass.LUsolve(sympy.Matrix([sum(terms) for terms in definition.terms]))
-    solved = [sympy.simplify(a).subs(fixed) for a in solved]
-    symbols = [*definition.q, *definition.v]
-    variables = dict(zip(symbols, heyoka.make_vars(*[s.name for s in symbols])))
-    right = [variables[v] for v in definition.v] + [heyoka.from_sympy(a) for a in solved]
-    start = [given[s.name] for s in symbols]
-    integrator = heyoka.taylor_adaptive(list(zip(variables.values(), right)), start)
-    times = []
-    for _ in range(50):
-        integrator.time = 0.0
-        integrator.state[:] = start
-        begin = time.perf_counter()
-        integrator.propagate_until(end)
-        times.append(time.perf_counter() - begin)
-    return min(times)
+def compare():
+    print(f"Microseconds to an error of {ERROR:g}; heyoka at its default tolerance, and Taylor to the error that it reached\n")
+    print("| | s | Taylor, one step | SUNDIALS | ratio | Taylor, steps of 0.01 s | SUNDIALS | ratio | heyoka | Taylor | ratio |")
+    print("| --- |" + " ---: |" * 10)
+    for name in NAMES:
+        end, cells = SCENARIOS[name][1], []
+        for steps in (1, round(100 * end)):
+            ours, theirs = best_time(["taylor"], name, steps, ERROR), best_time(["erk", "bdf"], name, steps, ERROR)
+            cells += [f"{ours:.1f}", f"{theirs:.0f}", f"{theirs / ours:.0f}"]
+        seconds, states = heyoka_series(name, 2.2e-16)
+        ours = best_time(["taylor"], name, 1, max(error_at_end(name, states[-1]), 1e-15))
+        cells += [f"{seconds * 1e6:.1f}", f"{ours:.1f}", f"{seconds * 1e6 / ours:.2f}"]
+        print(f"| {name} | {end:g} | {' | '.join(cells)} |", flush=True)
 
 
-def main():
-    taylor, sundials = [ROOT / "build"], [ROOT / "build/erk", ROOT / "build/bdf"]
-    print(f"Microseconds; error at most {ERROR:g} where no tolerance is given\n")
-    print("| | s | Taylor, one step | SUNDIALS | ratio | Taylor, steps of 0.01 s | SUNDIALS | ratio | heyoka | Taylor at 1e-15 |")
-    print("| --- |" + " ---: |" * 9)
-    for name, (starts, end) in PROBLEMS.items():
-        exact = reference(name, starts, end)
-        cells = []
-        for steps, repeats in ((1, 30), (round(100 * end), 10)):
-            ours = best_time(taylor, name, starts, end, exact, steps, repeats)
-            theirs = best_time(sundials, name, starts, end, exact, steps, 3)
-            cells += [f"{ours * 1e6:.1f}", f"{theirs * 1e6:.0f}", f"{theirs / ours:.0f}"]
-        tight = stepping(ROOT / "build", name, starts, end, 1e-15, 1, 100)[0]
-        print(f"| {name} | {end:g} | {' | '.join(cells)} | {heyoka_time(name, starts, end) * 1e6:.1f} | {tight * 1e6:.1f} |", flush=True)
-    hand = subprocess.run([ROOT / "build/bin/pendulum_by_hand", "10", "14", "100"], capture_output=True, text=True)
-    generated = stepping(ROOT / "build", "SimplePendulum", {}, 10.0, 1e-11, 1, 100)[0]
+def compare_with_loop():
+    hand = subprocess.run([ROOT / "build/bin/pendulum_by_hand", "10", "14", "100"], capture_output=True, text=True, check=True)
     seconds = float(hand.stdout.split()[0])
+    generated = step("taylor", "SimplePendulum", {}, 10.0, 1e-11, 1, 100).seconds
     print(f"\nPendulum by hand, order 14: {seconds * 1e6:.1f}; generated at the same order: {generated * 1e6:.1f}; "
-          f"ratio {generated / seconds:.2f}")
+          f"ratio {generated / seconds:.2f}")  # fmt: skip
+
+
+def build_chains():
+    """ChainPendulum under the names Chain1 to Chain32, with taylor and with erk."""
+    text = (ROOT / "fmu" / "ChainPendulum" / "system.xml").read_text()
+    systems = ROOT / "build" / "chains" / "systems"
+    for rods in RODS:
+        folder = systems / f"Chain{rods}"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "system.xml").write_text(re.sub(r'(name="N" value=)"\d+"', rf'\1"{rods}"', text.replace("ChainPendulum", f"Chain{rods}")))
+    for solver in ("taylor", "erk"):
+        words = [ROOT / "scripts/build", ROOT / "build/chains" / solver, f"-DSYSTEMS={systems}", f"-DSOLVER={solver}"]
+        subprocess.run([str(word) for word in words], check=True)
+
+
+def chain_cost(solver, rods, end=1.0, tolerance=1e-10):
+    """(microseconds of a simulation, steps of the solver in it)"""
+    build = ROOT / "build" / "chains" / solver
+    archive = build / "fmu" / f"Chain{rods}.fmu"
+    guid = re.search(r'guid="([^"]*)"', (build / "systems" / f"Chain{rods}" / "modelDescription.xml").read_text()).group(1)
+    library = build / "systems" / f"Chain{rods}" / "binaries" / "linux64" / f"Chain{rods}.so"
+    words = [ROOT / "build/bin/stepping", library, guid, tolerance, end, 1, 20, 1, 1]
+    result = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=True)
+    slave = Slave(archive)
+    slave.restart(tolerance=tolerance)
+    slave.step_to(end)
+    steps = slave.fmu.getInteger([slave.references["solverSteps"]])[0] + (solver == "taylor")  # the last series is not left
+    return float(result.stdout.split()[0]) * 1e6, steps
+
+
+def compare_chains():
+    build_chains()
+    print("\nChains of N rods, 1 s at tolerance 1e-10, microseconds\n")
+    print("| N | Taylor, steps | a step | in all | erk, steps | a step | in all | ratio |\n| ---: |" + " ---: |" * 7)
+    for rods in RODS:
+        cells, totals = [], []
+        for solver in ("taylor", "erk"):
+            microseconds, steps = chain_cost(solver, rods)
+            totals.append(microseconds)
+            cells += [str(steps), f"{microseconds / steps:.2f}", f"{microseconds:.0f}"]
+        print(f"| {rods} | {' | '.join(cells)} | {totals[1] / totals[0]:.1f} |", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    compare()
+    compare_with_loop()
+    compare_chains()

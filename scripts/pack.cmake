@@ -1,13 +1,7 @@
 # Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SOURCE=... -D ICON=... -D ZIP=... -P pack.cmake
-# FOLDER holds what lagc wrote. All members get one and the same time and no further attributes, so that the same
-# content gives the same bytes.
+# FOLDER holds what lagc wrote.
 
-function(run)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${content} RESULT_VARIABLE status)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${status}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
 
 set(content ${FOLDER}/content)
 file(REMOVE_RECURSE ${FMU} ${content})
@@ -31,10 +25,4 @@ if(files)
   endforeach()
 endif()
 
-file(GLOB_RECURSE members RELATIVE ${content} ${content}/*)
-list(REMOVE_ITEM members modelDescription.xml)
-list(SORT members)
-list(PREPEND members modelDescription.xml)
-run(chmod 644 ${members})
-run(touch -d 2000-01-01T00:00:00Z ${members})
-run(${CMAKE_COMMAND} -E env TZ=UTC ${ZIP} -q -X ${FMU} ${members})
+archive(${FMU} modelDescription.xml)

@@ -1,8 +1,12 @@
 """Finds what the build made; every test runs on the packed FMUs."""
 
+import sys
+
 import pytest
 
 import fmu
+
+sys.path.append(str(fmu.ROOT / "scripts"))
 
 
 def pytest_generate_tests(metafunc):

@@ -8,8 +8,9 @@ import platform
 
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
+from html_page import bullets, page, paragraphs, table
 from numerics import energy, footprint, work_precision
-from numerics.page import bullets, energy_plot, legend, page, paragraphs, table, work_precision_plot
+from numerics.plots import energy_plot, legend, work_precision_plot
 from numerics.peers import PEERS
 from numerics.scenarios import check_of_reference
 from progress import Progress

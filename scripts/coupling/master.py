@@ -1,0 +1,125 @@
+"""
+A small master for two bodies and a spring between them, each an FMU, with the schemes of co-simulation side by side:
+Jacobi, Gauss-Seidel, and iterated with rollback, by fixed point or by Newton's method. Between communication points
+the force is a polynomial of a chosen degree, which the bodies get as derivatives of their input.
+"""
+
+import numpy as np
+
+from coupling.slaves import FMUS, Slave
+
+ITERATIONS = 60
+
+
+class Diverged(Exception):
+    """An iteration did not converge."""
+
+
+def derivatives_at_start(times, values):
+    """Value and derivatives at time 0 of the polynomial through the points (times, values)."""
+    coefficients = np.linalg.solve(np.vander(times, increasing=True), values)
+    return coefficients * [1.0, 1.0, 2.0, 6.0][: len(coefficients)]
+
+
+class Master:
+    """Two ParticleCartesian on the x axis, and a SpringDamper that has no state: force F on the left, -F on the right."""
+
+    def __init__(self, m1, m2, k, c, own=0.0, l0=0.0):
+        body = dict(ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0, kx=own)
+        self.starts = [body | dict(m=m1), body | dict(m=m2)]
+        self.left, self.right = (Slave(FMUS / "ParticleCartesian.fmu", **start) for start in self.starts)
+        self.spring = Slave(FMUS / "SpringDamper.fmu", k=k, c=c, l0=l0)
+        # The force by position and velocity of one end, and the acceleration by the force, for Newton's method.
+        self.stiffness, self.damping = self.spring.partial("F1", "x1"), self.spring.partial("F1", "v1")
+        self.mobility = self.left.partial("der(vx)", "Fx") + self.right.partial("der(vx)", "Fx")
+
+    def begin(self, state, past=()):
+        """state: x1, v1, x2, v2; past: (F, x2, v2) of earlier communication points, the latest first."""
+        for body, start, (x, v) in zip((self.left, self.right), self.starts, (state[:2], state[2:])):
+            body.restart(**(start | dict(x=x, vx=v)))
+        self.past = [tuple(row) for row in past]
+
+    def state(self):
+        return [*self.left.get("x", "vx"), *self.right.get("x", "vx")]
+
+    def force(self, x1, v1, x2, v2):
+        self.spring.set(x1=x1, v1=v1, x2=x2, v2=v2)
+        return self.spring.get("F1")
+
+    def push(self, body, derivatives, end):
+        """Steps a body under the force polynomial."""
+        body.set(Fx=derivatives[0])
+        body.set_derivatives("Fx", derivatives[1:])
+        body.step_to(end)
+
+    def known(self, column, count, step):
+        """Times before the step's start and values there of F, x2 or v2: the present, then the past."""
+        values = [row[column] for row in self.past[:count]]
+        return [-i * step for i in range(len(values))], values
+
+    def step(self, scheme, degree, step):
+        """One communication step; remembers what later extrapolations need."""
+        x1, v1, x2, v2 = self.state()
+        self.past.insert(0, (self.force(x1, v1, x2, v2), x2, v2))
+        # Where the past is too short to extrapolate from, a step that needs less of it keeps the order.
+        getattr(self, scheme if len(self.past) > degree else "newton")(degree, step)
+        del self.past[3:]
+
+    def jacobi(self, degree, step):
+        """Both bodies under the extrapolated force; they could run in parallel."""
+        force = derivatives_at_start(*self.known(0, degree + 1, step))
+        end = self.left.time + step
+        self.push(self.left, force, end)
+        self.push(self.right, -force, end)
+
+    def gauss_seidel(self, degree, step):
+        """The left body first; the right one under the force that the left one's new place gives, interpolated."""
+        end = self.left.time + step
+        self.push(self.left, derivatives_at_start(*self.known(0, degree + 1, step)), end)
+        ahead = [np.polynomial.polynomial.polyval(step, np.linalg.solve(np.vander(times, increasing=True), values))
+                 for times, values in (self.known(column, degree + 1, step) for column in (1, 2))]  # fmt: skip
+        new = self.force(*self.left.get("x", "vx"), *ahead)
+        times, values = self.known(0, degree, step)
+        self.push(self.right, -derivatives_at_start([step, *times], [new, *values]), end)
+
+    def fixed_point(self, degree, step):
+        self.iterate(degree, step, lambda residual: residual)
+
+    def newton(self, degree, step):
+        """The force at the end moves the bodies by double integrals of its basis polynomial over their masses."""
+        times, values = self.known(0, degree, step)
+        basis = derivatives_at_start([step, *times], [1.0, *(0.0 for _ in values)])
+        velocity = sum(d * step ** (i + 1) / np.prod(range(1, i + 2)) for i, d in enumerate(basis))
+        position = sum(d * step ** (i + 2) / np.prod(range(1, i + 3)) for i, d in enumerate(basis))
+        slope = self.mobility * (self.stiffness * position + self.damping * velocity)
+        self.iterate(degree, step, lambda residual: residual / (1.0 - slope))
+
+    def iterate(self, degree, step, correction):
+        """Repeats the step from saved states until the spring's force at its end is the one that was assumed."""
+        times, values = self.known(0, degree, step)
+        new, end = self.past[0][0], self.left.time + step
+        for _ in range(ITERATIONS):
+            saved = self.left.save(), self.right.save()
+            force = derivatives_at_start([step, *times], [new, *values])
+            self.push(self.left, force, end)
+            self.push(self.right, -force, end)
+            residual = self.force(*self.state()) - new
+            if abs(residual) <= 1e-11 * max(1.0, abs(new)):
+                for body, (state, _) in zip((self.left, self.right), saved):
+                    body.fmu.freeFMUstate(state)
+                return
+            self.left.restore(saved[0])
+            self.right.restore(saved[1])
+            new += correction(residual)
+            if not abs(new) < 1e12:
+                break
+        raise Diverged
+
+    def run(self, scheme, degree, state, end, steps):
+        """The states at all communication points."""
+        self.begin(state)
+        rows = [self.state()]
+        for _ in range(steps):
+            self.step(scheme, degree, end / steps)
+            rows.append(self.state())
+        return np.array(rows)

@@ -1,0 +1,133 @@
+"""Our FMUs coupled with one another and with those of others, by masters of ours and of others."""
+
+import subprocess
+
+import numpy as np
+import pytest
+from fmpy.ssp.ssd import read_ssd
+
+from coupling import balance, foreign, oscillator
+from coupling.master import Diverged, Master
+from coupling.slaves import FMUS, Slave
+from fmu import ROOT
+
+
+def test_gains_of_the_archive_are_those_of_lqr():
+    """The SSP holds numbers; they are right for the cart as it is, to the digits that are written there."""
+    for name, gain in balance.lqr_gains().items():
+        assert balance.gains_of_ssp()[name] == pytest.approx(gain, rel=1e-11)
+
+
+def test_lqr_is_optimal():
+    """The cost of the linear closed loop, a Lyapunov equation's solution, grows whichever gain is changed."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    A, B = balance.linearization()
+    gains = np.array(list(balance.lqr_gains().values()))
+
+    def cost(K):
+        closed = A - B @ K[None, :]
+        weights = np.diag([10.0, 100.0, 1.0, 1.0]) + np.outer(K, K)
+        return np.trace(solve_continuous_lyapunov(closed.T, -weights))
+
+    for i in range(4):
+        for factor in (0.98, 1.02):
+            changed = gains.copy()
+            changed[i] *= factor
+            assert cost(changed) > cost(gains)
+
+
+def late_force(forces_at_first, start, gains, step, count):
+    """A master that gives the cart the force of one step earlier, as parallel masters do."""
+    cart, feedback = Slave(FMUS / "InvertedPendulumCart.fmu", **start), Slave(FMUS / "StateFeedback.fmu", **gains)
+    rows, pending = [], list(forces_at_first)
+    for k in range(1, count + 1):
+        feedback.set(**dict(zip(balance.STATES, cart.get(*balance.STATES))))
+        force = feedback.get("F")
+        if pending:
+            cart.set(F=pending.pop(0))
+        else:
+            cart.set(F=late)
+        late = force
+        cart.step_to(k * step)
+        rows.append(cart.get(*balance.STATES))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("start", balance.STARTS.values(), ids=balance.STARTS)
+@pytest.mark.parametrize("by, initial", [(balance.by_fmpy_ssp, "zero"), (balance.by_libcosim, "first")])
+def test_players_of_the_archive(by, initial, start):
+    """FMPy's player has no force in the first two steps, libcosim that of the start."""
+    gains, step = balance.gains_of_ssp(), 0.005
+    demand = -(gains["ktheta"] * start["theta"] + gains["komega"] * start["omega"])
+    rows = by(start, gains, step)
+    expected = late_force([0.0, 0.0] if initial == "zero" else [demand], start, gains, step, len(rows))
+    np.testing.assert_allclose(rows[:, 1:], expected, atol=1e-9)
+    assert np.max(np.abs(rows[-1, 1:])) < 1e-3
+
+
+def test_archive_is_valid_and_complete():
+    structure = read_ssd(str(balance.SSP), validate=True)
+    assert [component.name for component in structure.system.elements] == ["cart", "feedback"]
+
+
+def test_push():
+    """The force that the script adds moves the cart, and the feedback brings it back."""
+    gains = balance.lqr_gains()
+    push = lambda t: 5.0 * (1.0 <= t < 1.2)
+    calm, pushed = (balance.by_fmpy_script(dict(theta=0.0), gains, 0.01, push=p) for p in (None, push))
+    assert np.max(np.abs(calm[:, 1:])) == 0.0
+    assert np.max(np.abs(pushed[:, 1])) > 0.1 and np.max(np.abs(pushed[-1, 1:])) < 1e-2
+
+
+@pytest.mark.parametrize("degree", oscillator.DEGREES)
+@pytest.mark.parametrize("scheme", oscillator.SCHEMES)
+def test_orders(scheme, degree):
+    """Degree of the force's polynomial plus one."""
+    master = Master(oscillator.M1, oscillator.M2, oscillator.K, oscillator.C, oscillator.OWN)
+    errors = []
+    for steps in (160, 320):
+        states = master.run(scheme, degree, oscillator.START, oscillator.END, steps)
+        times = np.linspace(0, oscillator.END, steps + 1)
+        exact = oscillator.exact(oscillator.M1, oscillator.M2, oscillator.K, oscillator.C, oscillator.OWN, oscillator.START, times)
+        errors.append(np.max(np.abs(states - exact)[:, [0, 2]]))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(degree + 1, abs=0.15)
+
+
+def limit(scheme, degree, damping=0.2, ratio=1.0):
+    k, reduced = 1e4, ratio / (1.0 + ratio)
+    master = Master(1.0, ratio, k, 2 * damping * np.sqrt(k * reduced), 1e-3)
+    return oscillator.largest_stable_step(master, scheme, degree, np.sqrt(k / reduced))
+
+
+@pytest.mark.parametrize("ratio", [1.0, 100.0])
+def test_limits_of_stability(ratio):
+    """
+    A force held over the step lags by half of it, which is a damping of -k H / 2: H omega = 4 zeta. With Newton's
+    method and a linear force H omega = sqrt(12), where k H^2 / 6 mu = 2 without damping.
+    """
+    assert limit("jacobi", 0, ratio=ratio) == pytest.approx(0.8, rel=0.02)
+    assert limit("newton", 1, ratio=ratio) == pytest.approx(np.sqrt(12), rel=0.02)
+    assert limit("newton", 0, ratio=ratio) == 100.0
+
+
+def test_fixed_point_says_where_it_ends():
+    master = Master(1.0, 1.0, 1e4, 1.0)
+    with pytest.raises(Diverged):
+        master.run("fixed_point", 1, [1.0, 0.0, 0.0, 0.0], 1.0, 10)
+
+
+@pytest.mark.parametrize("by", [foreign.by_fmpy, foreign.by_libcosim, foreign.by_ecos])
+def test_controller_of_others(by):
+    """A controller that PythonFMU built, under three masters."""
+    states = by(foreign.python_controller(), balance.lqr_gains())
+    assert np.max(np.abs(states)) < 1e-3
+
+
+@pytest.mark.parametrize("command, files", [
+    ("balance", ["ssp/BalancedCart.ssp", "results/BalancedCart.csv", "results/BalancedCart.png", "results/BalancedCart.gif"]),
+])  # fmt: skip
+def test_commands(command, files):
+    subprocess.run([ROOT / "scripts" / command], check=True, capture_output=True)
+    for file in files:
+        assert (ROOT / "build" / file).stat().st_size > 1000

@@ -1,0 +1,80 @@
+"""Sweeps: all runs once and in order, right, failures recorded, resumed after a kill."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import fmpy
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from fmu import ROOT, archive
+
+
+def command(output, *words):
+    return [sys.executable, str(ROOT / "scripts" / "sweep.py"), *words, "--output", str(output)]
+
+
+def sweep(output, *words):
+    result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
+    assert result.returncode == 0, result.stderr
+    return pq.read_table(output).to_pydict(), result.stdout
+
+
+def test_grid(tmp_path):
+    table, _ = sweep(tmp_path / "grid.parquet", "SimplePendulum", "--vary", "l=0.5:2:20", "--vary", "theta0=0.1:3:15", "--stop", "2")
+    assert table["run"] == list(range(300))
+    lengths, angles = np.meshgrid(np.linspace(0.5, 2, 20), np.linspace(0.1, 3, 15), indexing="ij")
+    np.testing.assert_array_equal(table["l"], lengths.ravel())
+    np.testing.assert_array_equal(table["theta"], angles.ravel())
+    for run in (0, 137, 299):
+        starts = dict(l=table["l"][run], theta=table["theta"][run])
+        result = fmpy.simulate_fmu(str(archive("SimplePendulum")), start_values=starts, stop_time=2, output_interval=2, output=["theta"])
+        assert table["theta_end"][run] == pytest.approx(result["theta"][-1], abs=1e-12)
+    assert np.max(np.abs(table["energyError"])) < 1e-10 and min(table["runTime"]) > 0
+    assert set(table["problem"]) == {None}
+
+
+def test_failures_are_recorded(tmp_path):
+    table, text = sweep(tmp_path / "poles.parquet", "ParticleSpherical", "--vary", "phi=0,1,2", "--stop", "0.1")
+    assert "fmi2ExitInitializationMode" in table["problem"][0] and np.isnan(table["phi_end"][0])
+    assert table["problem"][1:] == [None, None] and np.all(np.isfinite(table["phi_end"][1:]))
+    assert "3 runs, 1 failed" in text
+
+
+def test_resumes_after_a_kill(tmp_path):
+    """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
+    output, words = tmp_path / "killed.parquet", ["DoublePendulum", "--vary", "theta1=-2:2", "--random", "20000", "--stop", "3"]
+    first = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL)  # fmt: skip
+    for _ in range(600):
+        finished = sorted(tmp_path.glob("*.parts-*/*.parquet"))
+        if len(finished) > 5 or first.poll() is not None:
+            break
+        time.sleep(0.05)
+    first.send_signal(signal.SIGKILL)
+    first.wait()
+    assert not output.exists()
+    stamps = {path.name: path.stat().st_mtime_ns for path in tmp_path.glob("*.parts-*/*.parquet")}
+    times = {}
+    for path in tmp_path.glob("*.parts-*/*.parquet"):
+        times |= dict(zip(*(pq.read_table(path).to_pydict()[column] for column in ("run", "runTime"))))
+    table, text = sweep(output, *words)
+    assert f"{len(times)} of 20000 runs are there already" in text and len(stamps) > 5
+    assert table["run"] == list(range(20000))
+    assert all(table["runTime"][run] == seconds for run, seconds in times.items())
+    assert list(tmp_path.glob("*.parts-*")) == []
+
+
+@pytest.mark.parametrize("words, message", [
+    (["Nothing", "--vary", "l=1:2:3"], "there is no"),
+    (["SimplePendulum", "--vary", "q=1:2:3"], "'q' has no start value in SimplePendulum; these have one: theta"),
+    (["SimplePendulum", "--vary", "l=1:2"], "'l' has no COUNT"),
+    (["SimplePendulum", "--vary", "l"], "is not NAME=FROM:TO:COUNT"),
+    (["SimplePendulum", "--vary", "l=1:2:3", "--vary", "l=3"], "varies twice"),
+])  # fmt: skip
+def test_bad_words(words, message, tmp_path):
+    result = subprocess.run(command(tmp_path / "x", *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
+    assert result.returncode != 0 and message in result.stderr
