@@ -35,7 +35,7 @@ def best_time(solvers, name, steps, error):
 
 
 def compare():
-    print(f"Microseconds to an error of {ERROR:g}; heyoka at its default tolerance, and Taylor to the error that it reached\n")
+    print(f"Microseconds to an error of {ERROR:g}; heyoka at its default tolerance, and Taylor to at most twice the error that it reached\n")
     print("| | s | Taylor, one step | SUNDIALS | ratio | Taylor, steps of 0.01 s | SUNDIALS | ratio | heyoka | Taylor | ratio |")
     print("| --- |" + " ---: |" * 10)
     for name in NAMES:
@@ -44,7 +44,7 @@ def compare():
             ours, theirs = best_time(["taylor"], name, steps, ERROR), best_time(["erk", "bdf"], name, steps, ERROR)
             cells += [f"{ours:.1f}", f"{theirs:.0f}", f"{theirs / ours:.0f}"]
         seconds, states = heyoka_series(name, 2.2e-16)
-        ours = best_time(["taylor"], name, 1, max(error_at_end(name, states[-1]), 1e-15))
+        ours = best_time(["taylor"], name, 1, 2 * error_at_end(name, states[-1]) + 1e-15)
         cells += [f"{seconds * 1e6:.1f}", f"{ours:.1f}", f"{seconds * 1e6 / ours:.2f}"]
         print(f"| {name} | {end:g} | {' | '.join(cells)} |", flush=True)
 

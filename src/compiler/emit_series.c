@@ -9,26 +9,32 @@
 /* Systems up to this many recurrences an order get code of their own for each order. */
 enum { UNROLLED_RECURRENCES = 40 };
 
-/* Nodes that change in time and are computed: each gets a row. */
-static void assign_rows(struct SeriesWriter *writer) {
+/* The nodes that change in time and are computed. */
+static void find_needed(struct SeriesWriter *writer) {
   const struct Statements *statements = writer->emitter->statements;
   const struct SeriesPlan *plan = writer->plan;
   size_t size = writer->emitter->graph->count;
-  bool *needed = allocate(size, sizeof *needed);
-  for (size_t i = 0; i < plan->count; i++) needed[plan->targets[i]] = true;
+  bool *below = allocate(size, sizeof *below);
+  for (size_t i = 0; i < plan->count; i++) below[plan->targets[i]] = true;
   for (Node node = (Node)size; node-- > 0;) {
-    if (!needed[node] || is_fetched(statements, node)) continue;
+    if (!below[node] || is_fetched(statements, node)) continue;
+    writer->is_needed[node] = true;
     struct Expression expression = expression_of(statements, node, writer->uses);
-    needed[expression.left] = true;
-    if (expression.arity == 2) needed[expression.right] = true;
+    below[expression.left] = true;
+    if (expression.arity == 2) below[expression.right] = true;
   }
-  for (Node node = 0; node < size; node++) {
-    if (!needed[node] || is_fetched(statements, node)) continue;
-    writer->nodes[writer->node_count] = node;
-    writer->row[node] = ++writer->node_count;
-  }
-  writer->row_count = writer->node_count;
-  free(needed);
+  for (Node node = 0; node < size; node++)
+    if (writer->is_needed[node]) writer->nodes[writer->node_count++] = node;
+  free(below);
+}
+
+/* Rows for the nodes that are arrays, then, where asked for, for the accelerations themselves. */
+static void assign_rows(struct SeriesWriter *writer) {
+  writer->row_count = 0;
+  for (size_t i = 0; i < writer->node_count; i++)
+    writer->row[writer->nodes[i]] = writer->is_array[writer->nodes[i]] ? ++writer->row_count : 0;
+  writer->acceleration_row = writer->row_count;
+  if (writer->has_acceleration_rows) writer->row_count += writer->emitter->n;
 }
 
 static void write_next(struct SeriesWriter *writer, Node node);
@@ -44,14 +50,14 @@ static void write_needed(struct SeriesWriter *writer, Node node) {
 
 static void write_next(struct SeriesWriter *writer, Node node) {
   FILE *file = writer->emitter->file;
-  if (writer->row[node] == 0 || writer->done[node]) return;
+  if (!writer->is_needed[node] || writer->done[node]) return;
   writer->done[node] = true;
   write_needed(writer, node);
   Node operand = integrated_operand(writer, node);
   if (operand != ZERO) write_rate(writer, operand);
-  fputs("  ", file);
-  write_row(writer, node);
-  fputs("[k] = ", file);
+  fputs(writer->row[node] == 0 ? "  const double " : "  ", file);
+  write_coefficient(writer, node);
+  fputs(" = ", file);
   write_value(writer, node);
   fputs(";\n", file);
   /* The sine and the cosine of one argument need each other, one coefficient behind. */
@@ -113,17 +119,16 @@ static void write_order(struct SeriesWriter *writer) {
   write_state_order(writer);
 }
 
-/* Rows for the series of the accelerations themselves. */
-static void add_acceleration_rows(struct SeriesWriter *writer) {
-  writer->acceleration_row = writer->row_count;
-  writer->row_count += writer->emitter->n;
-}
-
 /* The text of one order. */
-static char *order_text(struct SeriesWriter *writer, void (*write)(struct SeriesWriter *)) {
+static char *write_text(struct SeriesWriter *writer, void (*write)(struct SeriesWriter *)) {
   FILE *file = writer->emitter->file;
   char *text = NULL;
-  size_t length = 0;
+  size_t length = 0, size = writer->emitter->graph->count;
+  memset(writer->done, 0, size * sizeof *writer->done);
+  memset(writer->rate, 0, size * sizeof *writer->rate);
+  memset(writer->inverse, 0, size * sizeof *writer->inverse);
+  writer->recurrences = 0;
+  assign_rows(writer);
   writer->emitter->file = writer->emitter->statements->file = open_memstream(&text, &length);
   if (writer->emitter->file == NULL) {
     fputs("lagc: out of memory\n", stderr);
@@ -133,6 +138,12 @@ static char *order_text(struct SeriesWriter *writer, void (*write)(struct Series
   fclose(writer->emitter->file);
   writer->emitter->file = writer->emitter->statements->file = file;
   return text;
+}
+
+/* The first text tells which nodes are arrays; the others become local variables of the second. */
+static char *order_text(struct SeriesWriter *writer, void (*write)(struct SeriesWriter *)) {
+  free(write_text(writer, write));
+  return write_text(writer, write);
 }
 
 /* What series_next() may need beside k, x and w: its type, its name, and what series() passes for it. */
@@ -192,11 +203,23 @@ static void write_inverses(const struct SeriesWriter *writer) {
 static void write_first(struct SeriesWriter *writer) {
   struct Emitter *emitter = writer->emitter;
   for (size_t i = 0; i < writer->node_count; i++) {
-    fprintf(emitter->file, "  w[%zu][0] = ", i);
-    statements_operand(emitter->statements, writer->nodes[i]);
+    Node node = writer->nodes[i];
+    if (writer->row[node] == 0) continue;
+    fprintf(emitter->file, "  w[%zu][0] = ", writer->row[node] - 1);
+    statements_operand(emitter->statements, node);
     fputs(";\n", emitter->file);
   }
   write_inverses(writer);
+}
+
+/* The statements for coefficient 0 of the rows, and for the values of further nodes. */
+static void write_values(const struct SeriesWriter *writer, struct NodeList further) {
+  struct NodeList list = {0};
+  append_nodes(&list, further.nodes, further.count);
+  for (size_t i = 0; i < writer->node_count; i++)
+    if (writer->row[writer->nodes[i]] > 0) append_nodes(&list, &writer->nodes[i], 1);
+  statements_emit(writer->emitter->statements, list.nodes, list.count);
+  free(list.nodes);
 }
 
 static void declare_time(const struct SeriesWriter *writer) {
@@ -209,7 +232,8 @@ static void write_start(struct SeriesWriter *writer) {
   struct Emitter *emitter = writer->emitter;
   size_t n = emitter->n;
   fprintf(emitter->file, "  double a[%zu];\n", n);
-  statements_emit(emitter->statements, writer->plan->targets, writer->plan->count);
+  Node power = emitter->equations->power;
+  write_values(writer, (struct NodeList){&power, emitter->states > 2 * n});
   emit_accelerations(emitter, "a");
   write_first(writer);
   for (size_t i = 0; i < n; i++) {
@@ -240,11 +264,13 @@ static struct SeriesWriter *writer_create(struct Emitter *emitter, const struct 
                                   .plan = plan,
                                   .uses = count_uses(emitter->statements, plan->targets, plan->count),
                                   .row = allocate(size, sizeof(size_t)),
+                                  .is_needed = allocate(size, sizeof(bool)),
+                                  .is_array = allocate(size, sizeof(bool)),
                                   .rate = allocate(size, sizeof(size_t)),
                                   .inverse = allocate(size, sizeof(size_t)),
                                   .done = allocate(size, sizeof(bool)),
                                   .nodes = allocate(size, sizeof(Node))};
-  assign_rows(writer);
+  find_needed(writer);
   return writer;
 }
 
@@ -252,6 +278,8 @@ static void writer_free(struct SeriesWriter *writer) {
   free(writer->order_text);
   free(writer->uses);
   free(writer->row);
+  free(writer->is_needed);
+  free(writer->is_array);
   free(writer->rate);
   free(writer->inverse);
   free(writer->done);
@@ -261,7 +289,7 @@ static void writer_free(struct SeriesWriter *writer) {
 
 struct SeriesWriter *series_writer_create(struct Emitter *emitter) {
   struct SeriesWriter *writer = writer_create(emitter, emitter->program->series);
-  if (has_loops(emitter->equations)) add_acceleration_rows(writer);
+  writer->has_acceleration_rows = has_loops(emitter->equations);
   writer->order_text = order_text(writer, write_order);
   writer->is_unrolled = !has_loops(emitter->equations) && writer->recurrences <= UNROLLED_RECURRENCES;
   return writer;
@@ -309,7 +337,11 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
     for (size_t i = 0; i < emitter->n; i++)
       fprintf(emitter->file, "  a[%zu] = w[%zu][0] = x[%zu][1];\n", i, writer->acceleration_row + i, emitter->n + i);
   }
-  statements_emit(emitter->statements, writer->plan->targets, writer->plan->count);
+  struct NodeList outputs = {0};
+  for (size_t i = 0; i < emitter->program->model->outputs.count; i++)
+    append_nodes(&outputs, &emitter->program->model->outputs.items[i].node, 1);
+  write_values(writer, outputs);
+  free(outputs.nodes);
   write_first(writer);
   for (size_t i = 0; i < emitter->program->model->outputs.count; i++) {
     fprintf(emitter->file, "  y[%zu][0] = ", i);
@@ -321,7 +353,7 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
 
 size_t emit_output_series(struct Emitter *emitter) {
   struct SeriesWriter *writer = writer_create(emitter, emitter->program->output_series);
-  if (uses_accelerations(writer)) add_acceleration_rows(writer);
+  writer->has_acceleration_rows = uses_accelerations(writer);
   writer->order_text = order_text(writer, write_output_order);
   size_t rows = writer->row_count;
   emitter->series = writer;

@@ -36,8 +36,11 @@ struct Equations {
   Node kinetic, potential, total; /* energies */
 };
 
-/* Blocks of M up to this size become straight-line code. */
-enum { UNROLL_LIMIT = 8 };
+/*
+ * Blocks of M up to this size become straight-line code. Larger ones take fewer operations where their numbers are
+ * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
+ */
+enum { UNROLL_LIMIT = 2 };
 
 /* Derives the equations of motion; reports errors (a coordinate without inertia, ...) to diagnostics. */
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);

@@ -6,10 +6,10 @@ bool is_constant_series(const struct SeriesWriter *writer, Node node) {
   return graph_is_constant_in_time(writer->emitter->graph, node);
 }
 
-void write_row(const struct SeriesWriter *writer, Node node) {
+static void write_name(const struct SeriesWriter *writer, Node node) {
   const struct Emitter *emitter = writer->emitter;
   FILE *file = emitter->file;
-  if (writer->row[node] > 0) {
+  if (writer->is_needed[node]) { /* without a row in the first text alone, which is thrown away */
     fprintf(file, "w[%zu]", writer->row[node] - 1);
     return;
   }
@@ -21,13 +21,19 @@ void write_row(const struct SeriesWriter *writer, Node node) {
   else fprintf(file, "w[%zu]", writer->acceleration_row + (size_t)symbol->index);
 }
 
+void write_row(struct SeriesWriter *writer, Node node) {
+  writer->is_array[node] = true;
+  write_name(writer, node);
+}
+
 void write_coefficient(const struct SeriesWriter *writer, Node node) {
-  if (is_constant_series(writer, node)) {
-    fputs("0.0", writer->emitter->file);
-    return;
+  FILE *file = writer->emitter->file;
+  if (is_constant_series(writer, node)) fputs("0.0", file);
+  else if (writer->is_needed[node] && writer->row[node] == 0) fprintf(file, "s%u", node);
+  else {
+    write_name(writer, node);
+    fputs("[k]", file);
   }
-  write_row(writer, node);
-  fputs("[k]", writer->emitter->file);
 }
 
 /* name(k, rows...) with an optional further argument before the rows. */
