@@ -130,3 +130,22 @@ def test_default_solver(force, solver, tmp_path):
     result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     assert f".solver = &solver_{solver}," in (tmp_path / "out" / "system.c").read_text()
+
+
+def test_instances_are_small():
+    """Memory of an instance after its first step, which holds the series of all recurrences; no leak between instances."""
+    from numerics.footprint import instance_costs
+
+    for name in fmu.all_names():
+        memory, _ = instance_costs(name)
+        limit = 120_000 if name == "ChainPendulum" else 20_000 if name in BDF else 14_000
+        assert 0 < memory < limit, (name, memory)
+
+
+def test_what_is_absent():
+    from numerics.footprint import absent_features
+
+    for name in fmu.all_names():
+        absent = absent_features(name, linked_members(name))
+        assert ("inputs" in absent) == (not fmu.names_of(name, "input"))
+        assert ("SUNDIALS" in absent) == (name not in BDF) and ("any solver" in absent) == (name in NONE)

@@ -78,3 +78,18 @@ def test_resumes_after_a_kill(tmp_path):
 def test_bad_words(words, message, tmp_path):
     result = subprocess.run(command(tmp_path / "x", *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
     assert result.returncode != 0 and message in result.stderr
+
+
+def test_on_a_cluster_that_exists(tmp_path):
+    """A scheduler's address instead of processes of its own; a worker that dies loses nothing."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "20000", "--stop", "5", "--scheduler", cluster.scheduler_address]
+        running = subprocess.Popen(command(tmp_path / "x.parquet", *words), env={"PYTHONPATH": str(ROOT / "scripts")})
+        while not list(tmp_path.glob("*.parts-*/*.parquet")):
+            time.sleep(0.05)
+        cluster.workers[0].process.process._process.kill()
+        assert running.wait(timeout=120) == 0
+    table = pq.read_table(tmp_path / "x.parquet").to_pydict()
+    assert table["run"] == list(range(20000)) and set(table["problem"]) == {None}

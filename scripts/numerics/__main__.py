@@ -42,13 +42,13 @@ def stability_rows(progress):
         outcome = co_simulate(case)
         exchange = exchange_model(case).verdict if case.exchange is not None else ""
         rows.append([case.name, case.system, case.right, outcome.verdict, exchange, outcome.error, case.bound or float("nan"),
-                     outcome.evaluations, case.evaluations, outcome.message])  # fmt: skip
+                     outcome.steps, outcome.evaluations, case.evaluations, outcome.message])  # fmt: skip
         progress(case.name)
     return rows
 
 
 def stability_section(rows):
-    header = ["case", "FMU", "what is right", "verdict", "model exchange", "error", "bound", "evaluations", "bound", "message"]
+    header = ["case", "FMU", "what is right", "verdict", "model exchange", "error", "bound", "steps", "evaluations", "bound", "message"]
     write_table("stability", header, rows)
     coloured = [[*row[:3], (row[3], row[3]), *row[4:]] for row in rows]
     counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "refused", "wrong")}

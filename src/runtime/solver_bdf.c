@@ -1,6 +1,10 @@
 /*
  * Backward differentiation formulas of order 1 to 5, by CVODE of SUNDIALS, with the generated Jacobian. The solver
  * goes on from one communication step to the next and starts anew only where something was changed from outside.
+ *
+ * Measured, and left: with inputs that change at every communication step, ESDIRK547L2SA of ARKODE reaches equal errors
+ * in half the time, but it takes 3 to 5 times as long where nothing changes. Going on across the change of an input
+ * without a new start takes more steps, loses digits, and fails in the end.
  */
 #include <stdlib.h>
 #include <string.h>
