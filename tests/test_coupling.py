@@ -40,15 +40,11 @@ def test_lqr_is_optimal():
 def late_force(forces_at_first, start, gains, step, count):
     """A master that gives the cart the force of one step earlier, as parallel masters do."""
     cart, feedback = Slave(FMUS / "InvertedPendulumCart.fmu", **start), Slave(FMUS / "StateFeedback.fmu", **gains)
-    rows, pending = [], list(forces_at_first)
+    rows, pending, late = [], list(forces_at_first), 0.0
     for k in range(1, count + 1):
         feedback.set(**dict(zip(balance.STATES, cart.get(*balance.STATES))))
-        force = feedback.get("F")
-        if pending:
-            cart.set(F=pending.pop(0))
-        else:
-            cart.set(F=late)
-        late = force
+        cart.set(F=pending.pop(0) if pending else late)
+        late = feedback.get("F")
         cart.step_to(k * step)
         rows.append(cart.get(*balance.STATES))
     return np.array(rows)

@@ -59,12 +59,8 @@ def by_fmpy_script(start, gains, step, controller=None, push=None):
     rows = [[0.0, *cart.get(*STATES)]]
     for k in range(1, round(END / step) + 1):
         feedback.set(**dict(zip(STATES, rows[-1][1:])))
-        if controller is not None:
-            feedback.step_to(k * step)  # a foreign FMU may compute its output in doStep alone
-        force = feedback.get("F")
-        if controller is None:
-            feedback.step_to(k * step)
-        cart.set(F=force + (push(cart.time) if push else 0.0))
+        feedback.step_to(k * step)  # foreign FMUs may compute their outputs in doStep alone
+        cart.set(F=feedback.get("F") + (push(cart.time) if push else 0.0))
         cart.step_to(k * step)
         rows.append([cart.time, *cart.get(*STATES)])
     return np.array(rows)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import fmpy
 import numpy as np
 
-from fmu import ROOT, Instance
+from fmu import ROOT
 
 BUILD = ROOT / "build"
 SOLVERS = ["taylor", "erk", "bdf"]  # each has a build of all systems
@@ -19,6 +19,8 @@ class Stepped:
     seconds: float
     names: list
     rows: np.ndarray  # a row for each recorded communication point
+    steps: int  # of the solver, 0 where it does not count them
+    evaluations: int  # of the equations of motion
 
     def columns(self, names):
         return self.rows[:, [self.names.index(name) for name in names]]
@@ -41,7 +43,9 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
     names = [v.name for v in description.modelVariables if v.type == "Real"]
     names = [n for n in names if references[n] <= max(references.get(last, 0) for last in ("totalEnergy", names[0]))]
     library = folder_of(solver) / "systems" / name / "binaries" / "linux64" / f"{name}.so"
+    counted = [name for name in ("solverSteps", "derivativeEvaluations") if name in references]
     words = [BUILD / "bin/stepping", library, description.guid, tolerance, end, steps, repeats, len(names), points,
+             ",".join(str(references[name]) for name in counted),
              *(f"{references[variable]}={value!r}" for variable, value in starts.items())]  # fmt: skip
     try:
         result = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=timeout)
@@ -49,20 +53,7 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
         return None
     if result.returncode != 0:
         return None
-    first, *rows = result.stdout.splitlines()
-    return Stepped(float(first), names, np.array([[float(x) for x in row.split()] for row in rows]))
-
-
-def work(solver, name, starts, end, tolerance, steps):
-    """(steps of the solver, evaluations of the equations) of a simulation of the shipped FMU, in this process."""
-    instance = Instance(name)
-    try:
-        instance.initialize(starts, tolerance)
-        for k in range(steps):
-            target = end * (k + 1) / steps
-            instance.step(target - instance.time)
-            instance.time = target
-        names = ["solverSteps", "derivativeEvaluations"]
-        return [instance.fmu.getInteger([instance.references[n]])[0] if n in instance.references else 0 for n in names]
-    finally:
-        instance.free()
+    first, *rows, last = result.stdout.splitlines()
+    counts = dict(zip(counted, map(int, last.split())))
+    return Stepped(float(first), names, np.array([[float(x) for x in row.split()] for row in rows]),
+                   counts.get("solverSteps", 0), counts.get("derivativeEvaluations", 0))  # fmt: skip

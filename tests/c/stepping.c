@@ -1,7 +1,7 @@
 /*
- * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS [REFERENCE=VALUE ...].
+ * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS [REFERENCE=VALUE ...].
  * Prints the seconds of the fastest repeat, then a line with the first OUTPUTS variables for each of up to POINTS
- * communication points that are evenly spaced.
+ * communication points that are evenly spaced, then a line with the Integer variables whose references COUNTS lists.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,8 +42,21 @@ static int print_outputs(const struct FmuLibrary *fmu, fmi2Component c, long out
   return 1;
 }
 
+static int print_counts(const struct FmuLibrary *fmu, fmi2Component c, const char *references) {
+  char *rest;
+  for (fmi2ValueReference reference = (fmi2ValueReference)strtoul(references, &rest, 10); rest != references;
+       reference = (fmi2ValueReference)strtoul(references, &rest, 10)) {
+    fmi2Integer value;
+    if (fmu->fmi2GetInteger(c, &reference, 1, &value) != fmi2OK) return 0;
+    printf("%d ", value);
+    references = *rest == ',' ? rest + 1 : rest;
+  }
+  putchar('\n');
+  return 1;
+}
+
 int main(int count, char **words) {
-  if (count < 9) return 2;
+  if (count < 10) return 2;
   struct FmuLibrary fmu = fmu_library_open(words[1]);
   const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
   double tolerance = strtod(words[3], NULL), end = strtod(words[4], NULL), best = 1e300;
@@ -52,7 +65,7 @@ int main(int count, char **words) {
   fmi2Component c = fmu.fmi2Instantiate("bench", fmi2CoSimulation, words[2], NULL, &callbacks, fmi2False, fmi2False);
   if (c == NULL) return 1;
   for (long i = 0; i < repeats; i++) {
-    if (!prepare(&fmu, c, tolerance, count - 9, words + 9)) return 1;
+    if (!prepare(&fmu, c, tolerance, count - 10, words + 10)) return 1;
     double start = seconds();
     for (long k = 0; k < steps; k++)
       if (!step(&fmu, c, end, k, steps)) return 1;
@@ -60,11 +73,12 @@ int main(int count, char **words) {
     if (taken < best) best = taken;
   }
   printf("%.9g\n", best);
-  if (!prepare(&fmu, c, tolerance, count - 9, words + 9)) return 1;
+  if (!prepare(&fmu, c, tolerance, count - 10, words + 10)) return 1;
   for (long k = 0; k < steps; k++) {
     if (!step(&fmu, c, end, k, steps)) return 1;
     if ((k + 1) * points % steps < points && !print_outputs(&fmu, c, outputs)) return 1;
   }
+  if (!print_counts(&fmu, c, words[9])) return 1;
   fmu.fmi2FreeInstance(c);
   fmu_library_close(&fmu);
   return 0;
