@@ -52,9 +52,9 @@ def sample_peer(name, peer, tolerance):
     return Sample(name, peer, tolerance, 0.0, seconds, errors(name, states).max(), error_at_end(name, states[-1]))
 
 
-def solver_in(build, name):
-    """The method that the FMU of this build really has: linearizations keep exact."""
-    code = (folder_of(build) / "systems" / name / "system.c").read_text()
+def own_solver(name):
+    """The method that the FMU is shipped with."""
+    code = (folder_of("shipped") / "systems" / name / "system.c").read_text()
     return re.search(r"\.solver = &solver_(\w+),", code).group(1)
 
 
@@ -64,8 +64,7 @@ def plan(quick):
     tasks = []
     for name in QUICK if quick else SCENARIOS:
         end = SCENARIOS[name][1]
-        others = [s for s in SOLVERS if solver_in(s, name) == s != solver_in("shipped", name)]
-        for solver in ["shipped", *others]:
+        for solver in ["shipped", *(s for s in SOLVERS if s != own_solver(name))]:
             for communication_step in [end, 0.01] if quick else [end, 0.1, 0.01, 0.001]:
                 tasks += [(sample_fmu, (name, solver, tolerance, communication_step)) for tolerance in tolerances]
         for peer, (_, settings, systems) in PEERS.items():
