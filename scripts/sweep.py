@@ -82,15 +82,15 @@ def open_instance(archive):
 
     digest = hashlib.sha256(archive).hexdigest()
     if digest not in opened:
-        folder = tempfile.mkdtemp(prefix="sweep-")
-        (Path(folder) / "system.fmu").write_bytes(archive)
-        unzipped = extract(str(Path(folder) / "system.fmu"), folder)
+        folder = tempfile.TemporaryDirectory(prefix="sweep-")
+        (Path(folder.name) / "system.fmu").write_bytes(archive)
+        unzipped = extract(str(Path(folder.name) / "system.fmu"), folder.name)
         description = read_model_description(unzipped)
         slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, instanceName="sweep",
                           modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
         slave.instantiate()
-        opened[digest] = slave, description
-    return opened[digest]
+        opened[digest] = slave, description, folder  # which goes with the worker
+    return opened[digest][:2]
 
 
 def run_chunk(archive, numbers, rows, names, settings):

@@ -31,10 +31,15 @@ def all_names():
     return sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 
 
+temporary_folders = []  # removed at the end of the process
+
+
 @functools.cache
 def unpacked(name):
     """The folder of an unpacked FMU: a system of fmu/, or of tests/systems/."""
-    return Path(fmpy.extract(archive(name), tempfile.mkdtemp(prefix=name)))
+    folder = tempfile.TemporaryDirectory(prefix=name)
+    temporary_folders.append(folder)
+    return Path(fmpy.extract(archive(name), folder.name))
 
 
 def archive(name):

@@ -14,7 +14,8 @@ class Slave:
     """A co-simulation FMU at a time of its own."""
 
     def __init__(self, archive, **starts):
-        folder = fmpy.extract(archive, tempfile.mkdtemp())
+        self.folder = tempfile.TemporaryDirectory()  # goes with the slave
+        folder = fmpy.extract(archive, self.folder.name)
         description = fmpy.read_model_description(folder)
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         self.fmu = FMU2Slave(guid=description.guid, unzipDirectory=folder, instanceName=description.modelName,

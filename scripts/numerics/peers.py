@@ -7,11 +7,11 @@ import time
 
 import numpy as np
 import sympy
-from fmpy import extract, read_model_description, simulate_fmu
+from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi2 import FMU2Model
 from scipy.integrate import solve_ivp
 
-from fmu import archive
+from fmu import archive, unpacked
 from numerics.scenarios import SCENARIOS, states_of, times_of, values_of
 from systems_in_sympy import system
 
@@ -58,7 +58,7 @@ def scipy_method(method):
 
 def fmpy_cvode(name, tolerance):
     """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
-    folder, description = extract(archive(name)), read_model_description(archive(name))
+    folder, description = str(unpacked(name)), read_model_description(archive(name))
     instance = FMU2Model(guid=description.guid, unzipDirectory=folder, instanceName="peer",
                          modelIdentifier=description.modelExchange.modelIdentifier)  # fmt: skip
     instance.instantiate()

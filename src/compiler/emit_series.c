@@ -129,11 +129,7 @@ static char *write_text(struct SeriesWriter *writer, void (*write)(struct Series
   memset(writer->inverse, 0, size * sizeof *writer->inverse);
   writer->recurrences = 0;
   assign_rows(writer);
-  writer->emitter->file = writer->emitter->statements->file = open_memstream(&text, &length);
-  if (writer->emitter->file == NULL) {
-    fputs("lagc: out of memory\n", stderr);
-    exit(1);
-  }
+  writer->emitter->file = writer->emitter->statements->file = open_text(&text, &length);
   write(writer);
   fclose(writer->emitter->file);
   writer->emitter->file = writer->emitter->statements->file = file;

@@ -43,11 +43,7 @@ void emit_function(struct Emitter *emitter, const char *comment, const char *sig
   char *text = NULL, *velocity = format_text("point->state + %zu", emitter->n);
   char *seed_velocity = format_text("seed->state + %zu", emitter->n);
   size_t length = 0;
-  emitter->file = open_memstream(&text, &length);
-  if (emitter->file == NULL) {
-    fputs("lagc: out of memory\n", stderr);
-    exit(1);
-  }
+  emitter->file = open_text(&text, &length);
   statements_begin(emitter->statements, emitter->file);
   body(emitter, argument);
   fclose(emitter->file);

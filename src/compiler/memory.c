@@ -24,6 +24,12 @@ void *reallocate(void *block, size_t count, size_t size) {
   return resized;
 }
 
+FILE *open_text(char **text, size_t *length) {
+  FILE *file = open_memstream(text, length);
+  if (file == NULL) out_of_memory();
+  return file;
+}
+
 char *copy_text(const char *text) {
   size_t bytes = strlen(text) + 1;
   char *copy = allocate(bytes, 1);

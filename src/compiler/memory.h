@@ -3,12 +3,16 @@
 #define MEMORY_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 /* count zeroed elements of size bytes; never NULL. Free with free(). */
 void *allocate(size_t count, size_t size);
 
 /* Resizes a block to count elements of size bytes; new bytes are not initialised; never NULL. */
 void *reallocate(void *block, size_t count, size_t size);
+
+/* A stream that writes a string, complete after fclose() and to be freed with free(); never NULL. */
+FILE *open_text(char **text, size_t *length);
 
 /* A copy of text, to be freed with free(). */
 char *copy_text(const char *text);

@@ -17,8 +17,7 @@ enum { FILE_COUNT = 3 };
 static char *code_text(const struct Program *program, const char *guid) {
   char *text = NULL;
   size_t length = 0;
-  FILE *file = open_memstream(&text, &length);
-  if (file == NULL) return NULL;
+  FILE *file = open_text(&text, &length);
   emit_system(file, program, guid);
   fclose(file);
   return text;
@@ -79,7 +78,7 @@ void output_write(const struct Program *program, const char *directory, struct D
   code = code_text(program, guid);
   written = written && model_description_write(description, model, program->equations, program->interface, guid) &&
             documentation_write(documentation, program);
-  if (written && code != NULL)
+  if (written)
     write_all(directory,
               (const char *const[]){code, (const char *)xmlBufferContent(description),
                                     (const char *)xmlBufferContent(documentation)},

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "memory.h"
 #include "simplify.h"
 
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
@@ -149,8 +150,7 @@ void print_expression(FILE *file, const struct Graph *graph, Node node) {
 char *expression_text(const struct Graph *graph, Node node) {
   char *text = NULL;
   size_t length = 0;
-  FILE *file = open_memstream(&text, &length);
-  if (file == NULL) return NULL;
+  FILE *file = open_text(&text, &length);
   print_expression(file, graph, node);
   fclose(file);
   return text;
