@@ -245,7 +245,7 @@ def main():
     if arguments.scheduler:
         client = Client(arguments.scheduler)
     else:
-        client = Client(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None))
+        client = Client(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0"))
     with client:
         count = simulate(client, archive, rows, names, settings, parts)
         if not arguments.scheduler:

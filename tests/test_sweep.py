@@ -84,7 +84,7 @@ def test_on_a_cluster_that_exists(tmp_path):
     """A scheduler's address instead of processes of its own; a worker that dies loses nothing."""
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
         words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "20000", "--stop", "5", "--scheduler", cluster.scheduler_address]
         running = subprocess.Popen(command(tmp_path / "x.parquet", *words), env={"PYTHONPATH": str(ROOT / "scripts")})
         while not list(tmp_path.glob("*.parts-*/*.parquet")):
