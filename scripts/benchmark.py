@@ -11,7 +11,7 @@ import subprocess
 import fmpy
 
 from fmu import ROOT
-from numerics.driver import step
+from numerics.driver import step, step_repeatedly
 from numerics.peers import heyoka_series
 from numerics.scenarios import SCENARIOS, error_at_end, states_of
 
@@ -27,11 +27,9 @@ def best_time(solvers, name, steps, error):
     times = []
     for solver in solvers:
         for tolerance in TOLERANCES:
-            first = step(solver, name, starts, end, tolerance, steps, 1)
-            if first is None or error_at_end(name, first.columns(states_of(name))[-1]) > error:
-                continue
-            repeats = int(min(max(0.05 / first.seconds, 3), 500))
-            times.append(step(solver, name, starts, end, tolerance, steps, repeats).seconds * 1e6)
+            run = step_repeatedly(solver, name, starts, end, tolerance, steps)
+            if run is not None and error_at_end(name, run.columns(states_of(name))[-1]) <= error:
+                times.append(run.seconds * 1e6)
     return min(times, default=math.nan)
 
 

@@ -1,5 +1,6 @@
 """A report as one HTML file with its plots inside, which needs no network."""
 
+import csv
 import html
 import io
 
@@ -43,6 +44,12 @@ def table(header, rows):
     head = "".join(f"<th>{html.escape(h)}</th>" for h in header)
     body = "\n".join("<tr>" + "".join(cell(value) for value in row) + "</tr>" for row in rows)
     return f'<div class="wide"><table><tr>{head}</tr>\n{body}</table></div>'
+
+
+def write_csv(path, header, rows):
+    """A table beside the page."""
+    with open(path, "w", newline="") as file:
+        csv.writer(file).writerows([header, *rows])
 
 
 def paragraphs(sentences):

@@ -10,7 +10,7 @@ from typing import Callable
 import numpy as np
 from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
-from scipy.linalg import eigh, expm
+from scipy.linalg import eigh
 
 import fmu
 from closed_forms import (
@@ -22,7 +22,7 @@ from closed_forms import (
     turning_pendulum_angle,
 )
 from references import Motion
-from systems_in_sympy import chain_pendulum, system
+from systems_in_sympy import system
 
 PI = np.pi
 SLOW = 1.0  # amplitude of the slow swing upon a fast pivot
@@ -186,7 +186,7 @@ def reference_error(run):
 
 
 def start_values(case):
-    return {v.name: float(v.start) for v in fmu.description(case.system).modelVariables if v.start is not None} | case.values
+    return fmu.start_values(case.system) | case.values
 
 
 def cart_invariants(run):

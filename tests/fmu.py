@@ -13,7 +13,6 @@ import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
-    FMU2Model,
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
     fmi2CallbackFreeMemoryTYPE,
@@ -72,6 +71,11 @@ def references(name):
 
 def names_of(name, causality):
     return [v.name for v in description(name).modelVariables if v.causality == causality]
+
+
+def start_values(name):
+    """Start values of states, inputs and parameters by name."""
+    return {v.name: float(v.start) for v in description(name).modelVariables if v.start is not None}
 
 
 def states_of(name):

@@ -198,8 +198,7 @@ REFERENCES = {
 @functools.cache
 def reference(name, end):
     definition = system(name)
-    given = {v.name: float(v.start) for v in fmu.description(name).modelVariables if v.start is not None}
-    return Motion(definition, given | REFERENCES[name], 30).trajectory([end])[0]
+    return Motion(definition, fmu.start_values(name) | REFERENCES[name], 30).trajectory([end])[0]
 
 
 def error_of(name, tolerance, open_fmu):

@@ -5,7 +5,6 @@ import struct
 import subprocess
 
 import fmpy
-import mpmath
 import numpy as np
 import pytest
 import sympy as sp

@@ -78,7 +78,6 @@ def by_fmpy_ssp(start, gains, step):
 
 
 def by_libcosim(start, gains, step):
-    from libcosimpy.CosimEnums import CosimVariableType
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver

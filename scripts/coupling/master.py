@@ -15,9 +15,14 @@ class Diverged(Exception):
     """An iteration did not converge."""
 
 
+def polynomial(times, values):
+    """The coefficients, that of order 0 first, of the polynomial through the points (times, values)."""
+    return np.linalg.solve(np.vander(times, increasing=True), values)
+
+
 def derivatives_at_start(times, values):
     """Value and derivatives at time 0 of the polynomial through the points (times, values)."""
-    coefficients = np.linalg.solve(np.vander(times, increasing=True), values)
+    coefficients = polynomial(times, values)
     return coefficients * [1.0, 1.0, 2.0, 6.0][: len(coefficients)]
 
 
@@ -76,8 +81,7 @@ class Master:
         """The left body first; the right one under the force that the left one's new place gives, interpolated."""
         end = self.left.time + step
         self.push(self.left, derivatives_at_start(*self.known(0, degree + 1, step)), end)
-        ahead = [np.polynomial.polynomial.polyval(step, np.linalg.solve(np.vander(times, increasing=True), values))
-                 for times, values in (self.known(column, degree + 1, step) for column in (1, 2))]  # fmt: skip
+        ahead = [np.polynomial.polynomial.polyval(step, polynomial(*self.known(column, degree + 1, step))) for column in (1, 2)]
         new = self.force(*self.left.get("x", "vx"), *ahead)
         times, values = self.known(0, degree, step)
         self.push(self.right, -derivatives_at_start([step, *times], [new, *values]), end)

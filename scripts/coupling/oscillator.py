@@ -4,7 +4,6 @@ Error against communication step and run time for each scheme, and how far each 
 ratio grow. Leaves build/report/coupling.html with tables as CSV beside it.
 """
 
-import csv
 import time
 
 import matplotlib
@@ -16,7 +15,7 @@ from scipy.linalg import expm
 
 from coupling.master import Diverged, Master
 from coupling.slaves import ROOT
-from html_page import page, paragraphs, svg, table
+from html_page import page, paragraphs, svg, table, write_csv
 
 SCHEMES = {"jacobi": "Jacobi", "gauss_seidel": "Gauss-Seidel", "fixed_point": "fixed point", "newton": "Newton"}
 DEGREES = {0: "held", 1: "linear", 2: "quadratic"}
@@ -131,11 +130,6 @@ def lines_plot(rows, x, y, texts, title):
     return svg(figure)
 
 
-def write_csv(name, header, rows):
-    with open(FOLDER / name, "w", newline="") as file:
-        csv.writer(file).writerows([header, *rows])
-
-
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     errors = convergence()
@@ -154,16 +148,16 @@ def main():
     print(f"  {'':24}" + "".join(f"{ratio:>10g}" for ratio in ratios))
     for row in table_rows:
         print(f"  {row[0]:24}" + "".join(f"{value:>10}" for value in row[1:]))
-    write_csv("coupling_errors.csv", ["scheme", "degree", "step", "error", "seconds", "order"], errors)
-    write_csv("coupling_limits.csv", ["scheme", "degree", "grows", "value", "largest stable step", "times omega"], stability)
+    write_csv(FOLDER / "coupling_errors.csv", ["scheme", "degree", "step", "error", "seconds", "order"], errors)
+    write_csv(FOLDER / "coupling_limits.csv", ["scheme", "degree", "grows", "value", "largest stable step", "times omega"], stability)
     plots = [
         lines_plot(errors, 2, 3, ("communication step [s]", "largest error of the positions [m]"), "Error against step"),
         lines_plot(errors, 4, 3, ("run time of the master [s]", "largest error of the positions [m]"), "Error against run time"),
         lines_plot([r for r in stability if r[2] == "stiffness"], 3, 4, ("stiffness [N/m]", "largest stable step [s]"), "Stability limit against stiffness"),
         lines_plot([r for r in stability if r[2] == "mass ratio"], 3, 5, ("mass ratio", "largest stable step, times omega"), "Stability limit against mass ratio"),
     ]
-    first = [f"Two bodies of {M1:g} and {M2:g} kg on springs of {OWN:g} N/m, coupled by {K:g} N/m and {C:g} N s/m: three FMUs and a master of "
-             "130 lines. Each scheme shows the order that theory gives: the degree of the force's polynomial plus one.",
+    first = [f"Two bodies of {M1:g} and {M2:g} kg on springs of {OWN:g} N/m, coupled by {K:g} N/m and {C:g} N s/m: three FMUs and a short "
+             "master. Each scheme shows the order that theory gives: the degree of the force's polynomial plus one.",
              "Iterating with rollback (states saved and restored) moves the stability limit; with Newton's method and the FMUs' directional "
              "derivatives it also converges where the fixed point does not.",
              "Gauss-Seidel gives the two bodies forces that are not quite opposite, so that momentum is not kept: the common motion, "

@@ -1,14 +1,13 @@
 """Error against run time, stability and footprint of all FMUs: python -m numerics [--quick]"""
 
 import argparse
-import csv
 import importlib.metadata
 import os
 import platform
 
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
-from html_page import bullets, page, paragraphs, table
+from html_page import bullets, page, paragraphs, table, write_csv
 from numerics import energy, footprint, work_precision
 from numerics.plots import energy_plot, legend, work_precision_plot
 from numerics.peers import PEERS
@@ -31,11 +30,6 @@ def machine():
             ("Python", platform.python_version()), *(("package", v) for v in versions)]  # fmt: skip
 
 
-def write_table(name, header, rows):
-    with open(FOLDER / f"{name}.csv", "w", newline="") as file:
-        csv.writer(file).writerows([header, *rows])
-
-
 def stability_rows(progress):
     rows = []
     for case in CASES:
@@ -49,7 +43,7 @@ def stability_rows(progress):
 
 def stability_section(rows):
     header = ["case", "FMU", "what is right", "verdict", "model exchange", "error", "bound", "steps", "evaluations", "bound", "message"]
-    write_table("stability", header, rows)
+    write_csv(FOLDER / "stability.csv", header, rows)
     coloured = [[*row[:3], (row[3], row[3]), *row[4:]] for row in rows]
     counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "refused", "wrong")}
     text = (f"{len(rows)} cases: {counts['right']} right, {counts['refused']} refused with a message, {counts['wrong']} wrong. Each has a bound "
@@ -68,14 +62,14 @@ def energy_section(quick, progress):
                 rows += [[name, method, tolerance, *pair] for pair in zip(*drift)]
             progress(f"energy, {name}")
         plots.append(energy_plot(name, curves, end))
-    write_table("energy", ["system", "method", "tolerance", "time", "drift"], rows)
+    write_csv(FOLDER / "energy.csv", ["system", "method", "tolerance", "time", "drift"], rows)
     return '<div class="plots">' + "".join(plots) + "</div>"
 
 
 def references_section(systems):
     header = ["system", "seconds", "reference checked with", "largest difference"]
     rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in systems]
-    write_table("references", header, rows)
+    write_csv(FOLDER / "references.csv", header, rows)
     text = ("The reference of every system is a Taylor series of SymPy's equations with 30 digits in FLINT's arithmetic, which shares no "
             "code with the FMUs; its local error is 1e-20.")  # fmt: skip
     return paragraphs([text]) + table(header, rows)
@@ -94,7 +88,7 @@ def ratio_tables(samples):
                 line.append(ratio[name] if name in ratio else "never" if name in never else "")
             body.append(line)
         header = ["system", "FMU as shipped [µs]", *(f"{rival}, ratio" for rival, _, _ in rows)]
-        write_table(f"ratios_{level:g}", header, body)
+        write_csv(FOLDER / f"ratios_{level:g}.csv", header, body)
         content += f"<h3>Time to an error of {level:g} at the end, as a ratio to the FMU as shipped with one communication step</h3>"
         content += table(header, body)
     return content
@@ -120,7 +114,7 @@ def main():
     left_out_header = ["FMU", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
                        "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
     left_out = footprint.rows()
-    write_table("left_out", left_out_header, left_out)
+    write_csv(FOLDER / "left_out.csv", left_out_header, left_out)
     failed = [f"{count} runs of {method} gave up or took more than a minute." for method, count in failures.items()]
     summary = work_precision.summary(samples)
     first = [verdicts, *missing_peers(samples),

@@ -41,7 +41,7 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
     description = description_of(solver, name)
     references = {v.name: v.valueReference for v in description.modelVariables}
     names = [v.name for v in description.modelVariables if v.type == "Real"]
-    names = [n for n in names if references[n] <= max(references.get(last, 0) for last in ("totalEnergy", names[0]))]
+    names = [n for n in names if references[n] <= references["totalEnergy"]]
     library = folder_of(solver) / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     counted = [name for name in ("solverSteps", "derivativeEvaluations") if name in references]
     words = [BUILD / "bin/stepping", library, description.guid, tolerance, end, steps, repeats, len(names), points,
@@ -57,3 +57,11 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
     counts = dict(zip(counted, map(int, last.split())))
     return Stepped(float(first), names, np.array([[float(x) for x in row.split()] for row in rows]),
                    counts.get("solverSteps", 0), counts.get("derivativeEvaluations", 0))  # fmt: skip
+
+
+def step_repeatedly(solver, name, starts, end, tolerance, steps):
+    """The same, with as many repeats as a twentieth of a second has room for, but at least 3."""
+    first = step(solver, name, starts, end, tolerance, steps, 1)
+    if first is None:
+        return None
+    return step(solver, name, starts, end, tolerance, steps, int(min(max(0.05 / first.seconds, 3), 500)))

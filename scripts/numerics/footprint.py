@@ -4,7 +4,6 @@ import ctypes
 import subprocess
 import time
 
-import fmpy
 from fmpy.fmi2 import FMU2Slave
 
 import fmu

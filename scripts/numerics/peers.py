@@ -114,7 +114,7 @@ def heyoka_integrator(name):
     import heyoka
 
     definition, values = system(name), values_of(name)
-    n, symbols = len(definition.q), [*definition.q, *definition.v]
+    symbols = [*definition.q, *definition.v]
     fixed = {s: values[s.name] for s in [*definition.inputs, *definition.parameters]}
     solved = definition.mass.LUsolve(sympy.Matrix([sum(terms) for terms in definition.terms]))
     solved = [sympy.simplify(a).subs(fixed) for a in solved]

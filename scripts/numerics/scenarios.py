@@ -7,7 +7,7 @@ import json
 import numpy as np
 
 from closed_forms import kepler, pendulum_angle, pericentre_velocity
-from fmu import ROOT, description
+from fmu import ROOT, start_values
 from numerics.driver import POINTS
 from references import Motion
 from systems_in_sympy import system
@@ -35,8 +35,7 @@ QUICK = ["SimplePendulum", "InvertedPendulumCart", "ParticlePolar", "DoublePendu
 
 def values_of(name):
     """All start values and parameters by name."""
-    given = {v.name: float(v.start) for v in description(name).modelVariables if v.start is not None}
-    return given | SCENARIOS[name][0]
+    return start_values(name) | SCENARIOS[name][0]
 
 
 def states_of(name):

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
-from numerics.driver import SOLVERS, folder_of, step
+from numerics.driver import SOLVERS, folder_of, step_repeatedly
 from numerics.peers import PEERS
 from numerics.scenarios import QUICK, SCENARIOS, error_at_end, errors, states_of
 
@@ -30,11 +30,9 @@ class Sample:
 def sample_fmu(name, solver, tolerance, communication_step):
     starts, end = SCENARIOS[name]
     steps = 1 if communication_step == end else round(end / communication_step)
-    stepped = step(solver, name, starts, end, tolerance, steps, repeats=1)
+    stepped = step_repeatedly(solver, name, starts, end, tolerance, steps)
     if stepped is None:
         return None
-    repeats = int(min(max(0.05 / stepped.seconds, 3), 500))
-    stepped = step(solver, name, starts, end, tolerance, steps, repeats)
     states = stepped.columns(states_of(name))
     return Sample(name, solver, tolerance, communication_step, stepped.seconds, errors(name, states).max(),
                   error_at_end(name, states[-1]), stepped.steps, stepped.evaluations)  # fmt: skip

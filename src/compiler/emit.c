@@ -22,12 +22,6 @@ static void derivatives_body(struct Emitter *emitter, size_t unused) {
   free(acceleration);
 }
 
-static bool uses_accelerations(const struct Graph *graph, const Node *nodes, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (graph_depends_on(graph, nodes[i], ACCELERATION)) return true;
-  return false;
-}
-
 /* The accelerations into a local array a[], where differentiated equations hold them or blocks must be factored. */
 static void emit_local_accelerations(struct Emitter *emitter, const Node *nodes, size_t count) {
   if (!uses_accelerations(emitter->graph, nodes, count) && !has_loops(emitter->equations)) return;

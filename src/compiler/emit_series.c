@@ -303,17 +303,11 @@ size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer) {
   return rows;
 }
 
-static bool uses_accelerations(const struct SeriesWriter *writer) {
-  for (size_t i = 0; i < writer->plan->count; i++)
-    if (graph_depends_on(writer->emitter->graph, writer->plan->targets[i], ACCELERATION)) return true;
-  return false;
-}
-
 /* Coefficient k of all rows and of the outputs; the accelerations are the derivatives of the velocities. */
 static void write_output_order(struct SeriesWriter *writer) {
   const struct Emitter *emitter = writer->emitter;
   size_t n = emitter->n;
-  for (size_t i = 0; uses_accelerations(writer) && i < n; i++)
+  for (size_t i = 0; writer->has_acceleration_rows && i < n; i++)
     fprintf(emitter->file, "    w[%zu][k] = (k + 1) * x[%zu][k + 1];\n", writer->acceleration_row + i, n + i);
   for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
   const struct VariableList *outputs = &emitter->program->model->outputs;
@@ -328,7 +322,7 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
   struct SeriesWriter *writer = emitter->series;
   (void)unused;
   declare_time(writer);
-  if (uses_accelerations(writer)) {
+  if (writer->has_acceleration_rows) {
     fprintf(emitter->file, "  double a[%zu];\n", emitter->n);
     for (size_t i = 0; i < emitter->n; i++)
       fprintf(emitter->file, "  a[%zu] = w[%zu][0] = x[%zu][1];\n", i, writer->acceleration_row + i, emitter->n + i);
@@ -349,7 +343,7 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
 
 size_t emit_output_series(struct Emitter *emitter) {
   struct SeriesWriter *writer = writer_create(emitter, emitter->program->output_series);
-  writer->has_acceleration_rows = uses_accelerations(writer);
+  writer->has_acceleration_rows = uses_accelerations(emitter->graph, writer->plan->targets, writer->plan->count);
   writer->order_text = order_text(writer, write_output_order);
   size_t rows = writer->row_count;
   emitter->series = writer;

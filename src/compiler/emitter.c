@@ -24,6 +24,12 @@ bool result_is_output(const struct Interface *interface, size_t result) {
   return interface->variables[interface_find(interface, VARIABLE_RESULT, result)].entry.is_output;
 }
 
+bool uses_accelerations(const struct Graph *graph, const Node *nodes, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (graph_depends_on(graph, nodes[i], ACCELERATION)) return true;
+  return false;
+}
+
 /* Declares a local pointer where the body, already written to a buffer, uses its name. */
 static void emit_pointer(FILE *file, const char *body, const char *name, const char *source) {
   char *use = format_text("%s[", name);

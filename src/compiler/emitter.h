@@ -32,6 +32,9 @@ void emit_assignment(const struct Emitter *emitter, const char *array, size_t in
 /* The expression of a computed variable. */
 Node result_node(const struct Program *program, size_t index);
 
+/* Whether any of the nodes depends on an acceleration. */
+bool uses_accelerations(const struct Graph *graph, const Node *nodes, size_t count);
+
 /* Whether the computed variable is an output of the FMU. */
 bool result_is_output(const struct Interface *interface, size_t index);
 
