@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "series.h"
+#include "series_limit.h"
 
 /* Where the equations are evaluated. */
 struct Point {
@@ -90,11 +91,16 @@ struct Lagrangian {
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
   /* d derivatives / d state, element (i, j) at jacobian[j * state_count + i] */
   int (*jacobian)(const struct Point *point, double *jacobian);
+  /* The same as derivatives(); also fills the first coefficients in the workspace w[series_rows] of series(). */
+  int (*start)(const struct Point *point, double *derivative, Series *w);
   /*
-   * Taylor coefficients x[state_count] of the state from the point up to order, with those of the inputs given;
-   * w[series_rows] is workspace.
+   * Taylor coefficients x[state_count] of the state up to order, with those of the inputs given, the first two of the
+   * state, and w as start() has left it at the point.
    */
-  int (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
+  void (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
+  /* Shortens a step to where the elementary functions in series() may hide nothing; NULL where there are none. */
+  void (*limit)(const struct Point *point, const Series *input, const Series *x, const Series *w,
+                struct SeriesLimit *limit);
   /*
    * Taylor coefficients y[result_count] up to order of the results that are outputs, from those of the inputs, and of
    * the state up to order + 1; w[output_series_rows] is workspace.

@@ -201,11 +201,20 @@ static SERIES_INLINE double series_root(int k, const double *a, const double *c)
   return (a[k] - series_dot(k - 1, c + 1, c + k - 1)) / (2.0 * c[0]);
 }
 
-/* (a^n)_k for any number n, with a_0 not 0 */
+/*
+ * (a^n)_k for any number n. Where a starts with its term m > 0, a = t^m b and a^n = t^(m n) b^n exist for whole n > 0;
+ * b_j = a_(m+j), and (b^n)_j = c_(mn+j).
+ */
 static inline double series_power(int k, double n, const double *a, const double *c) {
+  int m = 0;
+  while (m <= k && a[m] == 0.0) m++;
+  if (m > 0 && !(n >= 0.0 && n == floor(n))) return NAN;
+  if (m > k || m * n > k) return 0.0;
+  int first = m * (int)n, last = k - first;
+  if (last == 0) return pow(a[m], n);
   double sum = 0.0;
-  for (int j = 0; j < k; j++) sum += (n * (k - j) - j) * a[k - j] * c[j];
-  return sum / (k * a[0]);
+  for (int j = 0; j < last; j++) sum += (n * (last - j) - j) * a[m + last - j] * c[first + j];
+  return sum / (last * a[m]);
 }
 
 /* c' = a' b: c_k, with the series of a' */
@@ -222,11 +231,16 @@ static inline double series_ratio_integral(int k, double top, const double *b, c
   return (top - sum / k) / b[0];
 }
 
+/* The coefficient k - 1 of y' x - x' y, divided by k */
+static inline double series_area(int k, const double *y, const double *x) {
+  double sum = 0.0;
+  for (int j = 1; j <= k; j++) sum += j * (y[j] * x[k - j] - x[j] * y[k - j]);
+  return sum / k;
+}
+
 /* The coefficient k of atan2(y, x), with the series of x^2 + y^2 in b */
 static inline double series_angle(int k, const double *y, const double *x, const double *b, const double *c) {
-  double top = 0.0;
-  for (int j = 1; j <= k; j++) top += j * (y[j] * x[k - j] - x[j] * y[k - j]);
-  return series_ratio_integral(k, top / k, b, c);
+  return series_ratio_integral(k, series_area(k, y, x), b, c);
 }
 
 #endif

@@ -27,7 +27,9 @@ static void write_sources(xmlTextWriterPtr writer, const struct Equations *equat
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
   write_file(writer, "system.c");
   for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
-  if (interface->method == SOLVER_TAYLOR) write_file(writer, "solver_taylor.c");
+  static const char *const taylor[] = {"solver_taylor.c", "taylor_reach.c", "series_limit.c"};
+  for (size_t i = 0; interface->method == SOLVER_TAYLOR && i < sizeof taylor / sizeof *taylor; i++)
+    write_file(writer, taylor[i]);
   if (interface->method == SOLVER_EXACT) write_file(writer, "solver_exact.c");
   if (has_loops(equations)) write_file(writer, "ldlt.c");
   xmlTextWriterEndElement(writer);

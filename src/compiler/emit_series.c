@@ -4,10 +4,14 @@
 #include <string.h>
 
 #include "emit_accelerations.h"
+#include "emit_limit.h"
 #include "memory.h"
 
-/* Systems up to this many recurrences an order get code of their own for each order. */
-enum { UNROLLED_RECURRENCES = 40 };
+/*
+ * Systems up to this many recurrences an order get code of their own for the first orders, as many as have together so
+ * many products that their code stays in the processor's instruction cache.
+ */
+enum { UNROLLED_RECURRENCES = 40, UNROLLED_PRODUCTS = 1300 };
 
 /* The nodes that change in time and are computed. */
 static void find_needed(struct SeriesWriter *writer) {
@@ -28,6 +32,13 @@ static void find_needed(struct SeriesWriter *writer) {
   free(below);
 }
 
+/* Rows of workspace for the lower triangle of a block's factors. */
+static size_t block_factor_rows(const struct Equations *equations, size_t block) {
+  size_t size = 0;
+  for (size_t i = 0; i < equations->count; i++) size += equations->block[i] == block;
+  return (size * (size + 1) / 2 + SERIES_LENGTH - 1) / SERIES_LENGTH;
+}
+
 /* Rows for the nodes that are arrays, then, where asked for, for the accelerations themselves. */
 static void assign_rows(struct SeriesWriter *writer) {
   writer->row_count = 0;
@@ -35,6 +46,10 @@ static void assign_rows(struct SeriesWriter *writer) {
     writer->row[writer->nodes[i]] = writer->is_array[writer->nodes[i]] ? ++writer->row_count : 0;
   writer->acceleration_row = writer->row_count;
   if (writer->has_acceleration_rows) writer->row_count += writer->emitter->n;
+  writer->factor_row = writer->row_count;
+  const struct Equations *equations = writer->emitter->equations;
+  for (size_t block = 0; writer->keeps_factors && block < equations->block_count; block++)
+    if (block_is_looped(equations, block)) writer->row_count += block_factor_rows(equations, block);
 }
 
 static void write_next(struct SeriesWriter *writer, Node node);
@@ -168,21 +183,32 @@ static void write_next_function(const struct SeriesWriter *writer) {
   fprintf(file, "Series *restrict x, Series *restrict w) {\n%s}\n\n", writer->order_text);
 }
 
-/* The orders from 1 on; in small systems each is a call with a constant order, which the compiler unrolls. */
+static void write_next_call(const struct SeriesWriter *writer, const char *order) {
+  fprintf(writer->emitter->file, "series_next(%s, ", order);
+  write_further(writer, false);
+  fputs("x, w); break;\n", writer->emitter->file);
+}
+
+/* The orders from 1 on; in small systems the first are calls with a constant order, which the compiler unrolls. */
 static void write_orders(const struct SeriesWriter *writer) {
   FILE *file = writer->emitter->file;
   if (!writer->is_unrolled) {
-    fprintf(file, "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n  return 0;\n",
-            writer->order_text);
+    fprintf(file, "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n", writer->order_text);
     return;
   }
-  fputs("  for (int k = 1; k < order; k++) {\n    switch (k) {\n", file);
-  for (int k = 1; k + 1 < SERIES_LENGTH; k++) {
-    fprintf(file, "    case %d: series_next(%d, ", k, k);
-    write_further(writer, false);
-    fputs("x, w); break;\n", file);
+  fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n    switch (k) {\n", file);
+  size_t products = 0;
+  for (size_t k = 1; k + 1 < SERIES_LENGTH; k++) {
+    products += k * writer->recurrences;
+    if (products > UNROLLED_PRODUCTS) break;
+    char *order = format_text("%zu", k);
+    fprintf(file, "    case %zu: ", k);
+    write_next_call(writer, order);
+    free(order);
   }
-  fputs("    default: break;\n    }\n  }\n  return 0;\n", file);
+  fputs("    default: ", file);
+  write_next_call(writer, "k");
+  fputs("    }\n  }\n", file);
 }
 
 static void write_inverses(const struct SeriesWriter *writer) {
@@ -223,33 +249,43 @@ static void declare_time(const struct SeriesWriter *writer) {
     fputs("  const Series time = {point->time, 1.0};\n", writer->emitter->file);
 }
 
-/* Coefficient 0 of all series and 1 of the state. */
-static void write_start(struct SeriesWriter *writer) {
-  struct Emitter *emitter = writer->emitter;
+/* Blocks that are factored at run time hand their factors from start() to series() in rows of the workspace. */
+static void write_block_factors(const struct SeriesWriter *writer, bool keep) {
+  const struct Equations *equations = writer->emitter->equations;
+  size_t row = writer->factor_row;
+  for (size_t block = 0; block < equations->block_count; block++) {
+    if (!block_is_looped(equations, block)) continue;
+    if (keep) fprintf(writer->emitter->file, "  memcpy(w[%zu], mass%zu, sizeof mass%zu);\n", row, block, block);
+    else fprintf(writer->emitter->file, "  const double *mass%zu = w[%zu];\n", block, row);
+    row += block_factor_rows(equations, block);
+  }
+}
+
+/* d state / dt and coefficient 0 of all series. */
+static void start_body(struct Emitter *emitter, size_t unused) {
+  struct SeriesWriter *writer = emitter->series;
+  (void)unused;
   size_t n = emitter->n;
-  fprintf(emitter->file, "  double a[%zu];\n", n);
+  fprintf(emitter->file, "  double *a = derivative + %zu;\n", n);
   Node power = emitter->equations->power;
   write_values(writer, (struct NodeList){&power, emitter->states > 2 * n});
   emit_accelerations(emitter, "a");
   write_first(writer);
   for (size_t i = 0; i < n; i++) {
-    fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n  x[%zu][0] = point->state[%zu];\n", i, i, n + i, n + i);
-    fprintf(emitter->file, "  x[%zu][1] = point->state[%zu];\n  x[%zu][1] = a[%zu];\n", i, n + i, n + i, i);
+    emit_assignment(emitter, "derivative", i, emitter->program->model->velocities.items[i].node);
     if (is_looped(emitter->equations, i))
       fprintf(emitter->file, "  w[%zu][0] = a[%zu];\n", writer->acceleration_row + i, i);
   }
-  if (emitter->states == 2 * n) return;
-  fprintf(emitter->file, "  x[%zu][0] = point->state[%zu];\n", 2 * n, 2 * n);
-  fprintf(emitter->file, "  x[%zu][1] = ", 2 * n);
-  statements_operand(emitter->statements, emitter->equations->power);
-  fputs(";\n", emitter->file);
+  write_block_factors(writer, true);
+  if (emitter->states > 2 * n) emit_assignment(emitter, "derivative", 2 * n, power);
+  fputs("  return 0;\n", emitter->file);
 }
 
 static void series_body(struct Emitter *emitter, size_t unused) {
   struct SeriesWriter *writer = emitter->series;
   (void)unused;
   declare_time(writer);
-  write_start(writer);
+  write_block_factors(writer, false);
   write_orders(writer);
 }
 
@@ -285,7 +321,8 @@ static void writer_free(struct SeriesWriter *writer) {
 
 struct SeriesWriter *series_writer_create(struct Emitter *emitter) {
   struct SeriesWriter *writer = writer_create(emitter, emitter->program->series);
-  writer->has_acceleration_rows = has_loops(emitter->equations);
+  writer->has_acceleration_rows = writer->keeps_factors = has_loops(emitter->equations);
+  emitter->has_limit = limit_mark_rows(writer) > 0;
   writer->order_text = order_text(writer, write_order);
   writer->is_unrolled = !has_loops(emitter->equations) && writer->recurrences <= UNROLLED_RECURRENCES;
   return writer;
@@ -295,10 +332,13 @@ size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer) {
   size_t rows = writer->row_count;
   if (writer->is_unrolled) write_next_function(writer);
   emitter->series = writer;
+  emit_function(emitter, "d state / dt, and the first coefficients of all series",
+                "int start(const struct Point *point, double *derivative, Series *restrict w)", start_body, 0);
   emit_function(emitter, "Taylor coefficients of the state up to the order",
-                "int series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
+                "void series(const struct Point *point, int order, const Series *restrict input, Series *restrict x, "
                 "Series *restrict w)",
                 series_body, 0);
+  if (emitter->has_limit) emit_limit(emitter, writer);
   writer_free(writer);
   return rows;
 }

@@ -1,14 +1,17 @@
 #include "recurrences.h"
 
+#include <assert.h>
 #include <math.h>
 
 bool is_constant_series(const struct SeriesWriter *writer, Node node) {
   return graph_is_constant_in_time(writer->emitter->graph, node);
 }
 
+/* What is constant in time has no row: its value is an operand, and its further coefficients are 0. */
 static void write_name(const struct SeriesWriter *writer, Node node) {
   const struct Emitter *emitter = writer->emitter;
   FILE *file = emitter->file;
+  assert(!is_constant_series(writer, node));
   if (writer->is_needed[node]) { /* without a row in the first text alone, which is thrown away */
     fprintf(file, "w[%zu]", writer->row[node] - 1);
     return;
@@ -52,6 +55,10 @@ static void write_recurrence(struct SeriesWriter *writer, const char *name, Node
   writer->recurrences++;
 }
 
+static void write_operand(const struct SeriesWriter *writer, Node node) {
+  statements_operand(writer->emitter->statements, node);
+}
+
 static void write_product(struct SeriesWriter *writer, Node left, Node right) {
   FILE *file = writer->emitter->file;
   if (is_constant_series(writer, left) || is_constant_series(writer, right)) {
@@ -62,12 +69,26 @@ static void write_product(struct SeriesWriter *writer, Node left, Node right) {
   } else write_recurrence(writer, "product", ZERO, (const Node[]){left, right}, 2);
 }
 
-/* c' = a' / b for the inverse functions, where a_k stands first; sign is "-" or "". */
-static void write_ratio_integral(struct SeriesWriter *writer, const char *sign, Node top, Node below, Node node) {
+/*
+ * c' = factor a' / b for the inverse functions, where a_k stands first; sign is "-" or "", and the factor is constant in
+ * time.
+ */
+static void write_ratio_integral(struct SeriesWriter *writer, const char *sign, Node factor, Node top, Node below,
+                                 Node node) {
   FILE *file = writer->emitter->file;
-  fprintf(file, "series_ratio_integral(k, %s", sign);
+  bool divides = is_constant_series(writer, below);
+  fprintf(file, divides ? "%s" : "series_ratio_integral(k, %s", sign);
+  if (factor != ONE) {
+    fputs("(", file);
+    write_operand(writer, factor);
+    fputs(") * ", file);
+  }
   write_coefficient(writer, top);
-  fputs(", ", file);
+  fputs(divides ? " / " : ", ", file);
+  if (divides) {
+    write_operand(writer, below);
+    return;
+  }
   write_row(writer, below);
   fputs(", ", file);
   write_row(writer, node);
@@ -123,12 +144,17 @@ void write_rate(struct SeriesWriter *writer, Node operand) {
 
 /* y' = x' a */
 static void write_integral(struct SeriesWriter *writer, const char *sign, Node operand, Node factor) {
-  fprintf(writer->emitter->file, "%sseries_integral(k, ", sign);
-  write_rate_row(writer, operand);
-  fputs(", ", writer->emitter->file);
-  write_row(writer, factor);
-  fputs(")", writer->emitter->file);
-  writer->recurrences++;
+  FILE *file = writer->emitter->file;
+  if (is_constant_series(writer, operand)) fputs("0.0", file);
+  else if (is_constant_series(writer, factor)) write_ratio_integral(writer, sign, factor, operand, ONE, operand);
+  else {
+    fprintf(file, "%sseries_integral(k, ", sign);
+    write_rate_row(writer, operand);
+    fputs(", ", file);
+    write_row(writer, factor);
+    fputs(")", file);
+    writer->recurrences++;
+  }
 }
 
 Node integrated_operand(const struct SeriesWriter *writer, Node node) {
@@ -161,6 +187,20 @@ static void write_power(struct SeriesWriter *writer, Node base, Node exponent, N
   else write_product(writer, auxiliary, base);
 }
 
+/*
+ * c = atan2(y, x): (x^2 + y^2) c' = y' x - x' y. Any of y, x and x^2 + y^2 may be constant, the last one as the square of
+ * a rod's length.
+ */
+static void write_angle(struct SeriesWriter *writer, Node y, Node x, Node square, Node node) {
+  if (is_constant_series(writer, x)) write_ratio_integral(writer, "", x, y, square, node);
+  else if (is_constant_series(writer, y)) write_ratio_integral(writer, "-", y, x, square, node);
+  else if (is_constant_series(writer, square)) {
+    write_recurrence(writer, "area", ZERO, (const Node[]){y, x}, 2);
+    fputs(" / ", writer->emitter->file);
+    write_operand(writer, square);
+  } else write_recurrence(writer, "angle", ZERO, (const Node[]){y, x, square, node}, 4);
+}
+
 static void write_function(struct SeriesWriter *writer, Node node) {
   const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
   Node operand = vertex->left, auxiliary = writer->plan->auxiliary[node];
@@ -172,12 +212,10 @@ static void write_function(struct SeriesWriter *writer, Node node) {
   case TANGENT:
   case TANH: write_integral(writer, "", operand, auxiliary); return;
   case EXPONENTIAL: write_integral(writer, "", operand, node); return;
-  case LOGARITHM: write_ratio_integral(writer, "", operand, operand, node); return;
-  case ARCCOSINE: write_ratio_integral(writer, "-", operand, auxiliary, node); return;
-  case ATAN2:
-    write_recurrence(writer, "angle", ZERO, (const Node[]){operand, vertex->right, auxiliary, node}, 4);
-    return;
-  default: write_ratio_integral(writer, "", operand, auxiliary, node);
+  case LOGARITHM: write_ratio_integral(writer, "", ONE, operand, operand, node); return;
+  case ARCCOSINE: write_ratio_integral(writer, "-", ONE, operand, auxiliary, node); return;
+  case ATAN2: write_angle(writer, operand, vertex->right, auxiliary, node); return;
+  default: write_ratio_integral(writer, "", ONE, operand, auxiliary, node);
   }
 }
 

@@ -15,9 +15,9 @@ struct SeriesWriter {
   Node *nodes;     /* those that are needed, ascending */
   size_t *inverse; /* for each node: 1 + the row of the inverse of its first coefficient, 0 for none */
   size_t *rate;    /* for each node: 1 + the row of its time derivative, 0 for none */
-  size_t node_count, row_count, acceleration_row, recurrences;
+  size_t node_count, row_count, acceleration_row, factor_row, recurrences;
   char *order_text; /* the statements for coefficient k */
-  bool has_acceleration_rows, is_unrolled;
+  bool has_acceleration_rows, keeps_factors, is_unrolled;
 };
 
 /* Whether all coefficients but the first are 0. */

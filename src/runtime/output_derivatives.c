@@ -53,11 +53,16 @@ static fmi2Status expand(struct Instance *instance, int order, const struct Expa
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
   if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);
   if (lagrangian.series != NULL) {
-    instance->singular = lagrangian.series(&point, order + 1, input, expansion->state, expansion->work);
+    instance->singular = lagrangian.start(&point, instance->work, expansion->work);
     if (instance->singular != 0) {
       log_singularity(instance, fmi2Discard, point.time);
       return fmi2Discard;
     }
+    for (size_t i = 0; i < lagrangian.state_count; i++) {
+      expansion->state[i][0] = instance->state[i];
+      expansion->state[i][1] = instance->work[i];
+    }
+    lagrangian.series(&point, order + 1, input, expansion->state, expansion->work);
   }
   if (lagrangian.output_series != NULL)
     lagrangian.output_series(&point, order, input, (const Series *)expansion->state, expansion->work,

@@ -1,0 +1,58 @@
+/* What the files of the Taylor solver share. */
+#ifndef TAYLOR_H
+#define TAYLOR_H
+
+#include <math.h>
+
+#include "instance.h"
+
+/* What the situation holds for this solver; it tells all that a step depends on. */
+struct Saved {
+  double origin; /* the time of the series */
+  double reach;  /* how far from there it is right; 0 for no series yet */
+  int64_t order;
+  /* double low[state_count]: what rounding left of the state at origin; Series x[state_count] */
+};
+
+struct Taylor {
+  struct Saved *saved;
+  double *low;
+  Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
+  Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.series */
+  /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
+  double *term, *derivative;
+  bool is_measured;     /* lagrangian.start was called last for the end of the reach */
+  bool is_limited;      /* the step is short for another reason than the size of its coefficients */
+  const char *function; /* an elementary function that made it so; NULL for none */
+};
+
+/* The size of a state variable at the origin, or its nominal value where that is larger. */
+static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
+  double size = fabs(taylor->x[i][0]);
+  return size < lagrangian.nominal[i] ? lagrangian.nominal[i] : size;
+}
+
+/*
+ * The change of state variable i from the origin to s after it, by Horner's rule for even and odd powers apart, which
+ * do not wait for one another.
+ */
+static inline double taylor_change(const struct Taylor *taylor, size_t i, double s) {
+  const double *x = taylor->x[i], square = s * s;
+  int64_t j = taylor->saved->order;
+  double first = x[j], second = x[j - 1];
+  for (j -= 2; j > 1; j -= 2) {
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+  }
+  if (j == 1) return ((first * s + second) * s + x[1]) * s;
+  return (first * s + second) * s;
+}
+
+/*
+ * Sets the reach of the series that taylor->x holds: as long as its last coefficients promise, but no longer than the
+ * functions in the equations allow (series_limit.h), and so that the polynomials were found to obey the equations of
+ * motion at its end. 0 where no step can be taken.
+ */
+void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step);
+
+#endif
