@@ -57,18 +57,33 @@ static Node auxiliary_of(struct Graph *graph, Node node) {
   }
 }
 
-static bool has_kink(enum Operation operation) {
-  return operation == MINIMUM || operation == MAXIMUM || operation == ABSOLUTE || operation == SIGN ||
-         operation == LESS;
+/*
+ * The name of the kink that a node makes, NULL for none. An inverse function of its own function is piecewise linear:
+ * its series goes on where it turns.
+ */
+static const char *kink_at(const struct Graph *graph, Node node) {
+  const struct Vertex *vertex = &graph->vertices[node];
+  enum Operation inner = operation_arity(vertex->operation) == 1 ? graph->vertices[vertex->left].operation : CONSTANT;
+  bool of_wave = inner == SINE || inner == COSINE;
+  switch (vertex->operation) {
+  case MINIMUM:
+  case MAXIMUM:
+  case ABSOLUTE:
+  case SIGN:
+  case LESS: return operation_name(vertex->operation);
+  case ARCSINE: return of_wave ? "asin of a sine" : NULL;
+  case ARCCOSINE: return of_wave ? "acos of a cosine" : NULL;
+  case ARCTANGENT: return inner == TANGENT ? "atan of a tangent" : NULL;
+  default: return NULL;
+  }
 }
 
 const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count) {
   bool *needed = allocate(graph->count, sizeof *needed);
   const char *kink = NULL;
   graph_mark(graph, nodes, count, needed);
-  for (Node node = 0; node < graph->count; node++)
-    if (needed[node] && has_kink(graph->vertices[node].operation) && !graph_is_constant_in_time(graph, node))
-      kink = operation_name(graph->vertices[node].operation);
+  for (Node node = 0; node < graph->count && kink == NULL; node++)
+    if (needed[node] && !graph_is_constant_in_time(graph, node)) kink = kink_at(graph, node);
   free(needed);
   return kink;
 }

@@ -127,7 +127,41 @@ Node power_number(struct Graph *graph, Node base, double exponent) {
   return power(graph, base, graph_constant(graph, exponent));
 }
 
+/* Whether a node that is real is never negative. */
+static bool is_never_negative(const struct Graph *graph, Node node) {
+  const struct Vertex *vertex = vertex_of(graph, node);
+  double n = vertex->operation == POWER ? numeric_exponent(graph, vertex) : NAN;
+  return vertex->operation == ABSOLUTE || vertex->operation == EXPONENTIAL || vertex->operation == COSH ||
+         fmod(n, 2.0) == 0.0 || (!isnan(n) && !is_whole(n));
+}
+
+/*
+ * (u^2 w)^n = |u|^(2 n) w^n for an n that is not whole: it has a kink where u changes its sign, unless 2 n is even. False
+ * where the base holds no even power.
+ */
+static bool root_of_even_powers(struct Graph *graph, Node base, double n, Node *result) {
+  Node bare;
+  struct Factor factors[FACTOR_LIMIT];
+  double coefficient = coefficient_of(graph, base, &bare);
+  int count = factors_of(graph, base, factors), rest = 0;
+  Node outside = ONE;
+  for (int i = 0; i < count && coefficient > 0.0; i++) {
+    double exponent = factors[i].exponent * n;
+    if (fmod(factors[i].exponent, 2.0) != 0.0) factors[rest++] = factors[i];
+    else {
+      bool is_even = fmod(exponent, 2.0) == 0.0;
+      Node inner = is_even ? factors[i].base : function(graph, ABSOLUTE, factors[i].base, ZERO);
+      outside = multiply(graph, outside, power_number(graph, inner, exponent));
+    }
+  }
+  if (coefficient <= 0.0 || count <= 0 || rest == count) return false;
+  Node inside = scale(graph, coefficient, product_of(graph, factors, rest));
+  *result = multiply(graph, outside, power_number(graph, inside, n));
+  return true;
+}
+
 Node power(struct Graph *graph, Node base, Node exponent) {
+  if (base == ONE) return ONE;
   if (!graph_is_constant(graph, exponent)) return graph_node(graph, POWER, base, exponent);
   double n = graph_value(graph, exponent);
   if (n == 0.0) return ONE;
@@ -141,6 +175,9 @@ Node power(struct Graph *graph, Node base, Node exponent) {
     Node bare;
     double coefficient = coefficient_of(graph, base, &bare);
     if (coefficient != 1.0) return scale(graph, pow(coefficient, n), power(graph, bare, exponent));
+  } else {
+    Node result;
+    if (root_of_even_powers(graph, base, n, &result)) return result;
   }
   return graph_node(graph, POWER, base, exponent);
 }
@@ -274,6 +311,7 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
   if (graph_is_constant(graph, left) && graph_is_constant(graph, right))
     return graph_constant(graph, operation_evaluate(operation, graph_value(graph, left), graph_value(graph, right)));
   if ((operation == MINIMUM || operation == MAXIMUM) && left == right) return left;
+  if (operation == ABSOLUTE && is_never_negative(graph, left)) return left;
   Node base;
   if (coefficient_of(graph, left, &base) < 0) {
     if (is_odd_function(operation)) return negate(graph, graph_node(graph, operation, negate(graph, left), right));
