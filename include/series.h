@@ -231,6 +231,13 @@ static inline double series_ratio_integral(int k, double top, const double *b, c
   return (top - sum / k) / b[0];
 }
 
+/* The sign that a(t) has at first for t > 0, as far as its coefficients up to k tell: -1, 0 or 1 */
+static inline double series_sign(int k, const double *a) {
+  int j = 0;
+  while (j < k && a[j] == 0.0) j++;
+  return (double)((a[j] > 0.0) - (a[j] < 0.0));
+}
+
 /* The coefficient k - 1 of y' x - x' y, divided by k */
 static inline double series_area(int k, const double *y, const double *x) {
   double sum = 0.0;

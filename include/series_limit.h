@@ -17,7 +17,7 @@ struct SeriesLimit {
   int order;            /* of the polynomials */
   double step;          /* what the functions below shorten */
   const char *function; /* the one that shortened it last; NULL for none */
-  bool crosses;         /* roots and atan2, which stay finite, do not shorten it */
+  bool crosses;         /* roots, kinks and jumps, which stay finite, do not shorten it */
 };
 
 /* exp(u), also as the power of a constant */
@@ -50,6 +50,9 @@ void series_limit_power(struct SeriesLimit *limit, const double *u, double expon
 static inline double series_limit_share(double exponent) {
   return exponent < 0.0 ? 1.0 - exp(5.0 / exponent) : exp(5.0 / exponent) - 1.0;
 }
+
+/* u must keep its sign, on the real axis alone: each piece of abs, sign, min and max is a series of its own. */
+void series_limit_sign(struct SeriesLimit *limit, const double *u, const char *function);
 
 /* atan2(y, x) jumps where y = 0 and x < 0. */
 void series_limit_angle(struct SeriesLimit *limit, const double *y, const double *x);

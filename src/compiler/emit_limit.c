@@ -62,7 +62,7 @@ static Node bare_base(const struct SeriesWriter *writer, Node base, double *expo
 static const char *const quotient = "quotient", *const division = "division", *const root = "root",
                          *const whole_power = "whole_power", *const power_at_run_time = "power",
                          *const exponential = "exponential", *const positive = "positive",
-                         *const hyperbolic = "hyperbolic";
+                         *const hyperbolic = "hyperbolic", *const sign = "sign";
 
 /* The numerator is known to be 0 for some motions through a point where the denominator vanishes. */
 static void check_division(const struct SeriesWriter *writer, struct CheckList *list, Node numerator,
@@ -111,6 +111,14 @@ static void check_function(const struct SeriesWriter *writer, struct CheckList *
   case ARCTANGENT:
   case ARTANH:
     check.limit = positive;
+    check.rows[0] = auxiliary;
+    break;
+  case ABSOLUTE:
+  case SIGN: check.limit = sign; break;
+  case MINIMUM:
+  case MAXIMUM:
+  case LESS:
+    check.limit = sign;
     check.rows[0] = auxiliary;
     break;
   case TANH:

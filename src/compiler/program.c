@@ -64,7 +64,7 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
 
 static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
   const struct Equations *equations = program->equations;
-  const char *kink = kink_of(model->graph, equations->residual, equations->count);
+  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
   if (kink == NULL) program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
   else
     report_error(diagnostics, model->solver_line,

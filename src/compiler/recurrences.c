@@ -201,6 +201,19 @@ static void write_angle(struct SeriesWriter *writer, Node y, Node x, Node square
   } else write_recurrence(writer, "angle", ZERO, (const Node[]){y, x, square, node}, 4);
 }
 
+/* The coefficients of the piece that is there first: that of the larger or of the smaller operand. */
+static void write_choice(struct SeriesWriter *writer, enum Operation operation, Node left, Node right,
+                         Node difference) {
+  FILE *file = writer->emitter->file;
+  fputs("(", file);
+  if (is_constant_series(writer, difference)) write_operand(writer, difference);
+  else write_recurrence(writer, "sign", ZERO, &difference, 1);
+  fputs(operation == MAXIMUM ? " > 0.0) ? " : " < 0.0) ? ", file);
+  write_coefficient(writer, left);
+  fputs(" : ", file);
+  write_coefficient(writer, right);
+}
+
 static void write_function(struct SeriesWriter *writer, Node node) {
   const struct Vertex *vertex = &writer->emitter->graph->vertices[node];
   Node operand = vertex->left, auxiliary = writer->plan->auxiliary[node];
@@ -214,6 +227,15 @@ static void write_function(struct SeriesWriter *writer, Node node) {
   case EXPONENTIAL: write_integral(writer, "", operand, node); return;
   case LOGARITHM: write_ratio_integral(writer, "", ONE, operand, operand, node); return;
   case ARCCOSINE: write_ratio_integral(writer, "-", ONE, operand, auxiliary, node); return;
+  case MINIMUM:
+  case MAXIMUM: write_choice(writer, vertex->operation, operand, vertex->right, auxiliary); return;
+  case SIGN:
+  case LESS: fputs("0.0", writer->emitter->file); return;
+  case ABSOLUTE:
+    write_recurrence(writer, "sign", ZERO, &operand, 1);
+    fputs(" * ", writer->emitter->file);
+    write_coefficient(writer, operand);
+    return;
   case ATAN2: write_angle(writer, operand, vertex->right, auxiliary, node); return;
   default: write_ratio_integral(writer, "", ONE, operand, auxiliary, node);
   }

@@ -53,6 +53,9 @@ static Node auxiliary_of(struct Graph *graph, Node node) {
   case ARTANH: return square_plus(graph, 1.0, -1.0, vertex.left);
   case ATAN2: return add(graph, square(graph, vertex.left), square(graph, vertex.right));
   case POWER: return auxiliary_of_power(graph, &vertex);
+  case MINIMUM:
+  case MAXIMUM:
+  case LESS: return subtract(graph, vertex.left, vertex.right);
   default: return ZERO;
   }
 }
@@ -61,16 +64,11 @@ static Node auxiliary_of(struct Graph *graph, Node node) {
  * The name of the kink that a node makes, NULL for none. An inverse function of its own function is piecewise linear:
  * its series goes on where it turns.
  */
-static const char *kink_at(const struct Graph *graph, Node node) {
+static const char *kink_without_series(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = &graph->vertices[node];
   enum Operation inner = operation_arity(vertex->operation) == 1 ? graph->vertices[vertex->left].operation : CONSTANT;
   bool of_wave = inner == SINE || inner == COSINE;
   switch (vertex->operation) {
-  case MINIMUM:
-  case MAXIMUM:
-  case ABSOLUTE:
-  case SIGN:
-  case LESS: return operation_name(vertex->operation);
   case ARCSINE: return of_wave ? "asin of a sine" : NULL;
   case ARCCOSINE: return of_wave ? "acos of a cosine" : NULL;
   case ARCTANGENT: return inner == TANGENT ? "atan of a tangent" : NULL;
@@ -78,14 +76,39 @@ static const char *kink_at(const struct Graph *graph, Node node) {
   }
 }
 
-const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count) {
+static const char *kink_at(const struct Graph *graph, Node node) {
+  enum Operation operation = graph->vertices[node].operation;
+  bool has_pieces =
+      operation == MINIMUM || operation == MAXIMUM || operation == ABSOLUTE || operation == SIGN || operation == LESS;
+  return has_pieces ? operation_name(operation) : kink_without_series(graph, node);
+}
+
+static const char *jump_at(const struct Graph *graph, Node node) {
+  return graph->vertices[node].operation == SIGN ? "sign" : NULL;
+}
+
+/* What `at` says of the first node below these that changes in time and of which it says something. */
+static const char *find_kink(const struct Graph *graph, const Node *nodes, size_t count,
+                             const char *(*at)(const struct Graph *, Node)) {
   bool *needed = allocate(graph->count, sizeof *needed);
   const char *kink = NULL;
   graph_mark(graph, nodes, count, needed);
   for (Node node = 0; node < graph->count && kink == NULL; node++)
-    if (needed[node] && !graph_is_constant_in_time(graph, node)) kink = kink_at(graph, node);
+    if (needed[node] && !graph_is_constant_in_time(graph, node)) kink = at(graph, node);
   free(needed);
   return kink;
+}
+
+const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count) {
+  return find_kink(graph, nodes, count, kink_at);
+}
+
+const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count) {
+  return find_kink(graph, nodes, count, kink_without_series);
+}
+
+const char *jump_of(const struct Graph *graph, const Node *nodes, size_t count) {
+  return find_kink(graph, nodes, count, jump_at);
 }
 
 static void append_equations(struct SeriesPlan *plan, const struct Equations *equations) {

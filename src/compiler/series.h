@@ -14,10 +14,19 @@ struct SeriesPlan {
   Node *auxiliary; /* for each node of the graph, the node that its recurrence needs beside its operands; ZERO: none */
 };
 
-/* The name of a function with a kink, which has no Taylor series, below the nodes, such as "min"; NULL for none. */
+/*
+ * The name of a function with a kink or a jump, such as "min", below the nodes; NULL for none. Its pieces have series,
+ * which end where the next piece begins.
+ */
 const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 
-/* For the motion; the equations have no kink. Free with series_plan_free(). */
+/* The same for a kink that no series sees, as that of asin(sin(x)). */
+const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);
+
+/* The same for sign(x), a jump where it was written by itself. */
+const char *jump_of(const struct Graph *graph, const Node *nodes, size_t count);
+
+/* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
 
 /* For expressions of the motion, without kinks. Free with series_plan_free(). */

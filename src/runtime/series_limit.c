@@ -108,6 +108,18 @@ void series_limit_power(struct SeriesLimit *limit, const double *u, double expon
   else if (exponent > 3.0) series_limit_whole_power(limit, u, share);
 }
 
+/* Away from 0 without a turning point, or not as far as 0. */
+static bool sign_fits(const double *u, int order, double step, double bound) {
+  int first = 0;
+  while (first < order && u[first] == 0.0) first++;
+  bool leaves = u[first] * u[first == 0 ? 1 : first] > 0.0 && is_monotone(u, order, step);
+  return leaves || excursion(u, order, step) <= bound;
+}
+
+void series_limit_sign(struct SeriesLimit *limit, const double *u, const char *function) {
+  if (!limit->crosses) shorten(limit, u, sign_fits, approach * fabs(u[0]), function);
+}
+
 void series_limit_angle(struct SeriesLimit *limit, const double *y, const double *x) {
   if (limit->crosses || excursion(x, limit->order, limit->step) < x[0]) return;
   shorten(limit, y, excursion_fits, approach * fabs(y[0]), "atan2");

@@ -15,7 +15,7 @@
 static const double safety = 0.1;
 enum { STEP_LIMIT = 10000000 }; /* steps in one communication step */
 enum { CACHE_LINE = 64 };
-enum { STIFF_STEPS = 1000 }; /* in so many steps, a system that is not stiff moves */
+enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
 
 static size_t saved_size(void) {
   return sizeof(struct Saved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
@@ -137,22 +137,39 @@ static enum StepResult stop(struct Instance *instance, const struct Taylor *tayl
   return STEP_PARTIAL;
 }
 
+/* Steps of one kind that hardly move the system; the kind goes on where a thousand of them do not. */
+struct Crawl {
+  int steps;
+  double path;
+};
+
+static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
+  crawl->path += moved;
+  if (++crawl->steps < CRAWL_STEPS) return false;
+  bool stays = crawl->path < CRAWL_STEPS * tolerance;
+  *crawl = (struct Crawl){0};
+  return stays;
+}
+
 /*
  * Expands and advances until the series reaches the end; NULL, or the reason why it never does. Where a system is
- * stiff, many steps hardly move it: none would need to be so short, but that its fast modes must not grow.
+ * stiff, many steps hardly move it: none would need to be so short, but that its fast modes must not grow. Where dry
+ * friction sticks, one jump comes after another.
  */
 static const char *reach(struct Instance *instance, struct Taylor *taylor, double length, double end) {
   struct Saved *saved = taylor->saved;
-  double path = 0.0;
-  int stiff_steps = 0;
+  struct Crawl regular = {0}, crossing = {0};
+  double tolerance = instance->situation->tolerance;
   for (long steps = 1; saved->reach == 0.0 || end > saved->origin + saved->reach; steps++) {
-    if (saved->reach > 0.0) path += advance(instance, taylor);
+    double moved = saved->reach > 0.0 ? advance(instance, taylor) : 0.0;
+    if (!taylor->crosses) crossing.path += moved;
+    else if (crawls(&crossing, moved, 4.0 * tolerance))
+      return "a function jumps to and fro there, as dry friction that sticks; write it with tanh, or choose "
+             "<solver method=\"erk\"/> in system.xml";
+    if (!taylor->is_limited && crawls(&regular, moved, tolerance))
+      return "the system is stiff there, which asks for <solver method=\"bdf\"/> in system.xml";
     if (!expand(instance, taylor, length)) return "the motion has a singularity there, or grows beyond all numbers";
     if (steps == STEP_LIMIT) return "too many steps";
-    if (taylor->is_limited || ++stiff_steps % STIFF_STEPS > 0) continue;
-    if (path < STIFF_STEPS * instance->situation->tolerance)
-      return "the system is stiff there, which asks for <solver method=\"bdf\"/> in system.xml";
-    path = 0.0;
   }
   return NULL;
 }

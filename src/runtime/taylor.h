@@ -23,6 +23,7 @@ struct Taylor {
   double *term, *derivative;
   bool is_measured;     /* lagrangian.start was called last for the end of the reach */
   bool is_limited;      /* the step is short for another reason than the size of its coefficients */
+  bool crosses;         /* the step crosses a point where a function has no series */
   const char *function; /* an elementary function that made it so; NULL for none */
 };
 

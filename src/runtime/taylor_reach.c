@@ -206,9 +206,11 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   if (rest < step) step = rest;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
   taylor->function = limit.function;
+  double crossing = 0.0;
   if (limit.function != NULL && limit.step < communication_step * instance->situation->tolerance)
-    limit.step = fmax(limit.step, crossing_step(instance, taylor, communication_step));
-  step = limit.step;
+    crossing = crossing_step(instance, taylor, communication_step);
+  taylor->crosses = crossing > limit.step;
+  step = taylor->crosses ? crossing : limit.step;
   taylor->is_limited = step < promised;
   saved->reach = step > 0.0 ? shortened(instance, taylor, step) : 0.0;
   taylor->is_measured = saved->reach > 0.0;
