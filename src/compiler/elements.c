@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "differentiate.h"
+#include "energies.h"
 #include "memory.h"
 #include "simplify.h"
 
@@ -122,17 +123,14 @@ static void add_term(struct Model *model, struct Quantity *sum, Node term) {
   sum->node = add(model->graph, sum->node, term);
 }
 
-/* 1/2 mass |velocity|^2 and 1/2 inertia rate^2 */
-static void add_kinetic_energy(struct Model *model, const struct Body *body) {
+/* 1/2 inertia rate^2 */
+static void add_kinetic_energy(struct Model *model, Node inertia, Node position) {
   struct Graph *graph = model->graph;
-  for (int axis = 0; axis < 3; axis++) {
-    Node rate = total_time_derivative(model->scope, body->position[axis].node);
-    Node term = multiply(graph, body->mass.node, power_number(graph, rate, 2.0));
-    add_term(model, &model->kinetic, scale(graph, 0.5, term));
-  }
-  Node rate = total_time_derivative(model->scope, body->angle.node);
-  Node term = multiply(graph, body->inertia.node, power_number(graph, rate, 2.0));
-  add_term(model, &model->kinetic, scale(graph, 0.5, term));
+  Node rate = total_time_derivative(model->scope, position);
+  Node energy = scale(graph, 0.5, multiply(graph, inertia, power_number(graph, rate, 2.0)));
+  add_term(model, &model->kinetic, energy);
+  add_term(model, &model->kinetic_energy, energy);
+  model->driven |= graph_depends_on(graph, position, TIME);
 }
 
 static void define_component(struct Reader *reader, const struct Body *body, const char *component,
@@ -163,7 +161,8 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   }
   if (!body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
-  add_kinetic_energy(model, &body);
+  for (int axis = 0; axis < 3; axis++) add_kinetic_energy(model, body.mass.node, body.position[axis].node);
+  add_kinetic_energy(model, body.inertia.node, body.angle.node);
   model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
@@ -175,6 +174,15 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, sum, term.node);
   return term.node;
+}
+
+static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  bool driven;
+  Node term = read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
+  add_term(model, &model->explicit_kinetic, term);
+  add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
+  model->driven |= driven;
 }
 
 static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
@@ -193,7 +201,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
                coordinate);
 }
 
-/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work). */
+/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work); its power is F . dr/dt. */
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Model *model = reader->model;
   const struct Body *body = NULL;
@@ -212,6 +220,8 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
       Node lever = derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
       add_term(model, &model->forces[i], multiply(model->graph, force.node, lever));
     }
+    Node drive = derivative_by(model->graph, body->position[axis].node, model->time);
+    add_term(model, &model->driven_power, multiply(model->graph, force.node, drive));
   }
 }
 
@@ -293,9 +303,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
 
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
-  if (strcmp(element, "kinetic") == 0)
-    add_term(model, &model->explicit_kinetic,
-             read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J"));
+  if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "differentiate.h"
+#include "energies.h"
 #include "mass_matrix.h"
 #include "memory.h"
 #include "rational.h"
@@ -164,17 +165,6 @@ static void derive_motion(struct Model *model, struct Equations *equations, cons
   free(left[1]);
 }
 
-/* What of U is stored energy: terms linear in the velocities (magnetic forces) store none. */
-static Node stored_energy(struct Model *model, const Node *velocities) {
-  struct Graph *graph = model->graph;
-  size_t n = model->coordinates.count;
-  Node energy = model->potential.node, *slope = allocate(n, sizeof *slope);
-  gradient_of(graph, energy, velocities, n, slope);
-  for (size_t i = 0; i < n; i++) energy = subtract(graph, energy, multiply(graph, slope[i], velocities[i]));
-  free(slope);
-  return energy;
-}
-
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
@@ -193,8 +183,9 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   derive_mass_matrix(graph, equations, momentum, v);
   derive_motion(model, equations, q, v, force);
   for (size_t i = 0; i < n; i++) equations->power = add(graph, equations->power, multiply(graph, force[i], v[i]));
-  equations->kinetic = model->kinetic.node;
-  equations->potential = stored_energy(model, v);
+  equations->power = add(graph, equations->power, model->driven_power.node);
+  equations->kinetic = model->kinetic_energy.node;
+  equations->potential = stored_energy(model, model->potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
 
   if (graph->overflow)

@@ -32,8 +32,8 @@ struct Equations {
   Node *acceleration;     /* expressions in unrolled blocks, the acceleration symbols in others */
   struct Pivot *pivots;
   size_t pivot_count;
-  Node power;                     /* of the non-conservative forces, sum Q_i v_i */
-  Node kinetic, potential, total; /* energies */
+  Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
+  Node kinetic, potential, total; /* energies, see energies.h */
 };
 
 /*
