@@ -128,6 +128,7 @@ Node power_number(struct Graph *graph, Node base, double exponent) {
 }
 
 Node power(struct Graph *graph, Node base, Node exponent) {
+  if (base == ONE) return ONE;
   if (!graph_is_constant(graph, exponent)) return graph_node(graph, POWER, base, exponent);
   double n = graph_value(graph, exponent);
   if (n == 0.0) return ONE;
