@@ -1,5 +1,6 @@
 #include "lagrange.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "differentiate.h"
@@ -197,6 +198,28 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   free(momentum);
   free(force);
   return equations;
+}
+
+/* Whether the nodes are made of finite numbers. */
+static bool are_finite(const struct Graph *graph, const Node *nodes, size_t count) {
+  bool *needed = allocate(graph->count, sizeof *needed), finite = true;
+  graph_mark(graph, nodes, count, needed);
+  for (Node node = 0; node < graph->count && finite; node++)
+    finite = !needed[node] || !graph_is_constant(graph, node) || isfinite(graph_value(graph, node));
+  free(needed);
+  return finite;
+}
+
+void equations_check_finite(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics) {
+  const Node *nodes = equations->explicit_form ? equations->acceleration : equations->residual;
+  size_t wrong = 0;
+  if (are_finite(model->graph, nodes, equations->count)) return;
+  while (are_finite(model->graph, nodes + wrong, 1)) wrong++;
+  report_error(diagnostics, model->velocities.items[wrong].line,
+               "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
+               "point at a pole",
+               model->velocities.items[wrong].name);
 }
 
 void equations_free(struct Equations *equations) {

@@ -44,6 +44,10 @@ enum { UNROLL_LIMIT = 2 };
 
 /* Derives the equations of motion; reports errors (a coordinate without inertia, ...) to diagnostics. */
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);
+/* Reports coefficients that are not finite: of sums and products too large for numbers, and of a point at a pole. */
+void equations_check_finite(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics);
+
 void equations_free(struct Equations *equations);
 
 /* Whether a block is so large that ldlt_factor() solves it at run time. */
