@@ -6,6 +6,7 @@
 
 #include <libxml/xmlwriter.h>
 
+#include "../src/compiler/differentiate.h"
 #include "../src/compiler/memory.h"
 #include "../src/compiler/print.h"
 #include "../src/compiler/rational.h"
@@ -56,19 +57,59 @@ static void write_motion(xmlTextWriterPtr writer, const struct Program *program,
   free(left);
 }
 
+/* Which law totalEnergy obeys (see energies.h). */
+static const char *balance_of(const struct Model *model) {
+  struct Graph *graph = model->graph;
+  Node difference = subtract(graph, model->kinetic.node, model->potential.node); /* L */
+  bool autonomous = simplify_fraction(graph, derivative_by(graph, difference, model->time)) == ZERO;
+  if (!model->driven && autonomous)
+    return model->has_forces
+               ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
+               : "totalEnergy is constant.";
+  if (!model->driven)
+    return "L depends on time explicitly: the derivative of totalEnergy is the power of the non-conservative forces "
+           "less the partial derivative dL/dt, so that totalEnergy is not constant even without forces.";
+  if (autonomous)
+    return "Masses are moved in a given way: totalEnergy is the energy K + U that they have. What moves them does "
+           "work, so that totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv "
+           "less L, is another quantity here: its derivative is the sum of the generalized forces times the "
+           "velocities v, so that it is constant without forces.";
+  return "Masses are moved in a given way: totalEnergy is the energy K + U that they have. What moves them does work, "
+         "so that totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv less L, is "
+         "another quantity here: its derivative is the sum of the generalized forces times the velocities v, less the "
+         "partial derivative dL/dt, so that it is not constant either.";
+}
+
+static void write_energies(xmlTextWriterPtr writer, const struct Program *program) {
+  const struct Equations *equations = program->equations;
+  const struct Model *model = program->model;
+  bool linearized = model->linearized, separate = !linearized && model->kinetic.node != equations->kinetic;
+  element(writer, "h2", "Energies");
+  if (separate) write_equation(writer, model->graph, "T", model->kinetic.node);
+  write_equation(writer, model->graph, "K", equations->kinetic);
+  write_equation(writer, model->graph, "U", linearized ? equations->potential : model->potential.node);
+  element(writer, "p", separate ? "The Lagrangian is L = T - U." : "The Lagrangian is L = K - U.");
+  if (linearized) return;
+  element(writer, "p",
+          "kineticEnergy is K: half of mass times squared velocity of every body, and for each <kinetic> term T the "
+          "term itself where it is a quadratic polynomial of the velocities v, else the sum of v dT/dv less T. "
+          "potentialEnergy is U less the sum of v dU/dv, which is U where it has no velocities. totalEnergy is the "
+          "sum of both.");
+  element(writer, "p", balance_of(model));
+}
+
 static void write_mechanics(xmlTextWriterPtr writer, const struct Program *program) {
   const struct Equations *equations = program->equations;
   struct Graph *graph = program->model->graph;
-  element(writer, "h2", "Energies");
-  write_equation(writer, graph, "K", equations->kinetic);
-  write_equation(writer, graph, "U",
-                 program->model->linearized ? equations->potential : program->model->potential.node);
-  element(writer, "p", "The Lagrangian is L = K - U.");
+  write_energies(writer, program);
   element(writer, "h2", "Equations of motion");
   for (size_t i = 0; i < equations->count; i++) write_motion(writer, program, i);
   if (!program->model->has_forces) return;
   element(writer, "h2", "Power of the non-conservative forces");
   write_equation(writer, graph, "P", equations->power);
+  element(writer, "p",
+          "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
+          "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on.");
 }
 
 static void write_outputs(xmlTextWriterPtr writer, const struct Model *model) {

@@ -143,6 +143,18 @@ def charged_particle():
     return System([x, y], [vx, vy], m * (vx**2 + vy**2) / 2, 0, [qB * vy, -qB * vx], [], [m, qB])
 
 
+def relativistic_particle():
+    x, y, vx, vy, m, k = symbols("x y vx vy m k")
+    c = 10
+    T = m * c**2 * (1 - sp.sqrt(1 - (vx**2 + vy**2) / c**2))
+    return System([x, y], [vx, vy], T, k * (x**2 + y**2) / 2, None, [], [m, k])
+
+
+def moving_belt():
+    q, v, F, m, w = symbols("q v F m w")
+    return System([q], [v], m * (v + w) ** 2 / 2, sp.Integer(0), [F], [F], [m, w], {"load": (q + w * time,)})
+
+
 def two_carts():
     M, m, l, k, g, u = symbols("M m l k g u")
     x = symbols("x[1] x[2]")
@@ -199,6 +211,8 @@ DEFINITIONS = {
     "SphericalPendulum": spherical_pendulum,
     "FurutaPendulum": furuta_pendulum,
     "ChargedParticle": charged_particle,
+    "RelativisticParticle": relativistic_particle,
+    "MovingBelt": moving_belt,
     "TwoCarts": two_carts,
     "RollingDisk": rolling_disk,
     "Functions": functions,

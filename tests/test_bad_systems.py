@@ -34,6 +34,10 @@ CASES = [
     ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, "m 1"),
     ("unknown solver", 11, '<solver method="euler"/>', 11, "euler"),
     ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, "-1"),
+    ("tolerance of 5", 11, '<solver method="erk" tolerance="5"/>', 11, "tolerance 5; expected a number between 0 and 1"),
+    ("tolerance by a constant", 11, '<constant name="INF" value="-1"/><solver method="erk" tolerance="INF"/>', 11,
+     "tolerance -1; expected"),
+    ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize 0; expected"),
     ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
     ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),
@@ -51,6 +55,20 @@ CASES = [
     ("hexadecimal number", 8, "<potential>0x10*m*g*l</potential>", 8, "'0x' is no number"),
     ("number too large", 8, "<potential>1e999*m*g*l</potential>", 8, "'1e999.*is no number"),
     ("division by zero", 8, "<potential>m*g*l/0</potential>", 8, "division by zero"),
+    ("root of a negative number", 8, "<potential>\n sqrt(-1)*m*g*l</potential>", 9, r"sqrt\(-1\) is no real number"),
+    ("logarithm of 0", 8, "<potential>log(0)*m*g*l</potential>", 8, r"log\(0\) has no finite value; expected .* positive"),
+    ("arc sine of 2", 8, "<potential>asin(2)*m*g*l</potential>", 8, r"asin\(2\) has no finite value; expected .* from -1 to 1"),
+    ("exponential of 1000", 8, "<potential>exp(1000)*m*g*l</potential>", 8, r"exp\(1000\) has no finite value"),
+    ("tangent at its pole", 8, "<potential>tan(pi/2)*m*g*l</potential>", 8, "has no finite value; expected .* poles"),
+    ("power of 0", 8, "<potential>0^-1*m*g*l</potential>", 8, r"\(0\)\^\(-1\) has no finite value"),
+    ("broken power of a negative number", 8, "<potential>(-8)^(1/3)*m*g*l</potential>", 8, r"\(-8\)\^\(0.333333\) has no finite"),
+    ("varying power of a negative number", 8, "<potential>(-2)^theta*m*g*l</potential>", 8, "power of -2 with an exponent that varies"),
+    ("product that is too large", 8, "<potential>1e308*10*m*g*l</potential>", 8, "a product of numbers is not finite"),
+    ("sum that is too large", 8, "<potential>1e308*m*g*l + 1e308*m*g*l</potential>", 8, "a sum of numbers is not finite"),
+    ("sum of terms that is too large", 8, "<potential>m*g*l*sum(i, 1, 3, 1e308)</potential>", 8, "a sum of numbers is not finite"),
+    ("power that is too large", 8, "<potential>m*g*l*(1e200*theta)^2</potential>", 8, "a power of numbers is not finite"),
+    ("derivative that is too large", 8, "<potential>1e308*m*g*l*theta^3</potential>", 6, r"equation of der\(omega\) .* not finite"),
+    ("start that is no real number", 2, '<parameter name="m" start="sqrt(-1)"/>', 2, r"start: sqrt\(-1\) is no real"),
     ("empty expression", 8, "<potential> </potential>", 8, "expected a number, a name or '\\(', found the end"),
     ("missing argument", 8, "<potential>m*g*l*atan2(theta)</potential>", 8, "expected ',' between the two arguments"),
     ("argument too many", 8, "<potential>m*g*l*cos(theta, 1)</potential>", 8, r"expected '\)' after the argument of cos"),
@@ -84,6 +102,13 @@ CASES = [
     ("two coordinates for one motion", 7,
      '<coordinate name="phi" velocity="nu" unit="rad"/>\n'
      '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "structurally singular"),
+    ("force along a coordinate with components", 9, '<force coordinate="theta" x="1">tau</force>', 9, "needs either coordinate="),
+    ("force on a particle without components", 9, '<force on="bob">tau</force>', 9, "needs either coordinate="),
+    ("force on a particle with a text", 9, '<force on="bob" x="1">tau</force>', 9, '<force on="bob"> has a text'),
+    ("force along what a particle has not", 9, '<force on="bob" z="1"/>', 9, "a force along z on 'bob', which has no z"),
+    ("two particles of one name", 7,
+     '<particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/>\n<particle name="bob" mass="m" z="l*theta"/>', 8,
+     "named 'bob' is already defined on line 7"),
     ("work without forces", 9, "<work/>", 9, "<work/> without forces"),
     ("series of a function with a kink", 11,
      '<force coordinate="theta">abs(tau)*sin(theta)</force><solver method="taylor"/>', 11, "abs has a kink.*expected the method 'erk'"),
@@ -91,6 +116,22 @@ CASES = [
     ("index that is no number", 7, '<for index="i" from="1" to="n"></for>', 7, "unknown name 'n'"),
     ("index that is half", 7, '<for index="i" from="1" to="1.5"></for>', 7, "expected whole numbers"),
     ("endless repetition", 7, '<for index="i" from="1" to="1e9"></for>', 7, "at most 10000 repetitions"),
+    ("index that is a parameter further below", 3,
+     '<for index="g" from="1" to="2"><potential>9.81*l*m*g</potential></for><parameter name="l" start="1"/>', 3,
+     "the index 'g' of <for> is already a name"),
+    ("index that is an output", 11, '<for index="height" from="1" to="2"><potential>m*g*l</potential></for>', 11,
+     "the index 'height' of <for> is already a name"),
+    ("index that is a definition further below", 7,
+     '<for index="a" from="1" to="2"><potential>m*g*l*a</potential></for><define name="a">2</define>'
+     '<particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/>', 7, "the index 'a' of <for> is already a name"),
+    ("one index in two loops", 8,
+     '<for index="i" from="1" to="2"><for index="i" from="1" to="2"><potential>m*g*l</potential></for></for>', 8,
+     "the index 'i' of <for> is already a name"),
+    ("constant after its use", 7, '<for index="i" from="1" to="N"></for><constant name="N" value="2"/>', 7, "unknown name 'N'"),
+    ("sum over a number", 8, "<potential>m*g*l*sum(2, 1, 3, 2)</potential>", 8, "expected a name as the index of sum"),
+    ("sum that runs backwards", 8, "<potential>m*g*l*sum(i, 3, 1, i)</potential>", 8, "from 3 to 1 runs backwards"),
+    ("negative index", 2, '<parameter name="m[-1]" start="1" unit="kg"/>', 2, r"the index of m\[-1\] is negative"),
+    ("comment inside a number", 8, "<potential>m*g*l*2<!-- tens -->3</potential>", 8, "expected an operator or the end, found '3'"),
     ("index that is a name", 7, '<for index="m" from="1" to="2"></for>', 7, "'m' of <for> is already a name"),
     ("definition in a circle", 10, '<define name="a">b</define><define name="b">a</define>', 10, "unknown name 'b'"),
     ("acceleration in a force", 9, '<force coordinate="theta">tau*der(omega)</force>', 9, "cannot depend on accelerations"),
@@ -123,6 +164,63 @@ def test_broken_system(what, line, text, expected_line, message, tmp_path):
     assert re.match(f"{place} .*({message})", first), result.stderr
     assert not (tmp_path / "out").exists()
     assert result.stdout == ""
+
+
+# Likely mistakes: the FMU is made, with a word about them.
+WARNINGS = [
+    ("root of a negative start", 8, "<potential>m*g*l*sqrt(theta - 2)</potential>", 8, "root or fractional power of -1"),
+    ("fractional power", 8, "<potential>m*g*l*(\ntheta - 2)^1.5</potential>", 9, "root or fractional power of -1"),
+    ("logarithm", 8, "<potential>m*g*l*log(theta - 1)</potential>", 8, r"log\(0\) at the start values; expected .* positive"),
+    ("arc sine", 8, "<potential>m*g*l*asin(2*theta)</potential>", 8, r"asin\(2\) at the start values; expected .* -1 to 1"),
+    ("arc cosine", 10, '<output name="a">acos(-1.5*theta)</output>', 10, r"acos\(-1.5\) at the start values"),
+    ("area cosine", 8, "<potential>m*g*l*acosh(theta/2)</potential>", 8, r"acosh\(0.5\) at the start values"),
+    ("area tangent", 8, "<potential>m*g*l*atanh(theta)</potential>", 8, r"atanh\(1\) at the start values"),
+    ("mass of 0", 2, '<parameter name="m" start="0" unit="kg"/>', 7, "the mass of 'bob' is 0 at the start values"),
+    ("inertia below 0", 7, '<body name="bob" mass="m" inertia="-m*l^2/2" x="l*theta" angle="theta"/>', 7, "the inertia of 'bob' is -0.5 at the start values"),
+    ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that the units .* are not checked"),
+    ("unit of an input forgotten", 5, '<input name="tau"/>', 5, "'tau' has no unit"),
+    ("unit of a coordinate forgotten", 6, '<coordinate name="theta" velocity="omega" start="1"/>', 6, "'theta' has no unit"),
+    ("loop that runs backwards", 11, '<for index="i" from="3" to="1"><potential>m*g*l</potential></for>', 11,
+     "<for> from 3 to 1 runs backwards"),
+]
+
+
+@pytest.mark.parametrize("what, line, text, expected_line, message", WARNINGS, ids=[case[0] for case in WARNINGS])
+def test_warnings(what, line, text, expected_line, message, tmp_path):
+    result = compile_text(broken(line, text).replace("bob.y", "l"), tmp_path)
+    assert result.returncode == 0
+    assert re.fullmatch(f"system.xml:{expected_line}: warning: .*({message}).*\n", result.stderr), result.stderr
+    assert (tmp_path / "out" / "system.c").exists()
+
+
+QUIET = [
+    ("no repetitions", 11, '<constant name="N" value="0"/><for index="i" from="1" to="N"></for>'),
+    ("none for the first index", 11,
+     '<for index="i" from="1" to="3"><for index="j" from="2" to="i-1"><potential>m*g*l</potential></for></for>'),
+    ("empty sum", 8, '<for index="i" from="1" to="3"><potential>m*g*l*sum(j, 3, i-1, j)</potential></for>'),
+    ("point without mass", 11, '<particle name="tip" mass="0" x="2*l*sin(theta)"/><force on="tip" x="tau/l"/>'),
+    ("unit of a pure number", 11, '<parameter name="a" start="1" unit="1"/>'),
+    ("root at its end", 8, "<potential>m*g*l*sqrt(theta - 1)</potential>"),
+    ("comment between words", 8, "<potential>m*g<!-- not 9.81 -->*bob.y</potential>"),
+]
+
+
+@pytest.mark.parametrize("what, line, text", QUIET, ids=[case[0] for case in QUIET])
+def test_no_warning(what, line, text, tmp_path):
+    result = compile_text(broken(line, text), tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_files_without_units_are_free_of_them(tmp_path):
+    result = compile_text(re.sub(' unit="[^"]*"', "", RIGHT), tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_linearization_at_a_pole(tmp_path):
+    (tmp_path / "system.xml").write_text(broken(8, "<potential>m*g*l*log(theta)</potential>"))
+    result = lagc("--linearize", "system.xml", "--at", "theta=0", cwd=tmp_path)
+    assert result.returncode == 1
+    assert re.search(r"system.xml:6: the equation of der\(omega\) has a coefficient that is not finite", result.stderr)
 
 
 def test_several_errors_in_one_run(tmp_path):

@@ -74,7 +74,7 @@ OPERATIONS = [
     "q*w + q/(2 + w)", "q^2 + q^3 + q^4 + q^5 + q^7", "q^-1 + q^-2 + q^-3", "q^0.5 + q^-0.5 + q^1.5 + q^-2.7",
     "q^p + 2^q + q^w", "sqrt(q*w)", "sin(q)", "cos(q)", "sin(q*w) + cos(q*w)", "tan(q/2)", "exp(q) + exp(q*w)",
     "log(q + w)", "asin(q/3)", "acos(q/3)", "atan(q*w)", "atan2(q, w)", "sinh(q)", "cosh(q*w)", "tanh(q)", "asinh(q)",
-    "acosh(1 + q*w)", "atanh(q/4)", "time*q + sin(time) + exp(-time^2)", "u*q",
+    "2^-q + q^-w", "p^(2*q) + (1 + q^2)^-q", "1^q*q + (u^0)^w", "acosh(1 + q*w)", "atanh(q/4)", "time*q + sin(time) + exp(-time^2)", "u*q",
 ]  # fmt: skip
 
 

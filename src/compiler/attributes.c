@@ -42,11 +42,25 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   return true;
 }
 
+/* The element's text; a comment separates what stands before and after it. */
+static char *text_of(xmlNodePtr node) {
+  char *text = copy_text("");
+  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
+    bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
+    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
+    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
+    xmlFree(content);
+    free(text);
+    text = longer;
+  }
+  return text;
+}
+
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
-  xmlChar *text = xmlNodeGetContent(node);
+  char *text = text_of(node);
   struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
-  struct Quantity value = parse_expression(reader->model->scope, text != NULL ? (const char *)text : "", place);
-  xmlFree(text);
+  struct Quantity value = parse_expression(reader->model->scope, text, place);
+  free(text);
   return value;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "differentiate.h"
+#include "energies.h"
 #include "memory.h"
 #include "simplify.h"
 
@@ -122,17 +123,14 @@ static void add_term(struct Model *model, struct Quantity *sum, Node term) {
   sum->node = add(model->graph, sum->node, term);
 }
 
-/* 1/2 mass |velocity|^2 and 1/2 inertia rate^2 */
-static void add_kinetic_energy(struct Model *model, const struct Body *body) {
+/* 1/2 inertia rate^2 */
+static void add_kinetic_energy(struct Model *model, Node inertia, Node position) {
   struct Graph *graph = model->graph;
-  for (int axis = 0; axis < 3; axis++) {
-    Node rate = total_time_derivative(model->scope, body->position[axis].node);
-    Node term = multiply(graph, body->mass.node, power_number(graph, rate, 2.0));
-    add_term(model, &model->kinetic, scale(graph, 0.5, term));
-  }
-  Node rate = total_time_derivative(model->scope, body->angle.node);
-  Node term = multiply(graph, body->inertia.node, power_number(graph, rate, 2.0));
-  add_term(model, &model->kinetic, scale(graph, 0.5, term));
+  Node rate = total_time_derivative(model->scope, position);
+  Node energy = scale(graph, 0.5, multiply(graph, inertia, power_number(graph, rate, 2.0)));
+  add_term(model, &model->kinetic, energy);
+  add_term(model, &model->kinetic_energy, energy);
+  model->driven |= graph_depends_on(graph, position, TIME);
 }
 
 static void define_component(struct Reader *reader, const struct Body *body, const char *component,
@@ -142,10 +140,21 @@ static void define_component(struct Reader *reader, const struct Body *body, con
   free(name);
 }
 
+static const struct Body *find_body(const struct Model *model, const char *name) {
+  for (size_t i = 0; i < model->body_count; i++)
+    if (strcmp(model->bodies[i].name, name) == 0) return &model->bodies[i];
+  return NULL;
+}
+
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
   if (body.name == NULL) body.name = format_text("body%zu", model->body_count + 1);
+  const struct Body *other = find_body(model, body.name);
+  if (other != NULL)
+    report_error(reader->diagnostics, body.line,
+                 "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
+                 other->line);
   expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3; axis++) {
@@ -163,7 +172,8 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   }
   if (!body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
-  add_kinetic_energy(model, &body);
+  for (int axis = 0; axis < 3; axis++) add_kinetic_energy(model, body.mass.node, body.position[axis].node);
+  add_kinetic_energy(model, body.inertia.node, body.angle.node);
   model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
@@ -175,6 +185,15 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, sum, term.node);
   return term.node;
+}
+
+static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  bool driven;
+  Node term = read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
+  add_term(model, &model->explicit_kinetic, term);
+  add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
+  model->driven |= driven;
 }
 
 static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
@@ -193,12 +212,10 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
                coordinate);
 }
 
-/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work). */
+/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work); its power is F . dr/dt. */
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Model *model = reader->model;
-  const struct Body *body = NULL;
-  for (size_t i = 0; i < model->body_count; i++)
-    if (strcmp(model->bodies[i].name, name) == 0) body = &model->bodies[i];
+  const struct Body *body = find_body(model, name);
   if (body == NULL) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "there is no particle or body '%s' for this force; expected the name of one", name);
@@ -208,19 +225,37 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
     struct Quantity force;
     if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &force)) continue;
     require_unit(reader, xmlGetLineNo(node), axes[axis], force, unit_of("N"));
+    if (!body->has_position[axis])
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
+                   axes[axis]);
     for (size_t i = 0; i < model->coordinates.count; i++) {
       Node lever = derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
       add_term(model, &model->forces[i], multiply(model->graph, force.node, lever));
     }
+    Node drive = derivative_by(model->graph, body->position[axis].node, model->time);
+    add_term(model, &model->driven_power, multiply(model->graph, force.node, drive));
   }
+}
+
+static bool is_blank(xmlNodePtr node) {
+  xmlChar *text = xmlNodeGetContent(node);
+  bool blank = text == NULL || strspn((const char *)text, " \t\r\n") == strlen((const char *)text);
+  xmlFree(text);
+  return blank;
 }
 
 static void read_force(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = name_attribute(reader, node, "coordinate"), *on = name_attribute(reader, node, "on");
   reader->model->has_forces = true;
-  if ((coordinate == NULL) == (on == NULL))
+  bool has_components = false;
+  for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
+  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
+  else if (on != NULL && !is_blank(node))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
   else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
   else add_cartesian_force(reader, node, on);
   free(coordinate);
@@ -262,7 +297,10 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   reader->has_solver = true;
   for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
     if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
-  number_attribute(reader, node, "tolerance", &reader->model->tolerance);
+  double *tolerance = &reader->model->tolerance;
+  if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
+                 *tolerance);
   free(method);
 }
 
@@ -273,7 +311,8 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
   reader->has_experiment = true;
   number_attribute(reader, node, "startTime", &model->start_time);
   number_attribute(reader, node, "stopTime", &model->stop_time);
-  number_attribute(reader, node, "stepSize", &model->step_size);
+  if (number_attribute(reader, node, "stepSize", &model->step_size) && !(model->step_size > 0))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number", model->step_size);
   double start = isnan(model->start_time) ? 0.0 : model->start_time;
   if (model->stop_time <= start)
     report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g", model->stop_time,
@@ -293,9 +332,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
 
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
-  if (strcmp(element, "kinetic") == 0)
-    add_term(model, &model->explicit_kinetic,
-             read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J"));
+  if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) {
@@ -311,18 +348,4 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
   else if (strcmp(element, "define") == 0) read_definition(reader, node);
   else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
-}
-
-void check_settings(struct Reader *reader) {
-  struct Model *model = reader->model;
-  size_t coordinates = model->coordinates.count;
-  if (coordinates == 0 && model->outputs.count == 0)
-    report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
-  if (coordinates == 0 && (model->body_count > 0 || model->kinetic.node != ZERO || model->has_forces))
-    report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
-  if (coordinates == 0 && reader->has_solver)
-    report_error(reader->diagnostics, model->solver_line,
-                 "a system without coordinates has nothing to solve; expected no <solver>");
-  if (model->work_line > 0 && !model->has_forces)
-    report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
 }

@@ -11,7 +11,4 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass);
 void read_solver(struct Reader *reader, xmlNodePtr node);
 void read_experiment(struct Reader *reader, xmlNodePtr node);
 
-/* Reports what no single element shows: a system without content, work without forces, ... */
-void check_settings(struct Reader *reader);
-
 #endif

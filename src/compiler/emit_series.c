@@ -13,6 +13,11 @@
  */
 enum { UNROLLED_RECURRENCES = 40, UNROLLED_PRODUCTS = 1300 };
 
+/* Whether it is a power with an exponent that varies, whose coefficients rest on its auxiliary node alone. */
+static bool integrated_power(const struct SeriesWriter *writer, Node node) {
+  return writer->emitter->graph->vertices[node].operation == POWER && integrated_operand(writer, node) != ZERO;
+}
+
 /* The nodes that change in time and are computed. */
 static void find_needed(struct SeriesWriter *writer) {
   const struct Statements *statements = writer->emitter->statements;
@@ -23,6 +28,7 @@ static void find_needed(struct SeriesWriter *writer) {
   for (Node node = (Node)size; node-- > 0;) {
     if (!below[node] || is_fetched(statements, node)) continue;
     writer->is_needed[node] = true;
+    if (integrated_power(writer, node)) continue;
     struct Expression expression = expression_of(statements, node, writer->uses);
     below[expression.left] = true;
     if (expression.arity == 2) below[expression.right] = true;
@@ -58,8 +64,10 @@ static void write_next(struct SeriesWriter *writer, Node node);
 static void write_needed(struct SeriesWriter *writer, Node node) {
   const struct Graph *graph = writer->emitter->graph;
   struct Expression expression = expression_of(writer->emitter->statements, node, writer->uses);
-  write_next(writer, expression.left);
-  if (expression.arity == 2) write_next(writer, expression.right);
+  if (!integrated_power(writer, node)) {
+    write_next(writer, expression.left);
+    if (expression.arity == 2) write_next(writer, expression.right);
+  }
   if (graph->vertices[node].operation == POWER) write_next(writer, writer->plan->auxiliary[node]);
 }
 

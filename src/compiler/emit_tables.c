@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "memory.h"
 
@@ -64,6 +65,9 @@ static struct NodeList inertia_of(const struct Equations *equations, size_t i) {
   return inertia;
 }
 
+/* C allows 4095 characters in a string, and a message has its use with fewer. */
+enum { INERTIA_TEXT_LIMIT = 1000 };
+
 /* The names that a coordinate's inertia depends on, for the message that it has vanished. */
 static void emit_inertia_table(const struct Emitter *emitter) {
   const struct Graph *graph = emitter->graph;
@@ -75,11 +79,12 @@ static void emit_inertia_table(const struct Emitter *emitter) {
     graph_mark(graph, inertia.nodes, inertia.count, needed);
     free(inertia.nodes);
     fputs("    \"", emitter->file);
-    const char *separator = "";
-    for (size_t s = 0; s < graph->symbol_count; s++) {
+    size_t length = 0;
+    for (size_t s = 0; s < graph->symbol_count && length <= INERTIA_TEXT_LIMIT; s++) {
       if (!needed[graph->symbols[s].node]) continue;
-      fprintf(emitter->file, "%s%s", separator, graph->symbols[s].name);
-      separator = ", ";
+      const char *name = length + strlen(graph->symbols[s].name) <= INERTIA_TEXT_LIMIT ? graph->symbols[s].name : "...";
+      fprintf(emitter->file, "%s%s", length > 0 ? ", " : "", name);
+      length += strlen(graph->symbols[s].name) + 2;
     }
     fputs("\",\n", emitter->file);
   }

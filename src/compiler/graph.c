@@ -143,6 +143,7 @@ static Node intern(struct Graph *graph, struct Vertex vertex) {
 }
 
 Node graph_constant(struct Graph *graph, double value) {
+  graph->not_finite |= !isfinite(value);
   if (value == 0.0) value = 0.0; /* one zero: -0.0 and 0.0 are the same node */
   return intern(graph, (struct Vertex){.operation = CONSTANT, .value = value});
 }

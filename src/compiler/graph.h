@@ -79,7 +79,8 @@ struct Graph {
   size_t bucket_count;
   struct Symbol *symbols;
   size_t symbol_count;
-  bool overflow; /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
+  bool overflow;   /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
+  bool not_finite; /* a constant that is no finite number was asked for, since this was last set to false */
 };
 
 enum { NODE_LIMIT = 4000000, ZERO = 0, ONE = 1 };

@@ -1,8 +1,10 @@
 #include "lagrange.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "differentiate.h"
+#include "energies.h"
 #include "mass_matrix.h"
 #include "memory.h"
 #include "rational.h"
@@ -164,17 +166,6 @@ static void derive_motion(struct Model *model, struct Equations *equations, cons
   free(left[1]);
 }
 
-/* What of U is stored energy: terms linear in the velocities (magnetic forces) store none. */
-static Node stored_energy(struct Model *model, const Node *velocities) {
-  struct Graph *graph = model->graph;
-  size_t n = model->coordinates.count;
-  Node energy = model->potential.node, *slope = allocate(n, sizeof *slope);
-  gradient_of(graph, energy, velocities, n, slope);
-  for (size_t i = 0; i < n; i++) energy = subtract(graph, energy, multiply(graph, slope[i], velocities[i]));
-  free(slope);
-  return energy;
-}
-
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
@@ -193,8 +184,9 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   derive_mass_matrix(graph, equations, momentum, v);
   derive_motion(model, equations, q, v, force);
   for (size_t i = 0; i < n; i++) equations->power = add(graph, equations->power, multiply(graph, force[i], v[i]));
-  equations->kinetic = model->kinetic.node;
-  equations->potential = stored_energy(model, v);
+  equations->power = add(graph, equations->power, model->driven_power.node);
+  equations->kinetic = model->kinetic_energy.node;
+  equations->potential = stored_energy(model, model->potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
 
   if (graph->overflow)
@@ -206,6 +198,28 @@ struct Equations *equations_derive(struct Model *model, struct Diagnostics *diag
   free(momentum);
   free(force);
   return equations;
+}
+
+/* Whether the nodes are made of finite numbers. */
+static bool are_finite(const struct Graph *graph, const Node *nodes, size_t count) {
+  bool *needed = allocate(graph->count, sizeof *needed), finite = true;
+  graph_mark(graph, nodes, count, needed);
+  for (Node node = 0; node < graph->count && finite; node++)
+    finite = !needed[node] || !graph_is_constant(graph, node) || isfinite(graph_value(graph, node));
+  free(needed);
+  return finite;
+}
+
+void equations_check_finite(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics) {
+  const Node *nodes = equations->explicit_form ? equations->acceleration : equations->residual;
+  size_t wrong = 0;
+  if (are_finite(model->graph, nodes, equations->count)) return;
+  while (are_finite(model->graph, nodes + wrong, 1)) wrong++;
+  report_error(diagnostics, model->velocities.items[wrong].line,
+               "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
+               "point at a pole",
+               model->velocities.items[wrong].name);
 }
 
 void equations_free(struct Equations *equations) {

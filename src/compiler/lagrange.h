@@ -32,8 +32,8 @@ struct Equations {
   Node *acceleration;     /* expressions in unrolled blocks, the acceleration symbols in others */
   struct Pivot *pivots;
   size_t pivot_count;
-  Node power;                     /* of the non-conservative forces, sum Q_i v_i */
-  Node kinetic, potential, total; /* energies */
+  Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
+  Node kinetic, potential, total; /* energies, see energies.h */
 };
 
 /*
@@ -44,6 +44,10 @@ enum { UNROLL_LIMIT = 2 };
 
 /* Derives the equations of motion; reports errors (a coordinate without inertia, ...) to diagnostics. */
 struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);
+/* Reports coefficients that are not finite: of sums and products too large for numbers, and of a point at a pole. */
+void equations_check_finite(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics);
+
 void equations_free(struct Equations *equations);
 
 /* Whether a block is so large that ldlt_factor() solves it at run time. */

@@ -73,13 +73,6 @@ static void expansion_free(struct Expansion *expansion) {
   free(expansion->deviations);
 }
 
-static double *start_values(const struct Model *model) {
-  double *values = allocate(model->graph->symbol_count, sizeof *values);
-  for (size_t i = 0; i < model->parameters.count; i++)
-    values[model->graph->vertices[model->parameters.items[i].node].left] = model->parameters.items[i].start;
-  return values;
-}
-
 static void warn_without_equilibrium(const struct Model *model, const Node *accelerations,
                                      const struct Diagnostics *diagnostics) {
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);

@@ -106,6 +106,7 @@ static int run(const struct Arguments *arguments) {
   if (model != NULL && arguments->solver != NULL) override_solver(model, arguments->solver, &diagnostics);
   struct Equations *equations = model != NULL && diagnostics.errors == 0 ? equations_derive(model, &diagnostics) : NULL;
   if (equations != NULL && diagnostics.errors == 0 && model->linearized) linearize(model, equations, &diagnostics);
+  if (equations != NULL && diagnostics.errors == 0) equations_check_finite(model, equations, &diagnostics);
   if (equations != NULL && diagnostics.errors == 0) {
     if (arguments->linearize) print_linearization(model, equations, &diagnostics);
     else compile(model, equations, arguments->directory, &diagnostics);

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "memory.h"
@@ -31,6 +32,17 @@ void model_free(struct Model *model) {
   free(model->name);
   free(model->description);
   free(model);
+}
+
+double *start_values(const struct Model *model) {
+  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
+                                              &model->velocities};
+  double *values = allocate(model->graph->symbol_count, sizeof *values);
+  values[model->graph->vertices[model->time].left] = isnan(model->start_time) ? 0.0 : model->start_time;
+  for (size_t list = 0; list < 4; list++)
+    for (size_t i = 0; i < lists[list]->count; i++)
+      values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
+  return values;
 }
 
 char *variable_unit(const struct Variable *variable) {

@@ -45,10 +45,13 @@ struct Model {
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
   Node time;
-  struct Quantity kinetic;                /* J: of the bodies and of the <kinetic> terms */
+  struct Quantity kinetic;                /* J: K of L = K - U, of the bodies and of the <kinetic> terms */
   struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
+  struct Quantity kinetic_energy;         /* J: the energy of both, see energies.h */
+  bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
   struct Quantity potential, dissipation; /* J, W */
   struct Quantity *forces;                /* generalized force along each coordinate */
+  struct Quantity driven_power;           /* W: of Cartesian forces along the motion that time alone gives */
   bool has_forces;                        /* some force or dissipation was given */
   long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
@@ -60,6 +63,9 @@ struct Model {
 };
 
 void model_free(struct Model *model);
+
+/* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
+double *start_values(const struct Model *model);
 
 /* The unit of a variable, for output: as written, else from its dimension; NULL where unknown. Free with free(). */
 char *variable_unit(const struct Variable *variable);

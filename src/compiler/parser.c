@@ -122,6 +122,13 @@ static struct Quantity parse_literal(struct Parser *parser) {
                            .literal = true};
 }
 
+/* Whether all numbers made of numbers since the expression began are finite. */
+static bool require_finite(struct Parser *parser, const char *what) {
+  if (parser->graph->not_finite)
+    FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->place.what, what);
+  return !parser->failed;
+}
+
 /* A whole number from an expression of compile-time numbers. */
 static long parse_whole(struct Parser *parser, const char *what) {
   unsigned kinds = parser->place.kinds;
@@ -148,6 +155,8 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
   if (*parser->next == '[') {
     parser->next++;
     long index = parse_whole(parser, "the index in brackets");
+    if (index < 0)
+      FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
     expect(parser, ']', "after the index");
     char *indexed = format_text("%s[%ld]", name, index);
     free(name);
@@ -187,14 +196,28 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
   return *quantity;
 }
 
+/* Bounds with names may cross on purpose: sum(j, 2, i-1, ...) is empty for the first i. */
+static bool bounds_are_numbers(const char *begin, const char *end) {
+  while (begin < end && !isalpha((unsigned char)*begin)) begin++;
+  return begin == end;
+}
+
 /* sum(index, first, last, body): the body is read once for each value of the index. */
 static struct Quantity parse_repeated_sum(struct Parser *parser) {
+  char buffer[32];
   skip_space(parser);
+  if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
+    FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
+         parser->place.what, found(parser, buffer));
   char *index = read_identifier(parser);
   expect(parser, ',', "after the index of sum(index, first, last, expression)");
+  const char *bounds = parser->next;
   long first = parse_whole(parser, "the first index of sum(...)");
   expect(parser, ',', "after the first index");
   long last = parse_whole(parser, "the last index of sum(...)");
+  if (last < first - 1 && bounds_are_numbers(bounds, parser->next))
+    FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
+         first, last);
   expect(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
     FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index);
@@ -211,6 +234,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     total.dimension = common_dimension(parser, total, term, "sum");
     total.literal = total.literal && term.literal;
     total.node = add(parser->graph, total.node, term.node);
+    require_finite(parser, "a sum");
   }
   scope_remove(parser->scope, index);
   free(index);
@@ -235,21 +259,47 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
 }
 
+/* A power or root of numbers that has a finite value, or of what may have one. */
+static void check_power(struct Parser *parser, Node base, Node exponent) {
+  const struct Graph *graph = parser->graph;
+  bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
+  double b = graph_value(graph, base), n = graph_value(graph, exponent);
+  if (base_given && exponent_given && graph->not_finite && n == 0.5)
+    FAIL(parser, "%s: sqrt(%g) is no real number; expected an argument %s", parser->place.what, b, domain_text(POWER));
+  else if (base_given && exponent_given && graph->not_finite)
+    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected another base or exponent", parser->place.what, b, n);
+  else if (base_given && !exponent_given && b <= 0)
+    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
+  require_finite(parser, "a power");
+  if (!exponent_given || n != floor(n))
+    require_domain(&parser->scope->requirements, graph, POWER, base, current_line(parser));
+}
+
 static struct Quantity raise_to(struct Parser *parser, struct Quantity base, struct Quantity exponent) {
   require_dimensionless(parser, exponent, "an exponent");
   struct Quantity result = {.node = power(parser->graph, base.node, exponent.node),
                             .dimension = dimension_unknown,
                             .literal = base.literal && exponent.literal};
+  check_power(parser, base.node, exponent.node);
   if (graph_is_constant(parser->graph, exponent.node))
     result.dimension = dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
   else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
   return result;
 }
 
+/* A function of numbers must have a finite value; one of variables must have one where these are. */
+static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
+  if (parser->graph->not_finite)
+    FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
+         operation_name(operation), graph_value(parser->graph, argument), domain_text(operation));
+  require_domain(&parser->scope->requirements, parser->graph, operation, argument, current_line(parser));
+}
+
 static struct Quantity apply(struct Parser *parser, enum Operation operation, struct Quantity a, struct Quantity b) {
   struct Quantity result = {.node = function(parser->graph, operation, a.node, b.node),
                             .dimension = dimension_one,
                             .literal = a.literal && (operation_arity(operation) == 1 || b.literal)};
+  check_function(parser, operation, a.node);
   if (operation == ABSOLUTE) result.dimension = a.dimension;
   else if (operation == MINIMUM || operation == MAXIMUM)
     result.dimension = common_dimension(parser, a, b, operation_name(operation));
@@ -352,6 +402,7 @@ static struct Quantity parse_term(struct Parser *parser) {
     if (division && factor.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
     value.node =
         division ? divide(parser->graph, value.node, factor.node) : multiply(parser->graph, value.node, factor.node);
+    if (!require_finite(parser, division ? "a quotient" : "a product")) break;
     value.dimension = dimension_multiply(value.dimension, factor.dimension, division ? -1.0 : 1.0);
     value.literal = value.literal && factor.literal;
   }
@@ -373,6 +424,7 @@ static struct Quantity parse_sum(struct Parser *parser) {
     value.dimension = common_dimension(parser, value, term, "sum");
     value.literal = value.literal && term.literal;
     value.node = (minus ? subtract : add)(parser->graph, value.node, term.node);
+    if (!require_finite(parser, "a sum")) break;
   }
   parser->nesting--;
   return value;
@@ -381,14 +433,13 @@ static struct Quantity parse_sum(struct Parser *parser) {
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
   struct Parser parser = {.scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text};
   char buffer[32];
+  scope->graph->not_finite = false;
   struct Quantity value = parse_sum(&parser);
   skip_space(&parser);
   if (!parser.failed && *parser.next == ')')
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
   if (!parser.failed && *parser.next != '\0')
     FAIL(&parser, "%s: expected an operator or the end, found %s", place.what, found(&parser, buffer));
-  if (!parser.failed && graph_is_constant(parser.graph, value.node) && !isfinite(graph_value(parser.graph, value.node)))
-    FAIL(&parser, "%s has no finite value; expected a finite number", place.what);
   if (!parser.failed && parser.graph->overflow)
     FAIL(&parser, "%s: the system is too large: more than %d operations", place.what, NODE_LIMIT);
   return parser.failed ? nothing : value;

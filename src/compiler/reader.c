@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "attributes.h"
+#include "checks.h"
 #include "elements.h"
 #include "linearization_reader.h"
 #include "memory.h"
@@ -13,35 +14,61 @@
 
 enum { REPETITION_LIMIT = 10000 };
 
+/* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
+static char refused, backwards, repeated;
+
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass);
+
+/* Whether the bounds are right and the index is a new name; names may have been defined since the last pass. */
+static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
+  if (from != floor(from) || to != floor(to) || to - from >= REPETITION_LIMIT) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<for> from %g to %g; expected whole numbers and at most %d repetitions", from, to, REPETITION_LIMIT);
+    return false;
+  }
+  if (scope_find(reader->model->scope, index) == NULL) return true;
+  report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
+               index);
+  return false;
+}
 
 static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   struct Scope *scope = reader->model->scope;
   double from = 0, to = -1;
-  if (node->_private != NULL) return; /* refused in an earlier pass */
+  if (node->_private == &refused) return;
   char *index = attribute(node, "index");
-  if (index == NULL || !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to)) {
-    node->_private = node;
+  if (index == NULL || !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
+      !check_repetition(reader, node, index, from, to)) {
+    node->_private = &refused;
     free(index);
     return;
   }
-  if (from != floor(from) || to != floor(to) || to - from >= REPETITION_LIMIT) {
-    if (pass == DECLARATIONS)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "<for> from %g to %g; expected whole numbers and at most %d repetitions", from, to,
-                   REPETITION_LIMIT);
-  } else if (scope_find(scope, index) != NULL) {
-    if (pass == DECLARATIONS)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "the index '%s' of <for> is already a name; expected a new one", index);
-  } else {
-    for (double i = from; i <= to && !reader->model->graph->overflow; i++) {
-      scope_set_number(scope, index, i);
-      read_children(reader, node, pass);
-    }
-    scope_remove(scope, index);
+  if (from <= to) node->_private = &repeated;
+  else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
+  for (double i = from; i <= to && node->_private != &refused && !reader->model->graph->overflow; i++) {
+    scope_set_number(scope, index, i);
+    read_children(reader, node, pass);
   }
+  scope_remove(scope, index);
   free(index);
+}
+
+/*
+ * from="1" to="0" is how a system with N = 0 repeats nothing, and from="2" to="i-1" repeats nothing for the first i.
+ * A loop that always runs backwards is a mistake.
+ */
+static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    check_repetitions(reader, node);
+    if (node->_private != &backwards) continue;
+    char *from = attribute(node, "from"), *to = attribute(node, "to");
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
+                   to);
+    free(from);
+    free(to);
+  }
 }
 
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
@@ -99,11 +126,12 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   reader->model->name = attribute(root, "name");
   reader->model->description = attribute(root, "description");
   read_children(reader, root, DECLARATIONS);
+  check_repetitions(reader, root);
   check_definitions_used(reader);
   relate_to_time(reader->model);
   read_children(reader, root, POSITIONS);
   read_children(reader, root, EXPRESSIONS);
-  check_settings(reader);
+  check_system(reader);
   if (reader->model->graph->overflow)
     report_error(reader->diagnostics, 0, "the system is too large: more than %d operations", NODE_LIMIT);
 }

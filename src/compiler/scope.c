@@ -28,6 +28,7 @@ void scope_free(struct Scope *scope) {
   if (scope == NULL) return;
   xmlHashFree(scope->names, free_entry);
   free(scope->time_derivatives);
+  free(scope->requirements.items);
   free(scope);
 }
 

@@ -6,6 +6,7 @@
 
 #include "../../modelDescription/units.h"
 #include "diagnostics.h"
+#include "domain.h"
 #include "graph.h"
 
 /* A value together with its dimension. */
@@ -18,9 +19,10 @@ struct Quantity {
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
-  xmlHashTablePtr names;  /* name -> struct Entry */
-  bool checks_units;      /* some variable has a unit; a file without any is free of them */
-  Node *time_derivatives; /* one node a symbol: d symbol / dt; ZERO for parameters */
+  xmlHashTablePtr names;            /* name -> struct Entry */
+  bool checks_units;                /* some variable has a unit; a file without any is free of them */
+  struct Requirements requirements; /* of all expressions read */
+  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);

@@ -1,0 +1,68 @@
+"""Every element of a system arrives in its equations: each carries a coefficient of its own."""
+
+import html
+import re
+
+import sympy as sp
+
+from fmu import lagc
+
+# In an order that lets names come before what they stand for, where that is allowed.
+SYSTEM = """\
+<system name="Everything">
+  <constant name="N" value="3"/>
+  <constant name="two" value="2"/>
+  <potential>k1*x + later*k2</potential>
+  <for index="i" from="1" to="N">
+    <potential>c[i]*i*x</potential>
+    <for index="j" from="i" to="two">
+      <force coordinate="x">d[j]*(10*i + j)</force>
+    </for>
+  </for>
+  <particle name="mark0" mass="m0" y="3*x"/>
+  <for index="i" from="1" to="two">
+    <define name="half[i]">x*e[i]/i</define>
+    <potential>half[i]*k3</potential>
+    <particle name="mark[i]" mass="m[i]" x="i*x" y="mark0.y + i*x"/>
+    <force on="mark[i]" x="f[i]" y="g[i]"/>
+  </for>
+  <define name="later">5*x</define>
+  <potential>sum(i, 1, N, c[i]*x^2*sum(j, 1, i, j)) + k4*mark0.y</potential>
+  <kinetic>h1*v^2/2</kinetic>
+  <kinetic>h2*v^2/2</kinetic>
+  <body name="wheel" mass="m3" x="7*x" inertia="m4" angle="11*x"/>
+  <dissipation>b1*v^2/2</dissipation>
+  <dissipation>b2*v^4/4</dissipation>
+  <force coordinate="x">k5*u</force>
+  <force coordinate="x">k6*time</force>
+  <for index="i" from="1" to="0"><potential>1000*x</potential></for>
+  <output name="o1">k7*x</output>
+  <force coordinate="x">o1*13</force>
+  <input name="u"/>
+  <coordinate name="x" velocity="v"/>
+  {}
+</system>
+"""
+NAMES = "k1 k2 k3 k4 k5 k6 k7 h1 h2 b1 b2 m0 m3 m4 c[1] c[2] c[3] d[1] d[2] e[1] e[2] m[1] m[2] f[1] f[2] g[1] g[2]"
+
+
+def test_every_term_arrives(tmp_path):
+    parameters = "".join(f'<parameter name="{name}" start="1"/>' for name in NAMES.split())
+    (tmp_path / "system.xml").write_text(SYSTEM.format(parameters))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    page = html.unescape((tmp_path / "out" / "documentation" / "index.html").read_text())
+    ((left, right),) = re.findall(r"<code>([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>", page)
+    plain = lambda text: re.sub(r"(\w)\[(\d)\]", r"\1_\2", text).replace("der(v)", "acc").replace("^", "**")
+    s = {name: sp.Symbol(name) for name in [*plain(NAMES).split(), *"x v u time acc".split()]}
+    ours = sp.sympify(plain(left), locals=s) - sp.sympify(plain(right), locals=s)
+    # By hand: M a - Q + dU/dx
+    expected = sp.sympify(
+        """
+        (m0*9 + m_1*(1 + 16) + m_2*(4 + 25) + m3*49 + m4*121 + h1 + h2)*acc
+        - (d_1*11 + d_2*12 + d_2*22 + f_1 + 2*f_2 + 4*g_1 + 5*g_2 - b1*v - b2*v**3 + k5*u + k6*time + 13*k7*x)
+        + k1 + 5*k2 + c_1 + 2*c_2 + 3*c_3 + k3*(e_1 + e_2/2) + 2*x*(c_1 + 3*c_2 + 6*c_3) + 3*k4
+        """.replace("\n", " ").strip(),
+        locals=s,
+    )
+    assert sp.expand(ours - expected) == 0
