@@ -34,6 +34,8 @@ CASES = [
     ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, "m 1"),
     ("unknown solver", 11, '<solver method="euler"/>', 11, "euler"),
     ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, "-1"),
+    ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, "'0'"),
+    ("largest step of the exact method", 11, '<solver method="exact" maxStep="0.1"/>', 11, "expected no maxStep"),
     ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
     ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),

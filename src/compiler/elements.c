@@ -263,6 +263,7 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
     if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
   number_attribute(reader, node, "tolerance", &reader->model->tolerance);
+  number_attribute(reader, node, "maxStep", &reader->model->max_step);
   free(method);
 }
 

@@ -6,6 +6,7 @@
  * in half the time, but it takes 3 to 5 times as long where nothing changes. Going on across the change of an input
  * without a new start takes more steps, loses digits, and fails in the end.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,9 +103,10 @@ static bool restart(struct Instance *instance, struct Bdf *bdf) {
 }
 
 /* Where inputs or time drive the system, a step longer than the communication step could pass over a pulse. */
-static bool limit_step(struct Instance *instance, struct Bdf *bdf, double step) {
-  if (lagrangian.input_count == 0 && !lagrangian.depends_on_time) return true;
-  return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, step), "CVodeSetMaxStep");
+static bool limit_step(struct Instance *instance, struct Bdf *bdf, double communication_step) {
+  bool driven = lagrangian.input_count > 0 || lagrangian.depends_on_time;
+  double longest = driven ? fmin(communication_step, lagrangian.max_step) : lagrangian.max_step;
+  return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, longest), "CVodeSetMaxStep");
 }
 
 static enum StepResult step(struct Instance *instance, double length, double *reached) {
