@@ -13,6 +13,10 @@ METHODS = ("erk", "bdf")
 
 # A unit mass at x with velocity v: its force, and where it starts.
 FORCES = {
+    "Collision": ("-a/x^2", 1, 0, ""),
+    "Logarithm": ("-a/x", 1, 0, ""),
+    "Tangent": ("a*tan(x)", 0.5, 0, ""),
+    "Wall": ("a - exp(50*(x - 3))", 0, 0, ""),
     "Pulse": ("exp(-((time - 5)/0.01)^2)", 0, 0, 'maxStep="0.01"'),
 }
 
@@ -49,3 +53,40 @@ def test_the_longest_step_finds_a_pulse(method, open_fmu):
     instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
     instance.step(10.0)
     assert instance.get("v") == pytest.approx(0.01 * math.sqrt(math.pi), rel=1e-6)
+
+
+def collision_time(name, a):
+    """From energy: v^2 = 2 (U(x0) - U(x)), to where the force has its pole."""
+    start, pole, potential = {
+        "Collision": (mpmath.mpf(1), 0, lambda x: -a / x),
+        "Logarithm": (mpmath.mpf(1), 0, lambda x: a * mpmath.log(x)),
+        "Tangent": (mpmath.mpf(0.5), mpmath.pi / 2, lambda x: a * mpmath.log(mpmath.cos(x))),
+    }[name]
+    integrand = lambda x: 1 / mpmath.sqrt(2 * (potential(start) - potential(x)))
+    return abs(mpmath.quad(integrand, [start, (start + pole) / 2, pole]))
+
+
+@pytest.mark.parametrize("name", ["Collision", "Logarithm", "Tangent"])
+@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+def test_no_step_passes_through_a_singularity(name, method, open_fmu):
+    instance, end = open_fmu(name + method, logging=True), 4.0
+    for a in (0.5, 1.0, 1.3):
+        last = float(collision_time(name, a))
+        for tolerance in (1e-3, 1e-5, 1e-8, 1e-11):
+            for step in (0.01, 0.3, 4.0):
+                instance.reset().initialize({"a": a}, tolerance)
+                with instance.fails(DISCARD, "singularity|no solution|no step is short enough"):
+                    instance.run(end, step)
+                assert instance.fmu.getRealStatus(2) == pytest.approx(last, abs=max(1e-6, 20 * tolerance))
+
+
+@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+def test_a_trial_stage_may_fail(method, open_fmu):
+    """Steps grow before the wall, so that a trial overflows behind it; the energy stays, and x returns to the start."""
+    instance = open_fmu(f"Wall{method}").initialize({"a": 1.0}, tolerance=1e-9)
+    force = lambda x: 1 - mpmath.exp(50 * (x - 3))
+    reference = mpmath.odefun(lambda t, y: [y[1], force(y[0])], 0, [0, 0], tol=1e-12)
+    instance.step(3.0)
+    exact = reference(3)
+    assert instance.get("x") == pytest.approx(float(exact[0]), abs=1e-6)
+    assert instance.get("v") == pytest.approx(float(exact[1]), abs=1e-6)
