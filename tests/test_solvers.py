@@ -16,6 +16,7 @@ FORCES = {
     "Collision": ("-a/x^2", 1, 0, ""),
     "Logarithm": ("-a/x", 1, 0, ""),
     "Tangent": ("a*tan(x)", 0.5, 0, ""),
+    "Power": ("x^a", -2, 0, ""),
     "Wall": ("a - exp(50*(x - 3))", 0, 0, ""),
     "Pulse": ("exp(-((time - 5)/0.01)^2)", 0, 0, 'maxStep="0.01"'),
 }
@@ -90,3 +91,14 @@ def test_a_trial_stage_may_fail(method, open_fmu):
     exact = reference(3)
     assert instance.get("x") == pytest.approx(float(exact[0]), abs=1e-6)
     assert instance.get("v") == pytest.approx(float(exact[1]), abs=1e-6)
+
+
+def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
+    """x^3 along x has a derivative for x < 0, x^a along a has none."""
+    instance = open_fmu("PowerErk").initialize({"a": 3.0})
+    along = lambda name: instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr(name), [1.0])
+    assert along("x") == pytest.approx([12.0], rel=1e-15)
+    with instance.fails(DISCARD, "not finite"):
+        along("a")
+    instance.reset().initialize({"a": 3.0, "x": 2.0})
+    assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
