@@ -1,9 +1,13 @@
 """Where the methods with error estimates, erk and bdf, are in danger of going astray."""
 
+import io
 import math
 import subprocess
+import zipfile
 
+import matplotlib.image
 import mpmath
+import numpy as np
 import pytest
 
 import fmu
@@ -17,6 +21,7 @@ FORCES = {
     "Logarithm": ("-a/x", 1, 0, ""),
     "Tangent": ("a*tan(x)", 0.5, 0, ""),
     "Power": ("x^a", -2, 0, ""),
+    "Stiff": ("-1e12*v - 1e12*x", 1, 0, ""),
     "Wall": ("a - exp(50*(x - 3))", 0, 0, ""),
     "Pulse": ("exp(-((time - 5)/0.01)^2)", 0, 0, 'maxStep="0.01"'),
 }
@@ -102,3 +107,15 @@ def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
         along("a")
     instance.reset().initialize({"a": 3.0, "x": 2.0})
     assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
+
+
+def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
+    """The solver's limit of steps in the build leaves no curve to draw, only the mark of the start."""
+    def pixels(name, colour):
+        with zipfile.ZipFile(fmu.archive(name)) as archive:
+            image = matplotlib.image.imread(io.BytesIO(archive.read("model.png")))
+        return np.count_nonzero(np.all(np.abs(image[..., :3] - colour) < 0.02, axis=-1))
+
+    blue, red = (0.05, 0.35, 0.65), (0.85, 0.25, 0.15)
+    assert pixels("StiffErk", blue) == 0 and pixels("StiffErk", red) > 0
+    assert pixels("StiffBdf", blue) > 0

@@ -19,8 +19,8 @@ static const double safety = 0.1;
 
 struct Erk {
   struct SundialsVectors vectors;
-  N_Vector before; /* the state before an internal step */
-  N_Vector first, second;
+  N_Vector before;        /* the state before an internal step */
+  N_Vector first, second; /* workspace for looking at a step */
   void *arkode;
 };
 
@@ -32,9 +32,9 @@ static int right_side(realtype time, N_Vector state, N_Vector derivative, void *
 static void destroy(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
   if (erk->arkode != NULL) ERKStepFree(&erk->arkode);
-  const N_Vector vectors[] = {erk->before, erk->first, erk->second};
-  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-    if (vectors[i] != NULL) N_VDestroy(vectors[i]);
+  if (erk->before != NULL) N_VDestroy(erk->before);
+  if (erk->first != NULL) N_VDestroy(erk->first);
+  if (erk->second != NULL) N_VDestroy(erk->second);
   sundials_vectors_destroy(&erk->vectors);
   instance->free(erk);
   instance->solver_memory = NULL;
