@@ -75,6 +75,7 @@ struct Lagrangian {
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */
   const char *const *inertia_depends_on;
   double tolerance; /* relative, where the environment gives none */
+  double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
   bool depends_on_time;
   const struct Solver *solver; /* NULL for a system without coordinates */
 

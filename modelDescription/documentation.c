@@ -164,6 +164,15 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
   if (program->equations->count == 0) return;
   element(writer, "h2", "Solver");
   element(writer, "p", solvers[program->interface->method]);
+  if (!isnan(program->model->max_step)) {
+    char *text = format_text("No step of the method is longer than %g s.", program->model->max_step);
+    element(writer, "p", text);
+    free(text);
+  } else if (program->interface->depends_on_time && program->interface->method != SOLVER_EXACT)
+    element(
+        writer, "p",
+        "No step of the method is longer than the communication step. What happens within a shorter time, such as a "
+        "narrow pulse, may be stepped over unseen: maxStep in system.xml says how long a step may be.");
 }
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {

@@ -35,15 +35,17 @@ temporary_folders = []  # removed at the end of the process
 
 @functools.cache
 def unpacked(name):
-    """The folder of an unpacked FMU: a system of fmu/, or of tests/systems/."""
+    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of test_solvers.py."""
     folder = tempfile.TemporaryDirectory(prefix=name)
     temporary_folders.append(folder)
     return Path(fmpy.extract(archive(name), folder.name))
 
 
 def archive(name):
-    folder = BUILD if (ROOT / "fmu" / name).exists() else BUILD / "test-systems"
-    return folder / "fmu" / f"{name}.fmu"
+    if (ROOT / "fmu" / name).exists():
+        return BUILD / "fmu" / f"{name}.fmu"
+    folder = "test-systems" if (ROOT / "tests" / "systems" / name).exists() else "solver-systems"
+    return BUILD / folder / "fmu" / f"{name}.fmu"
 
 
 @functools.cache

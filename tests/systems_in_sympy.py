@@ -191,6 +191,14 @@ def functions():
     return System([q], [w], m * w**2 / 2, U, [Q], [u], [m, p])
 
 
+def coupled_oscillators():
+    m1, m2, k1, k2, k, b1, b2, f1, f2, F = symbols("m1 m2 k1 k2 k b1 b2 f1 f2 F")
+    x1, x2, v1, v2 = symbols("x1 x2 v1 v2")
+    T = m1 * v1**2 / 2 + m2 * v2**2 / 2
+    U = k1 * x1**2 / 2 + k2 * x2**2 / 2 + k * (x1 - x2) ** 2 / 2
+    return System([x1, x2], [v1, v2], T, U, [f1 + F - b1 * v1, f2 - b2 * v2], [F], [m1, m2, k1, k2, k, b1, b2, f1, f2])
+
+
 DEFINITIONS = {
     "ParticleCartesian": particle_cartesian,
     "ParticlePolar": particle_polar,
@@ -216,6 +224,7 @@ DEFINITIONS = {
     "TwoCarts": two_carts,
     "RollingDisk": rolling_disk,
     "Functions": functions,
+    "CoupledOscillators": coupled_oscillators,
 }
 
 

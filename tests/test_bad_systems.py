@@ -38,6 +38,8 @@ CASES = [
     ("tolerance by a constant", 11, '<constant name="INF" value="-1"/><solver method="erk" tolerance="INF"/>', 11,
      "tolerance -1; expected"),
     ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize 0; expected"),
+    ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, "'0'"),
+    ("largest step of the exact method", 11, '<solver method="exact" maxStep="0.1"/>', 11, "expected no maxStep"),
     ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
     ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),

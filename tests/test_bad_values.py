@@ -98,6 +98,13 @@ def test_bad_steps(name, step, open_fmu):
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
+def test_a_step_beyond_all_times(name, open_fmu):
+    instance = open_fmu(name).initialize(start_time=1e308)
+    with instance.fails(ERROR, "ends beyond all numbers"):
+        instance.step(1e308)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
 def test_unknown_value_references(name, open_fmu):
     instance = open_fmu(name).initialize()
     for call in (

@@ -6,7 +6,7 @@ import pytest
 from flint import arb_series
 
 import fmu
-from fmu import ERROR
+from fmu import DISCARD, ERROR
 from references import precision
 from systems_in_sympy import DEFINITIONS, system
 from test_taylor import exact_series
@@ -82,6 +82,35 @@ def test_inputs_are_followed_to_the_end_of_the_step(open_fmu):
     instance.step(h)
     u = [1 + h * (2 + h * (-1.5 + h * 4 / 6)), 2 + h * (-3 + h * 2), -3 + 4 * h, 4.0, 0.0]
     assert derivatives_of(instance, "x", range(2, 7)) == pytest.approx(np.array(u) / 0.5, rel=1e-13)
+
+
+def test_a_value_ends_the_polynomial_of_its_input(open_fmu):
+    """F1 = k (x2 - x1): after x1 was set, only x2 still moves."""
+    instance = open_fmu("SpringDamper").initialize(dict(k=7, c=0, l0=0))
+    instance.fmu.setRealInputDerivatives(instance.vr("x1", "x2"), [1, 1], [0.2, 0.5])
+    instance.step(0.1)
+    instance.set(x1=3.0)
+    assert derivatives_of(instance, "F1", [1, 2]) == pytest.approx([7 * 0.5, 0])
+
+
+@pytest.mark.parametrize("derivatives_first", [True, False])
+def test_a_value_and_its_derivatives_may_come_in_either_order(derivatives_first, open_fmu):
+    instance = open_fmu("SpringDamper").initialize(dict(k=7, c=0, l0=0))
+    if derivatives_first:
+        instance.fmu.setRealInputDerivatives(instance.vr("x2"), [1], [0.5])
+    instance.set(x2=3.0)
+    if not derivatives_first:
+        instance.fmu.setRealInputDerivatives(instance.vr("x2"), [1], [0.5])
+    instance.step(0.1)
+    assert instance.get("F1") == pytest.approx(7 * 3.05)
+
+
+def test_derivatives_beyond_all_numbers(open_fmu):
+    instance = open_fmu("StateFeedback").initialize(dict(theta=1e308))
+    instance.fmu.setRealInputDerivatives(instance.vr("x", "theta", "v"), [1, 1, 1], [1e308, 1e308, 1e308])
+    with instance.fails(DISCARD, "derivative of 'F' is not finite"):
+        instance.step(0.1)
+        derivatives_of(instance, "F", [1])
 
 
 def test_without_coordinates(open_fmu):

@@ -63,6 +63,17 @@ static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, N
   }
 }
 
+/*
+ * What the exponent of a power contributes along a direction: log(base) base^exponent seed, which is 0 for a parameter
+ * that is not varied, even where the base is negative and has no logarithm.
+ */
+static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Node seed) {
+  if (!graph_depends_on(graph, seed, SEED_PARAMETER)) return multiply(graph, by_exponent, seed);
+  Node varied = function(graph, ABSOLUTE, function(graph, SIGN, seed, ZERO), ZERO);
+  Node base = function(graph, MAXIMUM, graph->vertices[node].left, subtract(graph, ONE, varied));
+  return multiply(graph, multiply(graph, function(graph, LOGARITHM, base, ZERO), node), seed);
+}
+
 static Node last_of(const Node *targets, size_t count) {
   Node last = 0;
   for (size_t i = 0; i < count; i++)
@@ -84,7 +95,10 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
     along[node] = multiply(graph, by_left, along[vertex.left]);
-    if (arity == 2) along[node] = add(graph, along[node], multiply(graph, by_right, along[vertex.right]));
+    if (arity == 1) continue;
+    Node along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along[vertex.right])
+                                                 : multiply(graph, by_right, along[vertex.right]);
+    along[node] = add(graph, along[node], along_right);
   }
   for (size_t i = 0; i < count; i++) derivatives[i] = along[targets[i]];
   free(along);

@@ -301,6 +301,7 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
                  *tolerance);
+  number_attribute(reader, node, "maxStep", &reader->model->max_step);
   free(method);
 }
 

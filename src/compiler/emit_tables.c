@@ -125,6 +125,8 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   fprintf(file, "    .nominal = %s,\n    .inertia_depends_on = %s,\n    .tolerance = ", moves ? "nominal" : "NULL",
           moves ? "inertia_depends_on" : "NULL");
   write_c_number(file, interface_tolerance(program->model));
+  fputs(",\n    .max_step = ", file);
+  write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
   fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s,\n    .prepare = prepare,\n",
           interface->depends_on_time ? "true" : "false", solvers[interface->method]);
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",

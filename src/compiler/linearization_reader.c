@@ -67,6 +67,7 @@ void read_linearization(struct Model *model, xmlNodePtr root, struct Diagnostics
   model->name = attribute(root, "name");
   model->description = attribute(root, "description");
   model->method = SOLVER_DEFAULT;
+  model->max_step = NAN;
   begin_point(model);
   for (xmlNodePtr node = root->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;

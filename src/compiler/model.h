@@ -57,7 +57,7 @@ struct Model {
   bool linearized;
   struct LinearizationPoint point; /* where linearized */
   enum SolverMethod method;
-  double tolerance;                        /* NAN where none was given */
+  double tolerance, max_step;              /* NAN where none was given; max_step in s */
   double start_time, stop_time, step_size; /* NAN where none was given */
   long solver_line;
 };

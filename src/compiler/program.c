@@ -1,5 +1,6 @@
 #include "program.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "differentiate.h"
@@ -88,6 +89,9 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   struct Program *program = allocate(1, sizeof *program);
   *program = (struct Program){.model = model, .equations = equations, .interface = interface};
   if (interface->method == SOLVER_EXACT) {
+    if (!isnan(model->max_step))
+      report_error(diagnostics, model->solver_line,
+                   "the method 'exact' takes a communication step as a whole; expected no maxStep");
     program->linear = linear_system_of(model, equations, diagnostics);
     if (model->work_line > 0)
       report_error(diagnostics, model->solver_line,

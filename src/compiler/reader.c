@@ -114,7 +114,7 @@ static struct Model *model_create(struct Diagnostics *diagnostics) {
   struct Model *model = allocate(1, sizeof *model);
   model->graph = graph_create();
   model->scope = scope_create(model->graph, diagnostics);
-  model->tolerance = model->start_time = model->stop_time = model->step_size = NAN;
+  model->tolerance = model->max_step = model->start_time = model->stop_time = model->step_size = NAN;
   define_language(model->scope);
   reserve_result_names(model->scope);
   /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */

@@ -35,9 +35,11 @@ static bool find_reference(xmlXPathContextPtr context, const char *path, fmi2Val
 static bool find_shown(xmlXPathContextPtr context, struct Description *description) {
   static const char *const coordinate =
       "//ScalarVariable[position() = //ScalarVariable/Real[@derivative][1]/@derivative]/@valueReference";
+  static const char *const solver_steps = "//ScalarVariable[@name='solverSteps']/@valueReference";
   static const char *const velocity = "//ScalarVariable[Real/@derivative][1]/@valueReference";
   description->has_states = find_reference(context, coordinate, &description->shown[0]) &&
-                            find_reference(context, velocity, &description->shown[1]);
+                            find_reference(context, velocity, &description->shown[1]) &&
+                            find_reference(context, solver_steps, &description->solver_steps);
   return description->has_states ||
          (find_reference(context, "//ScalarVariable[@causality='input'][1]/@valueReference", &description->shown[0]) &&
           find_reference(context, "//ScalarVariable[@causality='output'][1]/@valueReference", &description->shown[1]));

@@ -10,7 +10,8 @@ struct Description {
   char *guid;
   double stop_time;
   bool has_states;
-  fmi2ValueReference shown[2]; /* the first coordinate and its velocity, or the first input and the first output */
+  fmi2ValueReference solver_steps; /* where it has states: how many the solver has taken */
+  fmi2ValueReference shown[2];     /* the first coordinate and its velocity, or the first input and the first output */
 };
 
 /* False after a message where the file cannot be read or shows nothing. Free with description_free(). */

@@ -29,6 +29,7 @@ struct Library {
   __typeof__(fmi2ExitInitializationMode) *exit_initialization_mode;
   __typeof__(fmi2SetReal) *set_real;
   __typeof__(fmi2GetReal) *get_real;
+  __typeof__(fmi2GetInteger) *get_integer;
   __typeof__(fmi2DoStep) *do_step;
   __typeof__(fmi2FreeInstance) *free_instance;
 };
@@ -44,6 +45,7 @@ static bool load(const char *path, struct Library *library) {
       {"fmi2ExitInitializationMode", &library->exit_initialization_mode},
       {"fmi2SetReal", &library->set_real},
       {"fmi2GetReal", &library->get_real},
+      {"fmi2GetInteger", &library->get_integer},
       {"fmi2DoStep", &library->do_step},
       {"fmi2FreeInstance", &library->free_instance},
   };
@@ -61,13 +63,35 @@ static void append(struct Curve *curve, double x, double y) {
   curve->y[curve->count++] = y;
 }
 
-/* Runs the FMU; where it stops early, the portrait ends there. */
+/* A step of the FMU. False where it fails, or where the solver has taken too many steps, as for a stiff system. */
+static bool advance(const struct Library *fmu, fmi2Component c, const struct Description *description, double from,
+                    double to) {
+  enum { SOLVER_STEP_LIMIT = 200000 };
+  fmi2Integer steps = 0;
+  return fmu->do_step(c, from, to - from, fmi2True) == fmi2OK &&
+         fmu->get_integer(c, &description->solver_steps, 1, &steps) == fmi2OK && steps <= SOLVER_STEP_LIMIT;
+}
+
+/* The first step, in parts that double from a tiny one: the work for a part tells that for the next. */
+static bool begin(const struct Library *fmu, fmi2Component c, const struct Description *description, double end) {
+  enum { HALVINGS = 24 };
+  double from = 0.0;
+  for (int i = HALVINGS; i >= 0; i--) {
+    double to = ldexp(end, -i);
+    if (!advance(fmu, c, description, from, to)) return false;
+    from = to;
+  }
+  return true;
+}
+
+/* Runs the FMU; where it stops early or becomes too slow, the portrait ends there. */
 static struct Curve run(const struct Library *fmu, fmi2Component c, const struct Description *description) {
   struct Curve curve = {.count = 0};
   double values[2], step = description->stop_time / POINTS;
   for (int i = 0; i <= POINTS; i++) {
     if (description->has_states) {
-      if (i > 0 && fmu->do_step(c, (i - 1) * step, step, fmi2True) != fmi2OK) break;
+      if (i == 1 && !begin(fmu, c, description, step)) break;
+      if (i > 1 && !advance(fmu, c, description, (i - 1) * step, i * step)) break;
       if (fmu->get_real(c, description->shown, 2, values) != fmi2OK) break;
     } else {
       values[0] = 10.0 * (2.0 * i / POINTS - 1.0);

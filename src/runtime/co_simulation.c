@@ -50,6 +50,9 @@ static fmi2Status check_step(struct Instance *instance, double time, double step
                      time, situation->time);
   if (time + step <= time)
     return log_error(instance, "fmi2DoStep: step %g does not advance the time %g; expected a larger one", step, time);
+  if (!isfinite(time + step))
+    return log_error(instance, "fmi2DoStep: step %g from time %g ends beyond all numbers; expected a shorter one", step,
+                     time);
   if (situation->stop_time_defined && time + step > situation->stop_time + rounding)
     return log_error(instance, "fmi2DoStep: the step ends at %.15g; expected none past stopTime %.15g", time + step,
                      situation->stop_time);

@@ -140,8 +140,16 @@ fmi2Status derivatives_in_time(struct Instance *instance, const fmi2ValueReferen
     return fmi2Discard;
   }
   fmi2Status status = follow(instance, &point, &direction);
-  for (size_t i = 0; i < nvr && status == fmi2OK; i++)
-    value[i] = evaluate_along(&lagrangian.variables[vr[i]], &point, &direction.seed, direction.derivative,
-                              direction.derivative_along);
+  for (size_t i = 0; i < nvr && status == fmi2OK; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[vr[i]];
+    double derivative =
+        evaluate_along(variable, &point, &direction.seed, direction.derivative, direction.derivative_along);
+    if (isfinite(derivative)) value[i] = derivative;
+    else {
+      log_message(instance, fmi2Discard, "fmi2GetRealOutputDerivatives: the derivative of '%s' is not finite here",
+                  variable->name);
+      status = fmi2Discard;
+    }
+  }
   return status;
 }

@@ -6,6 +6,7 @@
  * in half the time, but it takes 3 to 5 times as long where nothing changes. Going on across the change of an input
  * without a new start takes more steps, loses digits, and fails in the end.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +26,6 @@ struct Bdf {
   void *cvode;
   SUNMatrix matrix;
   SUNLinearSolver linear_solver;
-  double tolerance; /* the one that cvode works with */
 };
 
 static int right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
@@ -62,12 +62,12 @@ static bool configure(struct Instance *instance, struct Bdf *bdf) {
   bdf->matrix = SUNDenseMatrix(n, n, bdf->vectors.context);
   bdf->linear_solver = SUNLinSol_Dense(bdf->vectors.state, bdf->matrix, bdf->vectors.context);
   if (bdf->cvode == NULL || bdf->matrix == NULL || bdf->linear_solver == NULL) return false;
-  bdf->tolerance = sundials_tolerances(instance, &bdf->vectors, safety);
+  sundials_set_tolerances(instance, &bdf->vectors, safety);
   return sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
                             "CVodeSetErrHandlerFn") &&
          sundials_succeeded(instance, CVodeInit(bdf->cvode, right_side, instance->situation->time, bdf->vectors.state),
                             "CVodeInit") &&
-         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->tolerance, bdf->vectors.tolerance),
+         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->vectors.relative, bdf->vectors.tolerance),
                             "CVodeSVtolerances") &&
          sundials_succeeded(instance, CVodeSetUserData(bdf->cvode, instance), "CVodeSetUserData") &&
          sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, STEP_LIMIT), "CVodeSetMaxNumSteps") &&
@@ -94,17 +94,35 @@ static bool create(struct Instance *instance) {
 
 static bool restart(struct Instance *instance, struct Bdf *bdf) {
   memcpy(N_VGetArrayPointer(bdf->vectors.state), instance->state, lagrangian.state_count * sizeof(double));
-  bdf->tolerance = sundials_tolerances(instance, &bdf->vectors, safety);
+  sundials_set_tolerances(instance, &bdf->vectors, safety);
   return sundials_succeeded(instance, CVodeReInit(bdf->cvode, instance->situation->time, bdf->vectors.state),
                             "CVodeReInit") &&
-         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->tolerance, bdf->vectors.tolerance),
+         sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->vectors.relative, bdf->vectors.tolerance),
                             "CVodeSVtolerances");
 }
 
 /* Where inputs or time drive the system, a step longer than the communication step could pass over a pulse. */
-static bool limit_step(struct Instance *instance, struct Bdf *bdf, double step) {
-  if (lagrangian.input_count == 0 && !lagrangian.depends_on_time) return true;
-  return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, step), "CVodeSetMaxStep");
+static bool limit_step(struct Instance *instance, struct Bdf *bdf, double communication_step) {
+  bool driven = lagrangian.input_count > 0 || lagrangian.depends_on_time;
+  double longest = driven ? fmin(communication_step, lagrangian.max_step) : lagrangian.max_step;
+  return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, longest), "CVodeSetMaxStep");
+}
+
+/*
+ * Goes step by step to the end or past it: an interpolation gives the state there. NULL, or the reason why the state
+ * stays at *time before the end.
+ */
+static const char *reach(struct Instance *instance, struct Bdf *bdf, double *time, double end) {
+  int resting = 0;
+  for (long steps = 0; *time < end; steps++) {
+    if (steps == STEP_LIMIT) return "too many steps";
+    double before = *time;
+    if (CVode(bdf->cvode, end, bdf->vectors.state, time, CV_ONE_STEP) < 0) return "no step is short enough";
+    instance->situation->statistics[STATISTIC_STEPS]++;
+    resting = *time > before ? 0 : resting + 1;
+    if (resting == RESTING_STEP_LIMIT) return resting_steps;
+  }
+  return NULL;
 }
 
 static enum StepResult step(struct Instance *instance, double length, double *reached) {
@@ -117,16 +135,16 @@ static enum StepResult step(struct Instance *instance, double length, double *re
   instance->solver_is_stale = false;
   situation->changed = 0;
   realtype time = situation->time;
-  long before = 0, after = 0;
-  if (!sundials_succeeded(instance, CVodeGetNumSteps(bdf->cvode, &before), "CVodeGetNumSteps")) return STEP_FAILED;
-  int flag = CVode(bdf->cvode, end, bdf->vectors.state, &time, CV_NORMAL);
-  if (!sundials_succeeded(instance, CVodeGetNumSteps(bdf->cvode, &after), "CVodeGetNumSteps")) return STEP_FAILED;
-  situation->statistics[STATISTIC_STEPS] += (int32_t)(after - before);
+  if (!sundials_succeeded(instance, CVodeGetCurrentTime(bdf->cvode, &time), "CVodeGetCurrentTime")) return STEP_FAILED;
+  const char *problem = reach(instance, bdf, &time, end);
+  if (problem == NULL) {
+    if (!sundials_succeeded(instance, CVodeGetDky(bdf->cvode, end, 0, bdf->vectors.state), "CVodeGetDky"))
+      return STEP_FAILED;
+    memcpy(instance->state, N_VGetArrayPointer(bdf->vectors.state), lagrangian.state_count * sizeof(double));
+    return STEP_DONE;
+  }
   memcpy(instance->state, N_VGetArrayPointer(bdf->vectors.state), lagrangian.state_count * sizeof(double));
-  if (flag >= 0) return STEP_DONE;
-  char *name = CVodeGetReturnFlagName(flag);
-  sundials_log_stop(instance, "CVODE", flag, name, time, end);
-  free(name);
+  sundials_log_stop(instance, "CVODE", problem, time, end);
   instance->solver_is_stale = true;
   *reached = time;
   return STEP_PARTIAL;

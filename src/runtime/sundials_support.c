@@ -7,6 +7,8 @@
 #include "log.h"
 #include "solver.h"
 
+const char resting_steps[] = "the steps become too short to change the time, as at a singularity";
+
 bool sundials_vectors_create(struct Instance *instance, struct SundialsVectors *vectors) {
   if (SUNContext_Create(NULL, &vectors->context) == 0) {
     vectors->state = N_VNew_Serial((sunindextype)lagrangian.state_count, vectors->context);
@@ -23,11 +25,10 @@ void sundials_vectors_destroy(struct SundialsVectors *vectors) {
   if (vectors->context != NULL) SUNContext_Free(&vectors->context);
 }
 
-double sundials_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety) {
-  double relative = fmax(safety * instance->situation->tolerance, 10 * DBL_EPSILON);
+void sundials_set_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety) {
+  vectors->relative = fmax(safety * instance->situation->tolerance, 10 * DBL_EPSILON);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    N_VGetArrayPointer(vectors->tolerance)[i] = relative * lagrangian.nominal[i];
-  return relative;
+    N_VGetArrayPointer(vectors->tolerance)[i] = vectors->relative * lagrangian.nominal[i];
 }
 
 bool sundials_succeeded(const struct Instance *instance, int flag, const char *call) {
@@ -47,14 +48,12 @@ bool sundials_tiny_step(struct Instance *instance, double end) {
   return true;
 }
 
-void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name, double reached,
-                       double end) {
+void sundials_log_stop(struct Instance *instance, const char *solver, const char *reason, double reached, double end) {
   if (instance->singular != 0) log_singularity(instance, fmi2Discard, reached);
-  log_message(
-      instance, fmi2Discard,
-      "%s stopped at time %.15g before %.15g (%s, %d): retrying will not help; go on from an earlier state with "
-      "a larger tolerance, other parameters or other coordinates",
-      solver, reached, end, flag_name, flag);
+  log_message(instance, fmi2Discard,
+              "%s stopped at time %.15g before %.15g (%s): retrying will not help; go on from an earlier state with "
+              "a larger tolerance, other parameters or other coordinates",
+              solver, reached, end, reason);
 }
 
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data) {

@@ -11,14 +11,15 @@
 struct SundialsVectors {
   SUNContext context;
   N_Vector state, tolerance; /* tolerance: absolute, by state */
+  double relative;           /* tolerance */
 };
 
 /* False after logging where SUNDIALS has no memory. */
 bool sundials_vectors_create(struct Instance *instance, struct SundialsVectors *vectors);
 void sundials_vectors_destroy(struct SundialsVectors *vectors);
 
-/* The relative tolerance for the solver: its local errors add up over a simulation. Sets vectors->tolerance. */
-double sundials_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety);
+/* Sets the tolerances for the solver: its local errors add up over a simulation. */
+void sundials_set_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety);
 
 /* Logs that a call of SUNDIALS failed unless flag tells success; returns whether it succeeded. */
 bool sundials_succeeded(const struct Instance *instance, int flag, const char *call);
@@ -29,13 +30,16 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
  */
 bool sundials_tiny_step(struct Instance *instance, double end);
 
-/* Logs that the solver stopped before the end of a communication step, and what to try. */
-void sundials_log_stop(struct Instance *instance, const char *solver, int flag, const char *flag_name, double reached,
-                       double end);
+/* Logs that the solver stopped before the end of a communication step, why, and what to try. */
+void sundials_log_stop(struct Instance *instance, const char *solver, const char *reason, double reached, double end);
 
 /* An error handler for SUNDIALS that stays silent: the flags tell what happened, in this project's words. */
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data);
 
 enum { STEP_LIMIT = 10000000 }; /* internal steps in one communication step */
+
+/* SUNDIALS goes on where its steps are too short to change the time, and so passes through singularities. */
+enum { RESTING_STEP_LIMIT = 3 };
+extern const char resting_steps[]; /* the reason that a user reads */
 
 #endif

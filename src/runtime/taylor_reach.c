@@ -204,6 +204,7 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   double promised = promised_step(taylor), step = promised;
   if (rest < communication_step) rest = communication_step;
   if (rest < step) step = rest;
+  if (lagrangian.max_step < step) step = lagrangian.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
   taylor->function = limit.function;
   double crossing = 0.0;

@@ -82,7 +82,15 @@ static fmi2Status check_value(struct Instance *instance, fmi2ValueReference refe
   return fmi2OK;
 }
 
+/* A value ends what fmi2SetRealInputDerivatives said for an earlier step; what it said for the step to come holds. */
+static void end_polynomial(struct Instance *instance, size_t input) {
+  if (instance->situation->input_derivatives_set) return;
+  for (size_t order = 0; order < INPUT_ORDER; order++)
+    instance->input_derivatives[order * lagrangian.input_count + input] = 0.0;
+}
+
 static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+  if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
                                                       : &instance->parameter[variable->index];

@@ -1,0 +1,121 @@
+"""Where the methods with error estimates, erk and bdf, are in danger of going astray."""
+
+import io
+import math
+import subprocess
+import zipfile
+
+import matplotlib.image
+import mpmath
+import numpy as np
+import pytest
+
+import fmu
+from fmu import BUILD, DISCARD, ROOT
+
+METHODS = ("erk", "bdf")
+
+# A unit mass at x with velocity v: its force, and where it starts.
+FORCES = {
+    "Collision": ("-a/x^2", 1, 0, ""),
+    "Logarithm": ("-a/x", 1, 0, ""),
+    "Tangent": ("a*tan(x)", 0.5, 0, ""),
+    "Power": ("x^a", -2, 0, ""),
+    "Stiff": ("-1e12*v - 1e12*x", 1, 0, ""),
+    "Wall": ("a - exp(50*(x - 3))", 0, 0, ""),
+    "Pulse": ("exp(-((time - 5)/0.01)^2)", 0, 0, 'maxStep="0.01"'),
+}
+
+
+def text(name, force, x, v, solver):
+    return f"""<system name="{name}">
+  <parameter name="a" start="1"/>
+  <coordinate name="x" velocity="v" start="{x}" velocityStart="{v}"/>
+  <particle mass="1" x="x"/>
+  <force coordinate="x">{force}</force>
+  <solver {solver}/>
+  <experiment stopTime="0.1"/>
+</system>
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    """Every force with both methods: PulseErk, PulseBdf, ..."""
+    folder = BUILD / "solver-systems" / "systems"
+    for name, (force, x, v, solver) in FORCES.items():
+        for method in METHODS:
+            system = folder / f"{name}{method.capitalize()}" / "system.xml"
+            content = text(system.parent.name, force, x, v, f'method="{method}" {solver}')
+            system.parent.mkdir(parents=True, exist_ok=True)
+            if not system.exists() or system.read_text() != content:
+                system.write_text(content)
+    subprocess.run([ROOT / "scripts" / "build", BUILD / "solver-systems", f"-DSYSTEMS={folder}"], check=True)
+
+
+@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+def test_the_longest_step_finds_a_pulse(method, open_fmu):
+    """A pulse of 0.01 s in one communication step of 10 s; its integral is 0.01 sqrt(pi)."""
+    instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
+    instance.step(10.0)
+    assert instance.get("v") == pytest.approx(0.01 * math.sqrt(math.pi), rel=1e-6)
+
+
+def collision_time(name, a):
+    """From energy: v^2 = 2 (U(x0) - U(x)), to where the force has its pole."""
+    start, pole, potential = {
+        "Collision": (mpmath.mpf(1), 0, lambda x: -a / x),
+        "Logarithm": (mpmath.mpf(1), 0, lambda x: a * mpmath.log(x)),
+        "Tangent": (mpmath.mpf(0.5), mpmath.pi / 2, lambda x: a * mpmath.log(mpmath.cos(x))),
+    }[name]
+    integrand = lambda x: 1 / mpmath.sqrt(2 * (potential(start) - potential(x)))
+    return abs(mpmath.quad(integrand, [start, (start + pole) / 2, pole]))
+
+
+@pytest.mark.parametrize("name", ["Collision", "Logarithm", "Tangent"])
+@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+def test_no_step_passes_through_a_singularity(name, method, open_fmu):
+    instance, end = open_fmu(name + method, logging=True), 4.0
+    for a in (0.5, 1.0, 1.3):
+        last = float(collision_time(name, a))
+        for tolerance in (1e-3, 1e-5, 1e-8, 1e-11):
+            for step in (0.01, 0.3, 4.0):
+                instance.reset().initialize({"a": a}, tolerance)
+                with instance.fails(DISCARD, "singularity|no solution|no step is short enough"):
+                    instance.run(end, step)
+                assert instance.fmu.getRealStatus(2) == pytest.approx(last, abs=max(1e-6, 20 * tolerance))
+
+
+@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+def test_a_trial_stage_may_fail(method, open_fmu):
+    """Steps grow before the wall, so that a trial overflows behind it; the energy stays, and x returns to the start."""
+    instance = open_fmu(f"Wall{method}").initialize({"a": 1.0}, tolerance=1e-9)
+    force = lambda x: 1 - mpmath.exp(50 * (x - 3))
+    reference = mpmath.odefun(lambda t, y: [y[1], force(y[0])], 0, [0, 0], tol=1e-12)
+    instance.step(3.0)
+    exact = reference(3)
+    assert instance.get("x") == pytest.approx(float(exact[0]), abs=1e-6)
+    assert instance.get("v") == pytest.approx(float(exact[1]), abs=1e-6)
+
+
+def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
+    """x^3 along x has a derivative for x < 0, x^a along a has none."""
+    instance = open_fmu("PowerErk").initialize({"a": 3.0})
+    along = lambda name: instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr(name), [1.0])
+    assert along("x") == pytest.approx([12.0], rel=1e-15)
+    with instance.fails(DISCARD, "not finite"):
+        along("a")
+    instance.reset().initialize({"a": 3.0, "x": 2.0})
+    assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
+
+
+def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
+    """The solver's limit of steps in the build leaves no curve to draw, only the mark of the start."""
+    def pixels(name, colour):
+        with zipfile.ZipFile(fmu.archive(name)) as archive:
+            image = matplotlib.image.imread(io.BytesIO(archive.read("model.png")))
+        return np.count_nonzero(np.all(np.abs(image[..., :3] - colour) < 0.02, axis=-1))
+
+    blue, red = (0.05, 0.35, 0.65), (0.85, 0.25, 0.15)
+    assert pixels("StiffErk", blue) == 0 and pixels("StiffErk", red) > 0
+    assert pixels("StiffBdf", blue) > 0
