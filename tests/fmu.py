@@ -1,8 +1,10 @@
 """Instances of the built FMUs through FMPy, by variable names instead of value references."""
 
+import fcntl
 import functools
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 from contextlib import contextmanager
@@ -35,17 +37,39 @@ temporary_folders = []  # removed at the end of the process
 
 @functools.cache
 def unpacked(name):
-    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of test_solvers.py."""
+    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of build_systems()."""
     folder = tempfile.TemporaryDirectory(prefix=name)
     temporary_folders.append(folder)
     return Path(fmpy.extract(archive(name), folder.name))
 
 
+built_by_tests = {}  # name of a system: its archive
+
+
 def archive(name):
-    if (ROOT / "fmu" / name).exists():
-        return BUILD / "fmu" / f"{name}.fmu"
-    folder = "test-systems" if (ROOT / "tests" / "systems" / name).exists() else "solver-systems"
-    return BUILD / folder / "fmu" / f"{name}.fmu"
+    if name in built_by_tests:
+        return built_by_tests[name]
+    folder = BUILD if (ROOT / "fmu" / name).exists() else BUILD / "test-systems"
+    return folder / "fmu" / f"{name}.fmu"
+
+
+def build_systems(folder, texts):
+    """Builds FMUs of systems that a test writes itself, by name, in a folder of the build; other processes wait."""
+    build = BUILD / folder
+    build.mkdir(parents=True, exist_ok=True)
+    with open(build / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for name, text in texts.items():
+            system = build / "systems" / name / "system.xml"
+            system.parent.mkdir(parents=True, exist_ok=True)
+            if not system.exists() or system.read_text() != text:
+                system.write_text(text)
+        for path in (build / "systems").iterdir():
+            if path.name not in texts:
+                shutil.rmtree(path)
+        subprocess.run([ROOT / "scripts" / "build", build, f"-DSYSTEMS={build / 'systems'}"], check=True)
+    for name in texts:
+        built_by_tests[name] = build / "fmu" / f"{name}.fmu"
 
 
 @functools.cache

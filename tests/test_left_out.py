@@ -116,13 +116,16 @@ def sizes():
 def test_sizes():
     """Each FMU stays small; the table of sizes is printed at the end of the tests."""
     for name, archive, shared, sundials, _ in sizes():
-        assert archive < (125_000 if sundials == 0 else 115_000)
+        assert archive < (130_000 if sundials == 0 else 115_000)
         assert shared < (340_000 if sundials == 0 else 340_000)
 
 
-@pytest.mark.parametrize("force, solver", [("u*sin(q)", "taylor"), ("u - abs(w)*w", "erk")])
+@pytest.mark.parametrize(
+    "force, solver",
+    [("u*sin(q)", "taylor"), ("u - abs(w)*w", "taylor"), ("u - sign(w)", "erk"), ("asin(sin(q))", "erk")],
+)
 def test_default_solver(force, solver, tmp_path):
-    """Taylor series where the equations have them, else the method for functions with kinks."""
+    """Taylor series where the equations have them, else the method that steps across jumps."""
     (tmp_path / "system.xml").write_text(
         '<system name="Default"><input name="u"/><coordinate name="q" velocity="w"/><particle mass="1" x="q"/>'
         f'<force coordinate="q">{force}</force></system>'
@@ -138,7 +141,8 @@ def test_instances_are_small():
 
     for name in fmu.all_names():
         memory, _ = instance_costs(name)
-        limit = 120_000 if name == "ChainPendulum" else 20_000 if name in BDF else 14_000
+        # The exponential is computed in long double, so that a stiff spring leaves the other variables their digits.
+        limit = 120_000 if name == "ChainPendulum" else 28_000 if name in EXACT else 20_000 if name in BDF else 14_000
         assert 0 < memory < limit, (name, memory)
 
 

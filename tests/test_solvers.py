@@ -2,7 +2,6 @@
 
 import io
 import math
-import subprocess
 import zipfile
 
 import matplotlib.image
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 
 import fmu
-from fmu import BUILD, DISCARD, ROOT
+from fmu import DISCARD
 
 METHODS = ("erk", "bdf")
 
@@ -42,15 +41,12 @@ def text(name, force, x, v, solver):
 @pytest.fixture(scope="module", autouse=True)
 def systems():
     """Every force with both methods: PulseErk, PulseBdf, ..."""
-    folder = BUILD / "solver-systems" / "systems"
+    texts = {}
     for name, (force, x, v, solver) in FORCES.items():
         for method in METHODS:
-            system = folder / f"{name}{method.capitalize()}" / "system.xml"
-            content = text(system.parent.name, force, x, v, f'method="{method}" {solver}')
-            system.parent.mkdir(parents=True, exist_ok=True)
-            if not system.exists() or system.read_text() != content:
-                system.write_text(content)
-    subprocess.run([ROOT / "scripts" / "build", BUILD / "solver-systems", f"-DSYSTEMS={folder}"], check=True)
+            whole = name + method.capitalize()
+            texts[whole] = text(whole, force, x, v, f'method="{method}" {solver}')
+    fmu.build_systems("solver-systems", texts)
 
 
 @pytest.mark.parametrize("method", ["Erk", "Bdf"])

@@ -8,6 +8,7 @@ static const double exponent_range = 5.0;
 static const double exponential_end = -700.0, tanh_end = 20.0;
 /* The share of the way to a singular point that one step may go. */
 static const double approach = 0.99;
+static const double pi = 3.14159265358979323846;
 
 enum { TRIALS = 400, REFINEMENTS = 4 };
 
@@ -75,7 +76,7 @@ void series_limit_tanh(struct SeriesLimit *limit, const double *u) {
 }
 
 void series_limit_tangent(struct SeriesLimit *limit, const double *u) {
-  double distance = M_PI / 2 - fabs(remainder(u[0], M_PI));
+  double distance = pi / 2 - fabs(remainder(u[0], pi));
   shorten(limit, u, excursion_fits, approach * distance, "tan");
 }
 

@@ -10,12 +10,13 @@
 #include "evaluate.h"
 #include "taylor.h"
 
-/* A step of the promised length has a defect of about a third of order x tolerance. */
+/* A step of the promised length has a defect of about a third of the order times the tolerance. */
 static const double defect_margin = 3.0;
 /* Polynomial motions have no length of their own. */
 static const double horizon = 1e4;
 /* Rounding of the right side at the end of the step, in units of the last place. */
 static const double rounding = 100.0;
+static const double logarithm_of_2 = 0.69314718055994530942;
 
 /*
  * The change of state variable i from the origin to s after it, as taylor_change() computes it, and its time derivative
@@ -73,7 +74,7 @@ static double promised_step(const struct Taylor *taylor) {
   double power = (double)order, inverse = 1.0 / (power - 1.0);
   double of_last = last > 0.0 ? rough_logarithm(last) / power : -INFINITY;
   double of_before = before > 0.0 ? rough_logarithm(before) * inverse : -INFINITY;
-  return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - (2.0 + 0.7 * inverse) * M_LOG2E);
+  return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - (2.0 + 0.7 * inverse) / logarithm_of_2);
 }
 
 /*
@@ -98,10 +99,13 @@ static bool right_side(struct Instance *instance, const struct Taylor *taylor, d
   return lagrangian.start(&point, derivative, taylor->work) == 0;
 }
 
-/* The defect that makes a change over the step which the tolerance allows, in units of the variables' scales. */
+/*
+ * The defect times the step that the tolerance allows, in units of the variables' scales. Where the coefficients set the
+ * step, the defect grows with the power order, so that the error is smaller by order + 1.
+ */
 static double allowed_defect(const struct Instance *instance, const struct Taylor *taylor) {
-  double tolerance = 0.1 * instance->situation->tolerance;
-  return defect_margin * (double)(taylor->saved->order + 1) * (tolerance > 1e-17 ? tolerance : 1e-17);
+  double tolerance = 0.1 * instance->situation->tolerance, size = tolerance > 1e-17 ? tolerance : 1e-17;
+  return taylor->is_limited ? size : defect_margin * (double)(taylor->saved->order + 1) * size;
 }
 
 /*
@@ -163,24 +167,29 @@ static double smallest_step(const struct Saved *saved) {
   return 8.0 * DBL_EPSILON * fabs(saved->origin);
 }
 
-/*
- * A point where a root or atan2 has no series is approached by ever shorter steps, and crossed by one so short that
- * all that changes there is less than the tolerance. Returns that step, or 0.
- */
-static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step) {
-  double tolerance = instance->situation->tolerance, step = communication_step * tolerance;
-  for (size_t i = 0; i < lagrangian.state_count; i++)
-    step = fmin(step, tolerance * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
-  step = fmax(step, 2.0 * smallest_step(taylor->saved));
-  step = limited(instance, taylor, step, true).step;
-  for (int trial = 0; trial < 4; trial++, step *= 0.1)
-    if (defect_over(instance, taylor, step) <= 1.0) return step;
-  return 0.0;
-}
-
 /* The next origin is a number, so that the time does not drift. */
 static double exact_reach(const struct Saved *saved, double step) {
   return saved->origin + step - saved->origin;
+}
+
+/*
+ * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one so short
+ * that all that changes there is less than the tolerance, or less than the rounding of time makes of it. Returns that
+ * step, whose end was measured, or 0.
+ */
+static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+  double tolerance = instance->situation->tolerance, step = communication_step * tolerance;
+  double smallest = 2.0 * smallest_step(taylor->saved);
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    step = fmin(step, tolerance * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
+  step = limited(instance, taylor, fmax(step, smallest), true).step;
+  for (int trial = 0; trial < 4; trial++) {
+    step = exact_reach(taylor->saved, step);
+    double size = defect_over(instance, taylor, step);
+    if (size <= 1.0 || (step <= 2.0 * smallest && isfinite(size))) return step;
+    step = fmax(0.1 * step, fmin(step, smallest));
+  }
+  return 0.0;
 }
 
 /* Shortens the step until its defect is small. A defect that rounding explains stays in a shorter step too. */
@@ -207,12 +216,11 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   if (lagrangian.max_step < step) step = lagrangian.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
   taylor->function = limit.function;
+  taylor->is_limited = limit.step < promised;
   double crossing = 0.0;
   if (limit.function != NULL && limit.step < communication_step * instance->situation->tolerance)
     crossing = crossing_step(instance, taylor, communication_step);
   taylor->crosses = crossing > limit.step;
-  step = taylor->crosses ? crossing : limit.step;
-  taylor->is_limited = step < promised;
-  saved->reach = step > 0.0 ? shortened(instance, taylor, step) : 0.0;
+  saved->reach = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
   taylor->is_measured = saved->reach > 0.0;
 }

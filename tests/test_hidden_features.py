@@ -1,0 +1,221 @@
+"""
+Features of the right side that a series about the start of a step cannot see: walls, hills, steps, pulses, powers that
+vanish at the start, and kinks by any name. The truth is the energy integral, or a closed form.
+"""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import fmu
+from fmu import DISCARD
+
+mp.mp.dps = 40
+TOLERANCES = (1e-3, 1e-4, 1e-7, 1e-8, 1e-10, 1e-13)
+COMMUNICATION_STEPS = (1, 37)
+
+
+def travel_time(potential, energy, marks):
+    """The time of a unit mass along the marks, the last of which may be a turning point."""
+    return mp.quad(lambda x: 1 / mp.sqrt(2 * abs(energy - potential(x))), marks)
+
+
+# A unit mass with the velocity 1 runs against them: the potential in the language and in mpmath, the start, a place
+# where the potential is above the energy 1/2, and the width of the feature.
+WALLS = {
+    "Hill": ("0.6*exp(-(x/0.1)^2)", lambda x: 0.6 * mp.exp(-((x / mp.mpf("0.1")) ** 2)), -1, 0, 0.1),
+    "NarrowHill": ("0.6*exp(-(x/1e-3)^2)", lambda x: 0.6 * mp.exp(-((x * 1000) ** 2)), -1, 0, 1e-3),
+    "Spike": ("0.6*exp(-(x/1e-6)^2)", lambda x: 0.6 * mp.exp(-((x * 10**6) ** 2)), -1, 0, 1e-6),
+    "Step": ("1 + tanh(20*(x - 3))", lambda x: 1 + mp.tanh(20 * (x - 3)), 0, 4, 0.05),
+    "Wall": ("exp(50*(x - 3))", lambda x: mp.exp(50 * (x - 3)), 0, 4, 0.02),
+    "Secant": ("0.6/cosh((x - 3)/0.02)", lambda x: 0.6 / mp.cosh((x - 3) * 50), 0, 3, 0.02),
+    "Resonance": ("0.6/(1 + ((x - 3)/1e-5)^2)", lambda x: 0.6 / (1 + ((x - 3) * 10**5) ** 2), 0, 3, 1e-5),
+    "HighPower": ("0.5*(x/3)^40", lambda x: (x / mp.mpf(3)) ** 40 / 2, 0, 4, 0.1),
+}
+
+
+def turning_point(potential, low, high):
+    """Where U = 1/2, by bisection."""
+    low, high = mp.mpf(low), mp.mpf(high)
+    for _ in range(150):
+        middle = (low + high) / 2
+        low, high = (middle, high) if potential(middle) < 0.5 else (low, middle)
+    return low
+
+
+def texts():
+    particle = '<coordinate name="x" velocity="v" start="{}" velocityStart="{}"/><particle mass="1" x="x"/>{}'
+    wall = lambda u, start: particle.format(start, 1, f"<potential>{u}</potential>")
+    force = lambda f, x=0, v=0: particle.format(x, v, f'<force coordinate="x">{f}</force>')
+    systems = {name: wall(u, start) for name, (u, _, start, _, _) in WALLS.items()}
+    systems |= {f"Power{n}": wall(f"x^{n}/{n}", 0) for n in (4, 8, 20)}
+    systems |= {f"TimePower{n}": force(f"time^{n}") for n in (6, 10)}
+    systems |= {name: force(f, *start) for name, (f, start, _) in CLOSED_FORMS.items()}
+    systems["Ball"] = particle.format(1, 0, "<potential>9.81*x + 1e4*0.01*log(1 + exp(-x/0.01))</potential>")
+    systems["RootPotential"] = particle.format(1, 0, "<potential>sqrt(x^2)</potential>")
+    systems["Throw"] = particle.format(1, 2, "<potential>9.81*x</potential>")
+    systems["WeakPole"] = force("1e-6/x", 1, -1)
+    systems["Stick"] = force("-sign(v)", 0, 1) + '<solver method="taylor"/>'
+    systems["LogOfInput"] = '<input name="u"/>' + force("log(1 - u)")
+    systems["ParameterPower"] = '<parameter name="p" start="3"/>' + force("-x^p", 0, 1)
+    return {name: f'<system name="{name}">{content}</system>' for name, content in systems.items()}
+
+
+def friction(t):
+    """v' = -tanh(v / eps)/2: sinh(v / eps) falls exponentially."""
+    eps = mp.mpf("0.01")
+    velocity = lambda s: eps * mp.asinh(mp.sinh(1 / eps) * mp.exp(-s / (2 * eps)))
+    return mp.quad(velocity, [0, 1.9, 2, 2.1, 3]), velocity(t)
+
+
+def on_springs(t):
+    """x'' = -sign(x) from x = 1 at rest: parabolas, four quarters of sqrt(2)."""
+    quarter = mp.sqrt(2)
+    quarters = mp.floor(t / quarter)
+    s = t - quarters * quarter
+    x = {0: 1 - s**2 / 2, 1: -s * quarter + s**2 / 2, 2: s**2 / 2 - 1, 3: s * quarter - s**2 / 2}[int(quarters) % 4]
+    v = {0: -s, 1: s - quarter, 2: s, 3: quarter - s}[int(quarters) % 4]
+    return x, v
+
+
+def with_either_sign(t):
+    """x'' = -|x| from x = 1 at rest: a cosine, then a hyperbolic sine."""
+    s = t - mp.pi / 2
+    return -mp.sinh(s), -mp.cosh(s)
+
+
+def distance_from_one(t):
+    """x'' = |t - 1|"""
+    s = mp.mpf(t) - 1
+    return mp.mpf(1) / 6 * abs(s) ** 3 - mp.mpf(1) / 6 + mp.mpf(t) / 2, s * abs(s) / 2 + mp.mpf("0.5")
+
+
+# Force, (start, velocity there), and the motion at t = 3.
+CLOSED_FORMS = {
+    "Pulse": ("exp(-(time - 1)^2/1e-4)", (0, 0), lambda t: (mp.sqrt(mp.pi) / 100 * 2, mp.sqrt(mp.pi) / 100)),
+    "Friction": ("-0.5*tanh(v/0.01)", (0, 1), friction),
+    "Drag": ("-v*abs(v)", (0, 1), lambda t: (mp.log(1 + t), mp.mpf(1) / (1 + t))),
+    "DragByRoot": ("-v*sqrt(v^2)", (0, 1), lambda t: (mp.log(1 + t), mp.mpf(1) / (1 + t))),
+    "RootsOfSquares": ("-(x^2)^0.25*(x^2)^0.25", (1, 0), with_either_sign),
+    "TimeRoot": ("sqrt((time - 1)^2)", (0, 0), distance_from_one),
+    "Larger": ("max(time - 1, 1 - time)", (0, 0), distance_from_one),
+    "Triangle": ("acos(cos(time - 1))", (0, 0), distance_from_one),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    fmu.build_systems("hidden-systems", texts())
+
+
+def outcomes(instance, end, values=()):
+    for tolerance in TOLERANCES:
+        for steps in COMMUNICATION_STEPS:
+            instance.reset().initialize(values, tolerance)
+            instance.run(end, end / steps)
+            yield tolerance, instance.get("x"), instance.get("v")
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_nothing_is_walked_through(name, open_fmu):
+    """The particle turns, and is back at the start after twice the travel time, with the velocity -1."""
+    _, potential, start, top, width = WALLS[name]
+    turn = turning_point(potential, start, top)
+    marks = [start, *(turn - width * mp.mpf(2) ** k for k in range(12, -12, -2) if turn - width * 2**k > start), turn]
+    back = 2 * travel_time(potential, mp.mpf("0.5"), marks)
+    for tolerance, x, v in outcomes(open_fmu(name), float(back) + 1):
+        rounding = 1e-15 / width  # of x, in units of the width
+        assert x == pytest.approx(start - 1, abs=100 * tolerance + rounding)
+        assert v == pytest.approx(-1, abs=100 * tolerance + rounding)
+
+
+@pytest.mark.parametrize("n", [4, 8, 20])
+def test_powers_that_vanish_at_the_start(n, open_fmu):
+    """From x = 0 with v = 1 under U = x^n/n, five quarters of the period end at the amplitude."""
+    amplitude = (mp.mpf(n) / 2) ** (mp.mpf(1) / n)
+    quarter = travel_time(lambda x: x**n / n, mp.mpf("0.5"), [0, amplitude / 2, amplitude])
+    for tolerance, x, v in outcomes(open_fmu(f"Power{n}"), float(5 * quarter)):
+        assert x == pytest.approx(float(amplitude), abs=100 * tolerance)
+        assert v == pytest.approx(0, abs=100 * n * tolerance)
+
+
+@pytest.mark.parametrize("n", [6, 10])
+def test_powers_of_time_above_the_order(n, open_fmu):
+    for tolerance, x, v in outcomes(open_fmu(f"TimePower{n}"), 2.0):
+        assert x == pytest.approx(2 ** (n + 2) / (n + 1) / (n + 2), rel=100 * tolerance)
+        assert v == pytest.approx(2 ** (n + 1) / (n + 1), rel=100 * tolerance)
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_closed_forms(name, open_fmu):
+    exact = [float(value) for value in CLOSED_FORMS[name][2](3)]
+    for tolerance, x, v in outcomes(open_fmu(name), 3.0):
+        assert [x, v] == pytest.approx(exact, abs=100 * tolerance)
+
+
+def test_the_slope_of_a_potential_may_jump(open_fmu):
+    exact = [float(value) for value in on_springs(3)]
+    for tolerance, x, v in outcomes(open_fmu("RootPotential"), 3.0):
+        assert [x, v] == pytest.approx(exact, abs=100 * tolerance)
+
+
+def test_a_ball_rests_on_its_floor(open_fmu):
+    """It falls from 1 m on a contact of 1 cm and is back after twice the time of its fall."""
+    potential = lambda x: mp.mpf("9.81") * x + 100 * mp.log1p(mp.exp(-100 * x))
+    height = lambda depth: potential(-depth)
+    lowest = turning_point(lambda depth: height(depth) - height(-1) + mp.mpf("0.5"), -0.9, 1)
+    marks = [-1, -0.9, -0.5, -0.2, -0.1, -0.05, lowest - 0.01, lowest - 0.001, lowest]
+    back = 2 * mp.quad(lambda x: 1 / mp.sqrt(2 * abs(height(-1) - height(x))), marks)
+    for tolerance, x, v in outcomes(open_fmu("Ball"), float(back)):
+        assert x == pytest.approx(1, abs=100 * tolerance)
+        assert v == pytest.approx(0, abs=440 * tolerance), "it has fallen with 4.4 m/s"
+
+
+def test_a_polynomial_motion_takes_one_step(open_fmu):
+    instance = open_fmu("Throw").initialize(tolerance=1e-10)
+    rows = instance.run(10.0, 0.01, "x")
+    assert rows[-1][1] == pytest.approx(1 + 2 * 10 - 9.81 * 50, rel=1e-14)
+    assert instance.fmu.getInteger(instance.vr("solverSteps")) == [0], "the first series goes on"
+
+
+def test_a_whole_exponent_may_be_a_parameter(open_fmu):
+    """x^p at x = 0, from where the motion is that of U = x^4/4."""
+    quarter = travel_time(lambda x: x**4 / 4, mp.mpf("0.5"), [0, mp.mpf(2) ** mp.mpf("0.25")])
+    for tolerance, x, _ in outcomes(open_fmu("ParameterPower"), float(5 * quarter)):
+        assert x == pytest.approx(2**0.25, abs=100 * tolerance)
+
+
+def test_a_weak_pole_is_not_crossed(open_fmu):
+    """Energy: 1e-6 log(x) is missing 1/2 only below exp(-500000)."""
+    instance = open_fmu("WeakPole")
+    for tolerance in TOLERANCES:
+        for step in (3.0, 0.01):
+            instance.reset().initialize(tolerance=tolerance)
+            with instance.fails(DISCARD, "singularity"):
+                instance.run(3.0, step)
+            assert instance.fmu.getRealStatus(2) == pytest.approx(1, abs=1e-5)
+            assert 0 < instance.get("x") < 1e-5
+
+
+def test_friction_that_sticks_is_refused_by_name(open_fmu):
+    instance = open_fmu("Stick")
+    for tolerance in (1e-5, 1e-8, 1e-12):
+        instance.reset().initialize(tolerance=tolerance)
+        with instance.fails(DISCARD, "jumps to and fro.*sign"):
+            instance.run(3.0, 3.0)
+        assert instance.get("x") == pytest.approx(0.5, abs=100 * tolerance)
+
+
+def test_the_state_before_a_singularity_can_be_read_and_restored(open_fmu):
+    """log(1 - u) with u = t: the last good time lies before 1, and all that is saved there is finite."""
+    instance = open_fmu("LogOfInput").initialize(tolerance=1e-8)
+    instance.fmu.setRealInputDerivatives(instance.vr("u"), [1], [1.0])
+    with instance.fails(DISCARD, "singularity"):
+        instance.step(2.0)
+    last = instance.fmu.getRealStatus(2)
+    assert 1 - 1e-6 < last <= 1
+    assert instance.get("v") == pytest.approx(-1, abs=1e-5)
+    state = instance.fmu.getFMUstate()
+    data = instance.fmu.serializeFMUstate(state)
+    instance.free_state(state)
+    assert np.all(np.isfinite(np.frombuffer(data[len(data) % 8 :])[20:]))
