@@ -27,6 +27,7 @@ ROUNDING = 2.0**-52
 class Outcome:
     verdict: str  # agrees, refused, undecided, wrong
     message: str = ""
+    regular: bool = False  # the motion exists to the end and is known
     error: float = 0.0  # the largest, in units of its bound
     unavailable: list = field(default_factory=list)
     families: set = field(default_factory=set)
@@ -50,6 +51,7 @@ def judge_system(system, folder, time_limit=60):
         clock = now
 
     try:
+        folder.mkdir(parents=True, exist_ok=True)
         unpacked = compile_system(system, folder)
         lap("build")
         record = simulate_apart(system, unpacked, time_limit)
@@ -62,6 +64,7 @@ def judge_system(system, folder, time_limit=60):
         compare_points(derivation, record, outcome)
         lap("points")
         compare_motion(derivation, record, folder, outcome)
+        outcome.regular = True
         lap("motion")
         if record.refusal:
             raise Refused(record.refusal)
@@ -112,15 +115,14 @@ def compare_motion(derivation, record, folder, outcome):
     size = np.maximum(1.0, np.abs(exact))
     bound = FACTORS[system.method] * np.maximum(spread, tolerance * size) + 20 * doubt + 1e-15 * size
     path = np.maximum(1.0, np.ptp(exact, axis=0))
-    names = [c.name for c in system.coordinates] + [c.velocity for c in system.coordinates]
     decided = False
     for i, (row, time_) in enumerate(zip(record.rows, system.plan.times)):
-        for j, name in enumerate(names):
+        for j, name in enumerate(system.states):
             if not math.isfinite(row[j]):
                 raise Wrong(f"{name} is {row[j]} at {time_!r}")
             if bound[i, j] < HOPELESS * path[j]:
                 decided = decided or i > 0
-                note(outcome, f"{name} at {time_!r}", row[j], float(exact[i, j]), bound[i, j])
+                note(outcome, f"{name} at {time_!r}", row[j], float(exact[i, j]), float(bound[i, j]))
     if not decided and not record.refusal:
         raise Undecided("the system makes errors of the tolerance as large as its path")
 
@@ -143,7 +145,7 @@ def compare_point(derivation, exact, point, outcome):
     system, choose = derivation.system, random.Random(1)
     at = {"time": point.time, **dict(zip(exact.arguments[1:], point.state)), **point.parameters}
     at |= {name: coefficients[0] for name, coefficients in point.inputs.items()}
-    labels = [f"der({c.velocity})" for c in system.coordinates] + exact.names
+    labels = [*system.rates, *exact.names]
     when = f" at {point.time!r}"
 
     def check(what, ours, evaluate, extra, indices):
@@ -157,8 +159,7 @@ def compare_point(derivation, exact, point, outcome):
             note(outcome, what(i), value, right[i], 1e-10 * (abs(right[i]) + extra(i)) + 100 * spread + 1e-13)
 
     magnitudes = exact.magnitudes(at)
-    n = len(magnitudes)
-    extra = lambda i: magnitudes[i] if i < n else sum(magnitudes[:0]) + 1.0
+    extra = lambda i: magnitudes[i] if i < len(magnitudes) else 1.0
     known = [i for i, label in enumerate(labels) if label in point.values]
     check(lambda i: labels[i] + when, [point.values[labels[i]] for i in known], exact.values, extra, known)
     for knowns, seed, unknowns, values in point.directions:
@@ -171,7 +172,7 @@ def compare_point(derivation, exact, point, outcome):
 
 def compare_in_time(system, exact, point, at, outcome, labels, when, choose):
     highest = max(order for _, order in point.output_derivatives)
-    states = [c.name for c in system.coordinates] + [c.velocity for c in system.coordinates]
+    states = system.positions + system.velocities
     rows = states + exact.names
     right = exact.in_time(at, point.inputs, highest)
     shifted = [exact.in_time(moved(at, choose), point.inputs, highest) for _ in range(3)]

@@ -20,6 +20,7 @@ def generate(seed, number):
         nonlinear(draw)
     outputs(draw)
     actions(draw)
+    system.work = bool(system.forces or system.cartesian_forces or system.dissipations) and draw.chance(0.15)
     return system
 
 

@@ -108,7 +108,7 @@ def integrator():
 
 
 def compile_c(source, library, optimization):
-    words = ["gcc", optimization, "-std=c11", "-w", "-shared", "-fPIC", source, "-o", library, "-lm"]
+    words = ["gcc", optimization, "-std=gnu11", "-D_GNU_SOURCE", "-w", "-shared", "-fPIC", source, "-o", library, "-lm"]
     subprocess.run(list(map(str, words)), check=True)
 
 
@@ -126,9 +126,10 @@ def right_side_in_c(derivation):
     for i, u in enumerate(system.inputs):
         k = [f"k[{base + INPUT_COEFFICIENTS * i + order}]" for order in range(INPUT_COEFFICIENTS)]
         lines.append(f"real {u} = {k[0]} + s * ({k[1]} + s * ({k[2]} + s * {k[3]}));")
+    power = [sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
     printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
         name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
-    flat = [*mechanics.mass, *(sp.sympify(sum(terms)) for terms in mechanics.terms), *(operand for operand, _ in guards)]
+    flat = [*mechanics.mass, *(sp.sympify(sum(terms)) for terms in mechanics.terms), *power, *(operand for operand, _ in guards)]
     parts, results = sp.cse([sp.sympify(e).subs(sp.Symbol("time"), sp.Symbol("time_")) for e in flat],
                             symbols=sp.numbered_symbols("c"), optimizations=None)  # fmt: skip
     lines += [f"real {symbol} = {printer.doprint(part)};" for symbol, part in parts]
@@ -136,7 +137,9 @@ def right_side_in_c(derivation):
     lines.append(f"real m[] = {{{', '.join(texts[: n * n])}}}, x[] = {{{', '.join(texts[n * n : n * n + n])}}};")
     lines.append(f"solve({n}, m, x);")
     lines.append(f"for (int i = 0; i < {n}; i++) {{ d[i] = y[{n} + i]; d[{n} + i] = x[i]; }}")
-    for i, (text, (_, scale)) in enumerate(zip(texts[n * n + n :], guards)):
+    if system.work:
+        lines.append(f"d[{2 * n}] = {texts[n * n + n]};")
+    for i, (text, (_, scale)) in enumerate(zip(texts[n * n + n + len(power) :], guards)):
         lines.append(f"{{ real g = {text}; operand[{i}] = g; scale[{i}] = {scale}; }}")
     return "\n".join([*lines, "}", ""]), len(guards)
 
@@ -151,7 +154,7 @@ class Reference:
         source.write_text(code)
         compile_c(source, source.with_suffix(".so"), "-O1")
         self.right = ctypes.CDLL(str(source.with_suffix(".so"))).right
-        self.states = 2 * len(self.system.coordinates)
+        self.states = len(self.system.states)
 
     def trajectory(self, columns, tolerance, fraction, kick=None):
         """
@@ -159,10 +162,9 @@ class Reference:
         at least at twelve moments of the run. Raises Undecided.
         """
         system, plan = self.system, self.system.plan
-        start = [c.start for c in system.coordinates] + [c.velocity_start for c in system.coordinates]
-        state = (REAL * self.states)(*start)
+        state = (REAL * self.states)(*system.start)
         step, evaluations = REAL(plan.length / 1000), ctypes.c_long(0)
-        rows, parts = [start], max(1, 12 // len(plan.actions))
+        rows, parts = [system.start], max(1, 12 // len(plan.actions))
         for communication in course(system):
             constants = self._constants(communication)
             for moment, end in part(communication.time, communication.end, parts):

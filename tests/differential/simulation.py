@@ -59,10 +59,6 @@ class Record:
     wrong: str = None
 
 
-def names_of(instance, causality):
-    return [v.name for v in instance.description.modelVariables if v.causality == causality and v.type == "Real"]
-
-
 def try_call(record, instance, call):
     try:
         return call()
@@ -72,10 +68,9 @@ def try_call(record, instance, call):
 
 
 def read_point(record, instance, system, step, time):
-    states = [c.name for c in system.coordinates] + [c.velocity for c in system.coordinates]
-    rates = [f"der({c.velocity})" for c in system.coordinates]
-    results = [v.name for v in instance.description.modelVariables
-               if v.name not in states and v.causality in ("output", "local") and v.type == "Real" and not v.name.startswith("der(")]  # fmt: skip
+    states, rates = system.positions + system.velocities, system.rates
+    results = [v.name for v in instance.description.modelVariables if v.type == "Real" and v.name not in system.states
+               and v.causality in ("output", "local") and not v.name.startswith("der(")]  # fmt: skip
     inputs = {name: [value] for name, value in system.inputs.items()} if step is None else step.inputs_at_end()
     parameters = dict(system.parameters) if step is None else step.parameters
     values = try_call(record, instance, lambda: instance.fmu.getReal(instance.vr(*rates, *results)))
@@ -119,7 +114,7 @@ def take_step(record, instance, system, step, states):
 def simulate(system, folder, record):
     plan = system.plan
     instance = Built(folder)
-    states = instance.vr(*[c.name for c in system.coordinates], *[c.velocity for c in system.coordinates])
+    states = instance.vr(*system.states)
     selected = {round(i * (len(plan.actions) - 1) / (POINTS - 1)) for i in range(1, POINTS)}
     try:
         instance.initialize({}, plan.tolerance, start_time=plan.start_time)

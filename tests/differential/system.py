@@ -64,9 +64,31 @@ class System:
     cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
+    work: bool = False
     method: str = None
     families: set = field(default_factory=set)
     plan: Plan = None
+
+    @property
+    def positions(self):
+        return [c.name for c in self.coordinates]
+
+    @property
+    def velocities(self):
+        return [c.velocity for c in self.coordinates]
+
+    @property
+    def states(self):
+        return self.positions + self.velocities + (["nonConservativeWork"] if self.work else [])
+
+    @property
+    def rates(self):
+        return [f"der({v})" for v in self.velocities]
+
+    @property
+    def start(self):
+        states = [c.start for c in self.coordinates] + [c.velocity_start for c in self.coordinates]
+        return states + ([0.0] if self.work else [])
 
     def expressions(self):
         """All of which the motion is made."""
@@ -110,6 +132,8 @@ class System:
             add("force", on=body, **force)
         for name, expression in self.outputs.items():
             add("output", expression, name=name)
+        if self.work:
+            add("work")
         if self.method is not None:
             add("solver", method=self.method, tolerance=self.plan.tolerance)
         return "\n".join([*lines, "</system>", ""])
