@@ -19,6 +19,7 @@ from references import Motion
 
 SEED = 2026
 NUMBERS = range(40)
+SMOOTH = {"smooth_potential", "smooth_force", "smooth_dissipation", "cartesian_force", "definition", "time_function", "magnetic"}
 TIME_LIMIT = 300  # s; none needs more than some seconds
 
 
@@ -26,6 +27,7 @@ TIME_LIMIT = 300  # s; none needs more than some seconds
 def test_random_system(number, tmp_path):
     """A value that is off, a crash, a hang, or C that does not compile is wrong; a refusal has to have a message."""
     system = generate(SEED, number)
+    system.plan.unrolled = False  # takes long to compile; the FMUs of all other tests are
     outcome = judge_system(system, tmp_path, TIME_LIMIT)
     assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
@@ -95,8 +97,10 @@ def test_reference_agrees_with_taylor_series(tmp_path):
     compared = 0
     for number in range(60):
         system = generate(SEED, number)
-        narrow = system.families & {"wall", "soft_contact", "hill", "switch", "friction", "pulse", "kink", "disguised_kink", "circle", "inputs", "powers"}
-        if narrow or system.work or any(action.parameters for action in system.plan.actions):
+        # Motion knows neither kinks nor changes, and its atan2 has one branch.
+        if not system.families <= SMOOTH | {f for f in system.families if f.startswith("skeleton")}:
+            continue
+        if system.work or "atan2" in system.xml() or any(action.parameters for action in system.plan.actions):
             continue
         folder = tmp_path / str(number)
         folder.mkdir()

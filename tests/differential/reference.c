@@ -73,8 +73,7 @@ static real attempt(struct Run *run, real time, real h, const real *state, real 
     if (k == columns - 1) memcpy(lower, table[columns - 1], sizeof lower);
     for (int j = columns - 1; j >= k; j--) {
       real ratio = (real)(j + 1) / (j - k + 1);
-      for (int i = 0; i < run->states; i++)
-        table[j][i] += (table[j][i] - table[j - 1][i]) / (ratio * ratio - 1);
+      for (int i = 0; i < run->states; i++) table[j][i] += (table[j][i] - table[j - 1][i]) / (ratio * ratio - 1);
     }
   }
   for (int i = 0; i < run->states; i++) {
@@ -117,8 +116,15 @@ static enum Outcome follow(struct Run *run, real time, real end, real *state, re
 /* For Python: the outcome, and evaluations added to the count. */
 int integrate(Right right, int states, int guards, int columns, double tolerance, double fraction, double longest,
               double time, double end, real *state, const real *constant, real *step, long *evaluations, long limit) {
-  struct Run run = {.right = right, .states = states, .guards = guards, .columns = columns, .tolerance = tolerance,
-                    .fraction = fraction, .longest = longest, .evaluations = *evaluations, .limit = limit,
+  struct Run run = {.right = right,
+                    .states = states,
+                    .guards = guards,
+                    .columns = columns,
+                    .tolerance = tolerance,
+                    .fraction = fraction,
+                    .longest = longest,
+                    .evaluations = *evaluations,
+                    .limit = limit,
                     .constant = constant};
   enum Outcome outcome = follow(&run, time, end, state, step);
   *evaluations = run.evaluations;
