@@ -2,9 +2,9 @@
 
 import argparse
 import collections
-import json
 import multiprocessing
 import re
+import shutil
 import sys
 import tempfile
 import time
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from fmu import ROOT
 
-from .comparison import Outcome, clean, judge
+from .comparison import Outcome, judge
 from .generator import generate
 from .reference import integrator
 
@@ -30,7 +30,7 @@ def examine(task):
         outcome = Outcome("wrong", "the test itself: " + traceback.format_exc()[-1500:])
     if outcome.verdict == "wrong":
         leave(seed, number, folder, keep, outcome)
-    clean(folder)
+    shutil.rmtree(folder)
     return number, outcome
 
 

@@ -1,5 +1,7 @@
 """What is computed at one point, to 60 digits: accelerations, results, derivatives along directions and in time."""
 
+import functools
+
 import sympy as sp
 from flint import arb, arb_series
 
@@ -45,6 +47,23 @@ FUNCTIONS = references.FUNCTIONS | {
 }  # fmt: skip
 
 
+def or_nothing(function):
+    """Where FLINT refuses to divide series by 0, there is nothing to compare with."""
+
+    @functools.wraps(function)
+    def guarded(self, *arguments):
+        try:
+            return function(self, *arguments)
+        except ZeroDivisionError:
+            raise NoValue from None
+
+    return guarded
+
+
+class NoValue(Exception):
+    """The exact value does not exist at this point."""
+
+
 class Exact:
     """Values of one system at points."""
 
@@ -65,12 +84,14 @@ class Exact:
         mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
         return solve(mass, numbers[n * n : n * n + n]), numbers[n * n + n :]
 
+    @or_nothing
     def values(self, at):
         """{der(v): value, result: value}, from numbers by name."""
         with precision(DIGITS, 1):
             accelerations, results = self._split(self.evaluate(*[arb(at[name]) for name in self.arguments]))
             return [float(coefficient(x, 0)) for x in [*accelerations, *results]]
 
+    @or_nothing
     def magnitudes(self, at):
         """Of the terms that cancel in the accelerations."""
         n = self.n
@@ -83,6 +104,7 @@ class Exact:
             columns = [solve(mass, [arb(i == j) for i in range(n)]) for j in range(n)]
             return [sum(abs(float(columns[j][i])) * sizes[j] for j in range(n)) for i in range(n)]
 
+    @or_nothing
     def along(self, at, direction):
         """The derivative of values() along {name: part}."""
         with precision(DIGITS, 2):
@@ -90,6 +112,7 @@ class Exact:
             accelerations, results = self._split(self.evaluate(*arguments))
             return [float(coefficient(x, 1)) for x in [*accelerations, *results]]
 
+    @or_nothing
     def in_time(self, at, inputs, order):
         """Rows of the coordinates, velocities and results: derivatives 0..order; inputs: coefficients by name."""
         n = self.n
