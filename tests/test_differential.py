@@ -19,7 +19,15 @@ from references import Motion
 
 SEED = 2026
 NUMBERS = range(40)
-SMOOTH = {"smooth_potential", "smooth_force", "smooth_dissipation", "cartesian_force", "definition", "time_function", "magnetic"}
+SMOOTH = {
+    "smooth_potential",
+    "smooth_force",
+    "smooth_dissipation",
+    "cartesian_force",
+    "definition",
+    "time_function",
+    "magnetic",
+}
 TIME_LIMIT = 300  # s; none needs more than some seconds
 
 
@@ -89,7 +97,9 @@ def test_reference_sees_a_kink(tmp_path):
     """q'' = -|q| from q = 0 at 1 m/s: a sine until pi, and from there a hyperbolic sine."""
     (q, v), doubt = follow(oscillator(-absolute(name("q1")), start=(0.0, 1.0), length=5.0), tmp_path)
     assert doubt < 1e-13
-    assert q == pytest.approx(-math.sinh(5 - math.pi), rel=1e-14) and v == pytest.approx(-math.cosh(5 - math.pi), rel=1e-14)
+    assert q == pytest.approx(-math.sinh(5 - math.pi), rel=1e-14) and v == pytest.approx(
+        -math.cosh(5 - math.pi), rel=1e-14
+    )
 
 
 def test_reference_agrees_with_taylor_series(tmp_path):

@@ -41,7 +41,9 @@ def leave(seed, number, folder, keep, outcome):
     system = generate(seed, number)
     (place / "system.xml").write_text(system.xml())
     command = f"scripts/differential --seed {seed} --only {number}"
-    (place / "README").write_text(f"{outcome.message}\n\nfamilies: {', '.join(sorted(system.families))}\nplan: {system.plan}\n\n{command}\n")
+    (place / "README").write_text(
+        f"{outcome.message}\n\nfamilies: {', '.join(sorted(system.families))}\nplan: {system.plan}\n\n{command}\n"
+    )
 
 
 def general(message):
@@ -62,7 +64,11 @@ def report(outcomes, seconds):
     for message, count in unavailable.most_common(10):
         print(f"  no derivative {count:5}  {message}")
     errors = sorted(o.error for o in outcomes.values() if o.verdict == "agrees") or [0.0]
-    print("errors in units of their bounds: " + ", ".join(f"{errors[int(p * (len(errors) - 1))]:.2g}" for p in (0.5, 0.9, 0.99, 1)) + " (50, 90, 99, 100 %)")
+    print(
+        "errors in units of their bounds: "
+        + ", ".join(f"{errors[int(p * (len(errors) - 1))]:.2g}" for p in (0.5, 0.9, 0.99, 1))
+        + " (50, 90, 99, 100 %)"
+    )
     print(f"\n{'family':28}" + "".join(f"{v:>11}" for v in VERDICTS))
     for family in sorted({f for o in outcomes.values() for f in o.families}):
         row = collections.Counter(o.verdict for o in outcomes.values() if family in o.families)
@@ -73,13 +79,17 @@ def report(outcomes, seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/differential", description="Random systems against an independent truth")
+    parser = argparse.ArgumentParser(
+        prog="scripts/differential", description="Random systems against an independent truth"
+    )
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0, help="number of the first system")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", type=int, help="one system by its number")
-    parser.add_argument("--keep", type=Path, default=ROOT / "build" / "differential", help="where wrong systems are left")
+    parser.add_argument(
+        "--keep", type=Path, default=ROOT / "build" / "differential", help="where wrong systems are left"
+    )
     words = parser.parse_args()
     integrator()
     numbers = [words.only] if words.only is not None else range(words.first, words.first + words.count)

@@ -150,7 +150,13 @@ def compare_point(derivation, exact, point, outcome):
     for knowns, seed, unknowns, values in point.directions:
         direction = dict(zip(knowns, seed))
         what = lambda i: f"the derivative of {labels[i]} along {direction}" + when
-        check(what, values, lambda place: exact.along(place, direction), lambda i: 1.0 + max(magnitudes), [labels.index(u) for u in unknowns])
+        check(
+            what,
+            values,
+            lambda place: exact.along(place, direction),
+            lambda i: 1.0 + max(magnitudes),
+            [labels.index(u) for u in unknowns],
+        )
     if point.output_derivatives:
         compare_in_time(system, exact, point, at, outcome, labels, when, choose)
 

@@ -76,7 +76,9 @@ class Exact:
         with precision(DIGITS, 1):
             functions = FUNCTIONS | {"pi": arb.pi()}
         self.evaluate = sp.lambdify(mechanics.arguments, flat, modules=[functions, "mpmath"], cse=True)
-        self.evaluate_terms = sp.lambdify(mechanics.arguments, [*mechanics.mass, *terms], modules=[functions, "mpmath"], cse=True)
+        self.evaluate_terms = sp.lambdify(
+            mechanics.arguments, [*mechanics.mass, *terms], modules=[functions, "mpmath"], cse=True
+        )
 
     def _split(self, numbers):
         """Accelerations and results."""
@@ -100,7 +102,10 @@ class Exact:
             mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
             width = (len(numbers) - n * n) // n
             rows = [numbers[n * n + i * width : n * n + (i + 1) * width] for i in range(n)]
-            sizes = [sum(abs(float(coefficient(arb(term) if not isinstance(term, arb_series) else term, 0))) for term in row) for row in rows]
+            sizes = [
+                sum(abs(float(coefficient(arb(term) if not isinstance(term, arb_series) else term, 0))) for term in row)
+                for row in rows
+            ]
             columns = [solve(mass, [arb(i == j) for i in range(n)]) for j in range(n)]
             return [sum(abs(float(columns[j][i])) * sizes[j] for j in range(n)) for i in range(n)]
 

@@ -62,7 +62,7 @@ class Raised(sp.Function):
 
 
 def raised(base, exponent):
-    return base**exponent if exponent.is_number else Raised(base, exponent)
+    return base ** exponent if exponent.is_number else Raised(base, exponent)
 
 
 FUNCTIONS = {

@@ -163,7 +163,14 @@ def switch(draw):
 def friction(draw):
     c, _, v = any_coordinate(draw)
     w, width = draw.width(1e-4)
-    form = draw.choice([tanh(v / width), v / sqrt(v**2 + width**2), atan(v / width), tanh(v / width) * (1 + 0.3 * exp(-((v / (10 * width)) ** 2)))])
+    form = draw.choice(
+        [
+            tanh(v / width),
+            v / sqrt(v**2 + width**2),
+            atan(v / width),
+            tanh(v / width) * (1 + 0.3 * exp(-((v / (10 * width)) ** 2))),
+        ]
+    )
     draw.system.forces.append((c.name, -(draw.quantity(0.1, 1) * form)))
 
 
@@ -171,7 +178,14 @@ def pulse(draw):
     c, q, _ = any_coordinate(draw)
     w, width = draw.width()
     argument = (time - moment(draw)) / width
-    form = draw.choice([exp(-(argument**2)), 1 + tanh(argument), 1 / cosh(argument) ** 2 if w > 0.01 else exp(-(argument**2)), exp(-(argument**4))])
+    form = draw.choice(
+        [
+            exp(-(argument**2)),
+            1 + tanh(argument),
+            1 / cosh(argument) ** 2 if w > 0.01 else exp(-(argument**2)),
+            exp(-(argument**4)),
+        ]
+    )
     draw.system.forces.append((c.name, draw.quantity(-3, 3) * form))
 
 
@@ -198,7 +212,10 @@ def kink(draw):
     forms = [absolute(q), minimum(q, place), maximum(0, q - place), v * absolute(v), absolute(sin(q)), maximum(q, -q), minimum(1, q**2),
              absolute(time - moment(draw)), sign(q - place), sign(time - moment(draw)), maximum(0, sin(3 * time)), minimum(v, 0.5)]  # fmt: skip
     if draw.chance(0.3):
-        draw.system.potentials.append(draw.quantity(0.2, 2) * draw.choice([absolute(q - place), maximum(0, place - q) ** 2, q * absolute(q), absolute(q) ** 3]))
+        draw.system.potentials.append(
+            draw.quantity(0.2, 2)
+            * draw.choice([absolute(q - place), maximum(0, place - q) ** 2, q * absolute(q), absolute(q) ** 3])
+        )
     else:
         draw.system.forces.append((c.name, -(draw.quantity(0.2, 1) * draw.choice(forms))))
 
@@ -217,7 +234,12 @@ def powers(draw):
     elif form == 2:
         draw.system.forces.append((c.name, draw.quantity(-0.5, 0.5) * sin(q) ** exponent))
     elif form == 3:
-        draw.system.potentials.append(draw.quantity(0.1, 1) * draw.choice([power, lambda a, b: a**b])(cosh(q / 3), draw.choice([-exponent, node(0.3), node(-0.7), node(1.7), exponent / 3])))
+        draw.system.potentials.append(
+            draw.quantity(0.1, 1)
+            * draw.choice([power, lambda a, b: a**b])(
+                cosh(q / 3), draw.choice([-exponent, node(0.3), node(-0.7), node(1.7), exponent / 3])
+            )
+        )
     elif form == 4:
         draw.system.potentials.append(draw.quantity(0.05, 0.5) * (2 + sin(q)) ** -node(draw.whole(1, 6)))
     elif form == 5:
@@ -234,7 +256,13 @@ def magnetic(draw):
     if len(q) == 1:
         draw.system.potentials.append(strength * sin(q[0]) * v[0] * draw.choice([node(1), time, cos(time)]))
         return
-    forms = [q[0] * v[1] - q[1] * v[0], sin(q[0]) * v[1], q[1] ** 2 * v[0] / 2, time * q[0] * v[1], tanh(q[0] * q[1]) * v[1]]
+    forms = [
+        q[0] * v[1] - q[1] * v[0],
+        sin(q[0]) * v[1],
+        q[1] ** 2 * v[0] / 2,
+        time * q[0] * v[1],
+        tanh(q[0] * q[1]) * v[1],
+    ]
     draw.system.potentials.append(strength * draw.choice(forms))
 
 

@@ -91,7 +91,9 @@ def outputs(draw):
     for i in range(draw.whole(0, 2)):
         system.outputs[f"y{i + 1}"] = smooth(draw, knowns, draw.whole(1, 3))
     if draw.chance(0.3):
-        system.outputs["rate"] = function("der", draw.choice([sin, cos])(draw.choice(positions)) * draw.choice(positions))
+        system.outputs["rate"] = function(
+            "der", draw.choice([sin, cos])(draw.choice(positions)) * draw.choice(positions)
+        )
 
 
 def actions(draw):
@@ -102,6 +104,8 @@ def actions(draw):
     if tunable and len(steps) > 1 and draw.chance(0.3):
         for _ in range(draw.whole(1, 3)):
             changed = draw.choice(tunable)
-            draw.choice(steps[1:]).parameters[changed] = float(f"{system.parameters[changed] * draw.value(0.7, 1.4):.4g}")
+            draw.choice(steps[1:]).parameters[changed] = float(
+                f"{system.parameters[changed] * draw.value(0.7, 1.4):.4g}"
+            )
     if draw.chance(0.4):
         draw.choice(steps).rewind = True

@@ -116,7 +116,11 @@ def right_side_in_c(derivation):
     mechanics, guards = derivation.mechanics, guards_of(derivation)
     n = len(mechanics.q)
     system = derivation.system
-    lines = [PRELUDE, "void right(real t, const real *y, const real *k, real *d, real *operand, real *scale) {", "real time_ = t;"]
+    lines = [
+        PRELUDE,
+        "void right(real t, const real *y, const real *k, real *d, real *operand, real *scale) {",
+        "real time_ = t;",
+    ]
     for i, s in enumerate([*mechanics.q, *mechanics.v]):
         lines.append(f"real {s} = y[{i}];")
     for i, p in enumerate(system.parameters):
@@ -129,7 +133,12 @@ def right_side_in_c(derivation):
     power = [sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
     printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
         name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
-    flat = [*mechanics.mass, *(sp.sympify(sum(terms)) for terms in mechanics.terms), *power, *(operand for operand, _ in guards)]
+    flat = [
+        *mechanics.mass,
+        *(sp.sympify(sum(terms)) for terms in mechanics.terms),
+        *power,
+        *(operand for operand, _ in guards),
+    ]
     parts, results = sp.cse([sp.sympify(e).subs(sp.Symbol("time"), sp.Symbol("time_")) for e in flat],
                             symbols=sp.numbered_symbols("c"), optimizations=None)  # fmt: skip
     lines += [f"real {symbol} = {printer.doprint(part)};" for symbol, part in parts]

@@ -76,20 +76,28 @@ def read_point(record, instance, system, step, time):
     values = try_call(record, instance, lambda: instance.fmu.getReal(instance.vr(*rates, *results)))
     if values is None:
         return
-    point = Point(time, instance.fmu.getReal(instance.vr(*states)), parameters, inputs, dict(zip(rates + results, values)))
+    point = Point(
+        time, instance.fmu.getReal(instance.vr(*states)), parameters, inputs, dict(zip(rates + results, values))
+    )
     record.points.append(point)
     choose = random.Random(f"{system.name} {time}")
     outputs = [*rates, *system.outputs]
     for knowns in (states, list(parameters), list(inputs)):
         if knowns:
             seed = [choose.uniform(-1, 1) for _ in knowns]
-            along = try_call(record, instance, lambda: instance.fmu.getDirectionalDerivative(instance.vr(*outputs), instance.vr(*knowns), seed))
+            along = try_call(
+                record,
+                instance,
+                lambda: instance.fmu.getDirectionalDerivative(instance.vr(*outputs), instance.vr(*knowns), seed),
+            )
             if along is not None:
                 point.directions.append((knowns, seed, outputs, along))
     highest = int(instance.description.coSimulation.maxOutputDerivativeOrder or 0)
     for name in [*states, *system.outputs]:
         for order in range(1, min(ORDERS, highest) + 1):
-            derivative = try_call(record, instance, lambda: instance.fmu.getRealOutputDerivatives(instance.vr(name), [order])[0])
+            derivative = try_call(
+                record, instance, lambda: instance.fmu.getRealOutputDerivatives(instance.vr(name), [order])[0]
+            )
             if derivative is not None:
                 point.output_derivatives[name, order] = derivative
 

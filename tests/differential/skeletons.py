@@ -113,4 +113,17 @@ def growing_mass(draw):
     draw.system.kinetic.append((1 + 0.3 * sin(time)) * v**2 / 2)
 
 
-SKELETONS = [cartesian, cartesian, curvilinear, polar, pendulum, cart, double_pendulum, spherical, rigid_body, hinged_body, kinetic, growing_mass]
+SKELETONS = [
+    cartesian,
+    cartesian,
+    curvilinear,
+    polar,
+    pendulum,
+    cart,
+    double_pendulum,
+    spherical,
+    rigid_body,
+    hinged_body,
+    kinetic,
+    growing_mass,
+]

@@ -114,7 +114,13 @@ class System:
         for name, value in self.inputs.items():
             add("input", name=name, start=repr(value))
         for c in self.coordinates:
-            add("coordinate", name=c.name, velocity=c.velocity, start=repr(c.start), velocityStart=repr(c.velocity_start))
+            add(
+                "coordinate",
+                name=c.name,
+                velocity=c.velocity,
+                start=repr(c.start),
+                velocityStart=repr(c.velocity_start),
+            )
         for body in self.bodies:
             if body.angle is None:
                 add("particle", name=body.name, mass=body.mass, **body.position)
