@@ -55,20 +55,18 @@ def report(outcomes, seconds):
     counts = collections.Counter(o.verdict for o in outcomes.values())
     print(f"\n{len(outcomes)} systems in {seconds:.0f} s: " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS))
     for verdict, regular in (("refused", True), ("refused", False), ("undecided", False)):
-        messages = collections.Counter(
-            general(o.message) for o in outcomes.values() if o.verdict == verdict and o.regular == regular
-        )
-        for message, count in messages.most_common(25):
-            print(f"  {verdict}{' though regular' if regular else '':16}{count:5}  {message}")
+        chosen = {n: general(o.message) for n, o in outcomes.items() if o.verdict == verdict and o.regular == regular}
+        for message, count in collections.Counter(chosen.values()).most_common(25):
+            example = min(number for number, text in chosen.items() if text == message)
+            print(f"  {verdict}{' though regular' if regular else '':15}{count:5}  {message} (--only {example})")
     unavailable = collections.Counter(general(m) for o in outcomes.values() for m in o.unavailable)
     for message, count in unavailable.most_common(10):
         print(f"  no derivative {count:5}  {message}")
-    errors = sorted(o.error for o in outcomes.values() if o.verdict == "agrees") or [0.0]
-    print(
-        "errors in units of their bounds: "
-        + ", ".join(f"{errors[int(p * (len(errors) - 1))]:.2g}" for p in (0.5, 0.9, 0.99, 1))
-        + " (50, 90, 99, 100 %)"
-    )
+    errors = sorted((o.error, number) for number, o in outcomes.items() if o.verdict == "agrees")
+    if errors:
+        parts = [f"{errors[int(share * (len(errors) - 1))][0]:.2g}" for share in (0.5, 0.9, 0.99)]
+        print(f"errors in units of their bounds: {', '.join(parts)} (half, 90 %, 99 % of those that agree)")
+        print("next to wrong: " + ", ".join(f"--only {number} ({error:.2g})" for error, number in errors[:-6:-1]))
     print(f"\n{'family':28}" + "".join(f"{v:>11}" for v in VERDICTS))
     for family in sorted({f for o in outcomes.values() for f in o.families}):
         row = collections.Counter(o.verdict for o in outcomes.values() if family in o.families)
