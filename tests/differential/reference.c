@@ -26,7 +26,7 @@ struct Run {
 
 enum Outcome { DONE, TOO_LONG, NOT_FINITE };
 
-/* Evaluates; false where an operand has gone too far from where the step began, or is not finite. */
+/* Evaluates; false where an operand has gone too far from where the step began; 1 + exp(...) may stay infinite. */
 static bool evaluate(struct Run *run, real time, const real *state, real *derivative, bool guarded) {
   real operand[GUARDS], scale[GUARDS];
   run->right(time, state, run->constant, derivative, operand, scale);
@@ -34,7 +34,8 @@ static bool evaluate(struct Run *run, real time, const real *state, real *deriva
   for (int i = 0; i < run->states; i++)
     if (!isfinite(derivative[i])) return false;
   for (int i = 0; guarded && i < run->guards; i++)
-    if (!(fabsl(operand[i] - run->operand[i]) <= run->fraction * run->scale[i])) return false;
+    if (operand[i] != run->operand[i] && !(fabsl(operand[i] - run->operand[i]) <= run->fraction * run->scale[i]))
+      return false;
   return true;
 }
 
