@@ -15,9 +15,24 @@ def leading(x):
     return x[0] if isinstance(x, arb_series) else arb(x)
 
 
+NOTHING = arb("nan")  # what is read at a kink is one-sided, and not compared
+
+
 def sign(x):
     value = leading(x)
-    return arb(1) if value > 0 else arb(-1) if value < 0 else arb(0)
+    return arb(1) if value > 0 else arb(-1) if value < 0 else NOTHING
+
+
+def absolute(x):
+    return arb(0) if not isinstance(x, arb_series) and leading(x) == 0 else sign(x) * x
+
+
+def less(a, b):
+    return (1 - sign(a - b)) / 2
+
+
+def minimum(a, b):
+    return (a + b - absolute(a - b)) / 2
 
 
 def atan2(y, x):
@@ -41,9 +56,8 @@ def tanh(x):
 
 
 FUNCTIONS = references.FUNCTIONS | {
-    "atan2": atan2, "tanh": tanh, "Sign": sign, "sign": sign, "Absolute": lambda x: sign(x) * x, "Abs": lambda x: sign(x) * x,
-    "Less": lambda a, b: arb(1) if leading(a) < leading(b) else arb(0), "Minimum": lambda a, b: a if leading(a) < leading(b) else b,
-    "Maximum": lambda a, b: b if leading(a) < leading(b) else a, "Raised": lambda a, b: a**b,
+    "atan2": atan2, "tanh": tanh, "Sign": sign, "sign": sign, "Absolute": absolute, "Abs": absolute, "Less": less,
+    "Minimum": minimum, "Maximum": lambda a, b: -minimum(-a, -b), "Raised": lambda a, b: a**b,
 }  # fmt: skip
 
 

@@ -16,12 +16,20 @@ class Kinked(sp.Function):
 class Sign(Kinked):
     nargs = 1
 
+    @classmethod
+    def eval(cls, x):
+        return sp.sign(x) if x.is_number else None
+
     def fdiff(self, argindex=1):
         return sp.Integer(0)
 
 
 class Absolute(Kinked):
     nargs = 1
+
+    @classmethod
+    def eval(cls, x):
+        return sp.Abs(x) if x.is_number else None
 
     def fdiff(self, argindex=1):
         return Sign(self.args[0])
@@ -39,12 +47,20 @@ class Less(Kinked):
 class Minimum(Kinked):
     nargs = 2
 
+    @classmethod
+    def eval(cls, a, b):
+        return sp.Min(a, b) if a.is_number and b.is_number else None
+
     def fdiff(self, argindex=1):
         return Less(*self.args) if argindex == 1 else 1 - Less(*self.args)
 
 
 class Maximum(Kinked):
     nargs = 2
+
+    @classmethod
+    def eval(cls, a, b):
+        return sp.Max(a, b) if a.is_number and b.is_number else None
 
     def fdiff(self, argindex=1):
         return 1 - Less(*self.args) if argindex == 1 else Less(*self.args)

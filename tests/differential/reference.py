@@ -130,7 +130,9 @@ def right_side_in_c(derivation):
     for i, u in enumerate(system.inputs):
         k = [f"k[{base + INPUT_COEFFICIENTS * i + order}]" for order in range(INPUT_COEFFICIENTS)]
         lines.append(f"real {u} = {k[0]} + s * ({k[1]} + s * ({k[2]} + s * {k[3]}));")
-    power = [sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
+    power = (
+        [derivation.driven_power + sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
+    )
     printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
         name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
     flat = [
