@@ -2,10 +2,13 @@
 
 import copy
 import math
+import os
+import signal
 
 import numpy as np
 import pytest
 
+from differential import simulation
 from differential.build import Wrong
 from differential.comparison import judge_system
 from differential.derivation import Derivation
@@ -72,6 +75,13 @@ def test_wrong_results_are_found(tmp_path):
     right.xml = stiffer.xml
     outcome = judge_system(right, tmp_path / "wrong")
     assert outcome.verdict == "wrong" and "der(v1) at 0.0" in outcome.message
+
+
+@pytest.mark.parametrize("fate, message", [(os.abort, "ended with -6"), (signal.pause, "runs for more than 1 s")])
+def test_crashes_and_hangs_are_found(fate, message, tmp_path, monkeypatch):
+    monkeypatch.setattr(simulation, "simulate", lambda *arguments: fate())
+    with pytest.raises(Wrong, match=message):
+        simulation.simulate_apart(oscillator(), tmp_path, 1)
 
 
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])

@@ -8,7 +8,6 @@ from .draw import (
     sinh, smooth, sqrt, tan, tanh,
 )  # fmt: skip
 from .expressions import name, node
-from .system import Action
 
 time = name("time")
 
