@@ -68,7 +68,7 @@ def or_nothing(function):
     def guarded(self, *arguments):
         try:
             return function(self, *arguments)
-        except ZeroDivisionError:
+        except (ZeroDivisionError, ValueError):
             raise NoValue from None
 
     return guarded
