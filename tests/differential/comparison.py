@@ -94,13 +94,13 @@ def kicks(seed, tolerance):
 def compare_motion(derivation, record, folder, outcome):
     system = derivation.system
     reference = Reference(derivation, folder)
-    exact = reference.trajectory(8, 1e-17, 0.5)
-    other = reference.trajectory(6, 3e-16, 0.3)
+    exact = reference.trajectory(7, 1e-16, 0.5)
+    other = reference.trajectory(5, 1e-15, 0.3)
     doubt = np.abs(exact - other)
     tolerance = max(system.plan.tolerance, 1e-14)
     spread = np.zeros_like(exact)
     for seed in range(KICKS):
-        spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-16, 0.5, kicks(seed, tolerance)) - exact))
+        spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-15, 0.5, kicks(seed, tolerance)) - exact))
     # Three differences may all be near 0 at a moment, so that neighbours in time count too.
     spread = np.array([spread[max(0, i - 3) : i + 4].max(axis=0) for i in range(len(spread))])
     size = np.maximum(1.0, np.abs(exact))
