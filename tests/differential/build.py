@@ -1,0 +1,73 @@
+"""From system.xml to a loaded FMU: lagc, and one call of a C compiler with the flags of CMakeLists.txt."""
+
+import functools
+import re
+import shutil
+import subprocess
+
+import fmpy
+
+import fmu
+from fmu import BUILD, ROOT
+
+WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-parameter".split()
+TIME_LIMIT = 300  # s, for one program
+
+
+class Refused(Exception):
+    """By lagc, with a line; or by the FMU, with a message."""
+
+
+class Wrong(Exception):
+    """What must not happen."""
+
+
+@functools.cache
+def runtime():
+    """Object files and libraries that every FMU is linked with."""
+    cache = (BUILD / "CMakeCache.txt").read_text()
+    sundials = re.findall(r"^sundials_\w+:FILEPATH=(.*)$", cache, re.MULTILINE)
+    objects = sorted((BUILD / "CMakeFiles" / "interface.dir").rglob("*.o"))
+    assert objects and sundials, f"{BUILD} is not built"
+    return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials, "-Wl,--end-group", "-lm"]
+
+
+def run(words, what):
+    try:
+        return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=TIME_LIMIT)
+    except subprocess.TimeoutExpired as error:
+        raise Wrong(f"{what} takes more than {TIME_LIMIT} s") from error
+
+
+def compile_system(system, folder):
+    """The folder of the unpacked FMU."""
+    source = folder / "system.xml"
+    source.write_text(system.xml())
+    target = folder / "fmu"
+    result = run([fmu.LAGC, source, "-o", target], "lagc")
+    if result.returncode == 1 and re.search(r"system\.xml(:\d+)?: \S", result.stderr):
+        raise Refused("lagc: " + re.sub(r"^.*?system\.xml(:\d+)?: ", "", result.stderr.splitlines()[0]))
+    if result.returncode != 0:
+        raise Wrong(f"lagc ends with {result.returncode}: {result.stderr[:500]}")
+    library = target / "binaries" / "linux64" / f"{system.name}.so"
+    library.parent.mkdir(parents=True)
+    plan = system.plan
+    speed = ["-O2"] if plan.unrolled else ["-O1", "-DSERIES_ROLLED"]
+    words = [plan.compiler, *speed, *WARNINGS, "-std=gnu11", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-shared",
+             f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(), "-Wl,--exclude-libs,ALL",
+             f"-Wl,--version-script={ROOT}/src/runtime/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
+    result = run(words, plan.compiler)
+    if result.returncode != 0:
+        raise Wrong(f"C that {plan.compiler} refuses: {result.stderr[:1000]}")
+    return pack(system, folder, library) if plan.packed else target
+
+
+def pack(system, folder, library):
+    """As users get it: packed, and unpacked by FMPy."""
+    archive = folder / f"{system.name}.fmu"
+    words = ["cmake", "-D", f"FOLDER={folder / 'fmu'}", "-D", f"LIBRARY={library}", "-D", f"FMU={archive}", "-D", f"SOURCE={ROOT}",
+             "-D", f"ICON={BUILD / 'bin' / 'icon'}", "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
+    result = run(words, "pack.cmake")
+    if result.returncode != 0:
+        raise Wrong(f"pack.cmake: {result.stderr[:1000]}")
+    return fmpy.extract(str(archive), str(folder / "unpacked"))

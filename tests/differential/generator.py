@@ -1,0 +1,112 @@
+"""The system that belongs to a seed and a number."""
+
+from .draw import Draw, cos, sin, smooth
+from .expressions import function, name
+from .families import FAMILIES, inputs
+from .skeletons import SKELETONS, coordinate, body
+from .system import Action, Plan, System
+
+LIMIT = 4  # coordinates
+TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-6, 1e-8, 1e-8, 1e-10, 1e-10, 1e-12, 1e-13]
+
+
+def generate(seed, number):
+    system = System(f"Random{number}")
+    draw = Draw(f"{seed}/{number}", system)
+    system.plan = plan(draw)
+    if draw.chance(0.07):
+        linear(draw)
+    else:
+        nonlinear(draw)
+    outputs(draw)
+    actions(draw)
+    forces = system.forces or system.cartesian_forces or system.dissipations
+    system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # work is not linear in the state
+    return system
+
+
+def plan(draw):
+    steps = draw.choice([1, 1, 3, 10, 10, 40, 100])
+    start = draw.choice([0.0, 0.0, 0.0, 1.0, -2.0, 100.0])
+    length = draw.choice([0.5, 1.0, 2.0, 5.0, 5.0, 10.0])
+    return Plan(start, length, [Action() for _ in range(steps)], draw.choice(TOLERANCES), packed=draw.chance(0.05),
+                compiler=draw.choice(["gcc", "gcc", "gcc", "clang"]), unrolled=draw.chance(0.03))  # fmt: skip
+
+
+def nonlinear(draw):
+    system = draw.system
+    skeleton = draw.choice(SKELETONS)
+    skeleton(draw)
+    system.families.add(f"skeleton {skeleton.__name__}")
+    while len(system.coordinates) < LIMIT and draw.chance(0.1):
+        extra(draw)
+    for c in system.coordinates:
+        if draw.chance(0.8):
+            system.potentials.append(draw.quantity(0.5, 8) * name(c.name) ** 2 / 2)
+    weights = dict(FAMILIES)
+    for _ in range(draw.choice([0, 1, 1, 1, 2, 2, 3])):
+        family = draw.weighted(weights)
+        del weights[family]
+        family(draw)
+        system.families.add(family.__name__)
+    kinks = {"kink", "disguised_kink"} & system.families
+    system.method = draw.choice([None] * 5 + (["erk", "bdf"] if kinks else ["taylor", "taylor", "erk", "bdf"]))
+
+
+def extra(draw):
+    """A mass that a spring couples to another coordinate."""
+    other = name(draw.choice(draw.system.coordinates).name)
+    q, _ = coordinate(draw)
+    body(draw, x=q)
+    draw.system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
+
+
+def linear(draw):
+    """For the method exact: springs, viscous friction, constant forces, inputs."""
+    system = draw.system
+    system.families.add("linear")
+    for _ in range(draw.whole(1, LIMIT)):
+        q, v = coordinate(draw)
+        body(draw, x=q)
+        system.potentials.append(draw.quantity(0.5, 30) * q**2 / 2)
+        if draw.chance(0.5):
+            system.dissipations.append(draw.quantity(0.05, 3) * v**2 / 2)
+    q = [name(c.name) for c in system.coordinates]
+    for a, b in zip(q, q[1:]):
+        system.potentials.append(draw.quantity(0.5, 8) * (a - b) ** 2 / 2)
+    if draw.chance(0.5):
+        system.forces.append((system.coordinates[0].name, draw.quantity(-2, 2)))
+    if draw.chance(0.5):
+        inputs(draw)
+        system.dissipations = [d for d in system.dissipations if "u1" not in str(d)]
+        system.forces = [(c, f) for c, f in system.forces if "u1" not in str(f)]
+        system.forces.append((system.coordinates[-1].name, draw.quantity(0.5, 2) * name("u1")))
+    system.method = "exact"
+
+
+def outputs(draw):
+    system = draw.system
+    positions = [name(c.name) for c in system.coordinates]
+    velocities = [name(c.velocity) for c in system.coordinates]
+    knowns = [*positions, *velocities, name("time"), *map(name, system.inputs)]
+    for i in range(draw.whole(0, 2)):
+        system.outputs[f"y{i + 1}"] = smooth(draw, knowns, draw.whole(1, 3))
+    if draw.chance(0.3):
+        system.outputs["rate"] = function(
+            "der", draw.choice([sin, cos])(draw.choice(positions)) * draw.choice(positions)
+        )
+
+
+def actions(draw):
+    """Parameters that change during the run, and steps that are taken twice."""
+    system = draw.system
+    tunable = [p for p in system.parameters if p not in system.fixed]
+    steps = system.plan.actions
+    if tunable and len(steps) > 1 and draw.chance(0.3):
+        for _ in range(draw.whole(1, 3)):
+            changed = draw.choice(tunable)
+            draw.choice(steps[1:]).parameters[changed] = float(
+                f"{system.parameters[changed] * draw.value(0.7, 1.4):.4g}"
+            )
+    if draw.chance(0.4):
+        draw.choice(steps).rewind = True

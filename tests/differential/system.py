@@ -1,0 +1,185 @@
+"""A random system, how it is written as system.xml, and how it is run."""
+
+from dataclasses import dataclass, field
+from xml.sax.saxutils import quoteattr, escape
+
+
+@dataclass
+class Coordinate:
+    name: str
+    velocity: str
+    start: float
+    velocity_start: float
+
+
+@dataclass
+class Body:
+    """A <particle>, or a <body> where angle is given."""
+
+    name: str
+    mass: object
+    position: dict  # by axis
+    inertia: object = None
+    angle: object = None
+
+
+@dataclass
+class Action:
+    """What is done before a communication step: parameters and inputs set, input derivatives by order, a rewind."""
+
+    parameters: dict = field(default_factory=dict)
+    inputs: dict = field(default_factory=dict)
+    input_derivatives: dict = field(default_factory=dict)  # name: [first, second, ...]
+    rewind: bool = False
+
+
+@dataclass
+class Plan:
+    start_time: float
+    length: float
+    actions: list  # one a communication step
+    tolerance: float
+    packed: bool = False  # through the packed FMU
+    compiler: str = "gcc"
+    unrolled: bool = False  # as users build it, which takes long to compile
+
+    @property
+    def times(self):
+        count = len(self.actions)
+        return [self.start_time + self.length * i / count for i in range(count + 1)]
+
+
+@dataclass
+class System:
+    name: str
+    coordinates: list = field(default_factory=list)
+    parameters: dict = field(default_factory=dict)
+    fixed: set = field(default_factory=set)  # parameters that the plan must not change
+    inputs: dict = field(default_factory=dict)
+    bodies: list = field(default_factory=list)
+    kinetic: list = field(default_factory=list)
+    potentials: list = field(default_factory=list)
+    dissipations: list = field(default_factory=list)
+    forces: list = field(default_factory=list)  # (coordinate's name, expression)
+    cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
+    definitions: dict = field(default_factory=dict)
+    outputs: dict = field(default_factory=dict)
+    work: bool = False
+    method: str = None
+    families: set = field(default_factory=set)
+    plan: Plan = None
+
+    @property
+    def positions(self):
+        return [c.name for c in self.coordinates]
+
+    @property
+    def velocities(self):
+        return [c.velocity for c in self.coordinates]
+
+    @property
+    def states(self):
+        return self.positions + self.velocities + (["nonConservativeWork"] if self.work else [])
+
+    @property
+    def rates(self):
+        return [f"der({v})" for v in self.velocities]
+
+    @property
+    def start(self):
+        states = [c.start for c in self.coordinates] + [c.velocity_start for c in self.coordinates]
+        return states + ([0.0] if self.work else [])
+
+    def expressions(self):
+        """All of which the motion is made."""
+        for body in self.bodies:
+            yield from body.position.values()
+            if body.angle is not None:
+                yield body.angle
+        yield from [*self.kinetic, *self.potentials, *self.dissipations]
+        yield from (force for _, force in self.forces)
+        for _, force in self.cartesian_forces:
+            yield from force.values()
+        yield from self.definitions.values()
+
+    def xml(self):
+        lines = [f"<system name={quoteattr(self.name)}>"]
+
+        def add(tag, content=None, **attributes):
+            words = "".join(f" {key}={quoteattr(str(value))}" for key, value in attributes.items())
+            lines.append(f"  <{tag}{words}/>" if content is None else f"  <{tag}{words}>{escape(str(content))}</{tag}>")
+
+        for name, value in self.parameters.items():
+            add("parameter", name=name, start=repr(value))
+        for name, value in self.inputs.items():
+            add("input", name=name, start=repr(value))
+        for c in self.coordinates:
+            add(
+                "coordinate",
+                name=c.name,
+                velocity=c.velocity,
+                start=repr(c.start),
+                velocityStart=repr(c.velocity_start),
+            )
+        for body in self.bodies:
+            if body.angle is None:
+                add("particle", name=body.name, mass=body.mass, **body.position)
+            else:
+                add("body", name=body.name, mass=body.mass, **body.position, inertia=body.inertia, angle=body.angle)
+        for name, expression in self.definitions.items():
+            add("define", expression, name=name)
+        energies = {"kinetic": self.kinetic, "potential": self.potentials, "dissipation": self.dissipations}
+        for tag, expressions in energies.items():
+            for expression in expressions:
+                add(tag, expression)
+        for coordinate, expression in self.forces:
+            add("force", expression, coordinate=coordinate)
+        for body, force in self.cartesian_forces:
+            add("force", on=body, **force)
+        for name, expression in self.outputs.items():
+            add("output", expression, name=name)
+        if self.work:
+            add("work")
+        if self.method is not None:
+            add("solver", method=self.method, tolerance=self.plan.tolerance)
+        return "\n".join([*lines, "</system>", ""])
+
+
+FACTORIALS = [1, 1, 2, 6]
+
+
+@dataclass
+class Step:
+    """One communication step: coefficients of the inputs' polynomials from its begin."""
+
+    time: float
+    end: float
+    action: Action
+    parameters: dict
+    inputs: dict
+
+    def inputs_at_end(self):
+        """The polynomials' coefficients there."""
+        step = self.end - self.time
+        binomial = lambda n, k: FACTORIALS[n] / FACTORIALS[k] / FACTORIALS[n - k]
+        return {
+            name: [
+                sum(binomial(n, k) * c * step ** (n - k) for n, c in enumerate(coefficients) if n >= k)
+                for k in range(len(coefficients))
+            ]
+            for name, coefficients in self.inputs.items()
+        }
+
+
+def course(system):
+    """The steps of the plan; an input without new values stays where the last step left it."""
+    parameters, inputs = dict(system.parameters), {name: [value] for name, value in system.inputs.items()}
+    times = system.plan.times
+    for time, end, action in zip(times, times[1:], system.plan.actions):
+        parameters.update(action.parameters)
+        for name, value in action.inputs.items():
+            derivatives = action.input_derivatives.get(name, [])
+            inputs[name] = [value, *(d / FACTORIALS[k] for k, d in enumerate(derivatives, 1))]
+        step = Step(time, end, action, dict(parameters), dict(inputs))
+        yield step
+        inputs = {name: coefficients[:1] for name, coefficients in step.inputs_at_end().items()}

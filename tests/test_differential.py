@@ -1,0 +1,136 @@
+"""Random systems (differential/) against SymPy's equations followed in long doubles; scripts/differential runs thousands."""
+
+import copy
+import math
+import os
+import signal
+
+import numpy as np
+import pytest
+
+from differential import simulation
+from differential.build import Wrong
+from differential.comparison import judge_system
+from differential.derivation import Derivation
+from differential.draw import Draw, absolute, exp
+from differential.expressions import name, node
+from differential.generator import generate
+from differential.reference import Reference
+from differential.skeletons import coordinate, body
+from differential.system import Action, Plan, System
+from references import Motion
+
+SEED = 2026
+NUMBERS = range(40)
+SMOOTH = {
+    "smooth_potential",
+    "smooth_force",
+    "smooth_dissipation",
+    "cartesian_force",
+    "definition",
+    "time_function",
+    "magnetic",
+}
+TIME_LIMIT = 300  # s; none needs more than some seconds
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_random_system(number, tmp_path):
+    """A value that is off, a crash, a hang, or C that does not compile is wrong; a refusal has to have a message."""
+    system = generate(SEED, number)
+    system.plan.unrolled = False  # takes long to compile; the FMUs of all other tests are
+    outcome = judge_system(system, tmp_path, TIME_LIMIT)
+    assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
+
+
+def test_a_system_is_the_same_everywhere():
+    """The generator uses no hash and no set's order."""
+    assert generate(7, 11).xml() == generate(7, 11).xml()
+    assert generate(7, 11).xml() != generate(7, 12).xml()
+
+
+def oscillator(*forces, start=(1.0, 0.0), length=2.0, steps=1):
+    """q'' = force, of mass 1."""
+    system = System("Oscillator", plan=Plan(0.0, length, [Action() for _ in range(steps)], 1e-10))
+    draw = Draw(0, system)
+    q, _ = coordinate(draw, *start)
+    body(draw, node(1), x=q)
+    system.forces = [("q1", force) for force in forces]
+    return system
+
+
+def follow(system, folder):
+    """By both references: the state at the end, and their difference."""
+    reference = Reference(Derivation(system), folder)
+    exact, other = reference.trajectory(7, 1e-16, 0.5), reference.trajectory(5, 1e-15, 0.3)
+    return exact[-1], np.max(np.abs(exact - other))
+
+
+def test_wrong_results_are_found(tmp_path):
+    """An FMU of another system, whose spring is 1e-6 stiffer, has to be called wrong."""
+    right = oscillator(-4 * name("q1"))
+    assert judge_system(right, tmp_path / "right").verdict == "agrees"
+    stiffer = copy.deepcopy(right)
+    stiffer.forces = [("q1", -node("4.000004") * name("q1"))]
+    right.xml = stiffer.xml
+    outcome = judge_system(right, tmp_path / "wrong")
+    assert outcome.verdict == "wrong" and "der(v1) at 0.0" in outcome.message
+
+
+@pytest.mark.parametrize("fate, message", [(os.abort, "ended with -6"), (signal.pause, "runs for more than 1 s")])
+def test_crashes_and_hangs_are_found(fate, message, tmp_path, monkeypatch):
+    monkeypatch.setattr(simulation, "simulate", lambda *arguments: fate())
+    with pytest.raises(Wrong, match=message):
+        simulation.simulate_apart(oscillator(), tmp_path, 1)
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+def test_reference_sees_a_pulse(width, tmp_path):
+    """q'' = exp(-((t - 1)/w)^2) from rest: the velocity becomes w sqrt(pi), the path that over 1 s."""
+    pulse = exp(-(((name("time") - 1) / node(width)) ** 2))
+    (q, v), doubt = follow(oscillator(pulse, start=(0.0, 0.0)), tmp_path)
+    impulse = width * math.sqrt(math.pi)
+    assert doubt < 1e-14 and v == pytest.approx(impulse, abs=1e-14) and q == pytest.approx(impulse, abs=1e-14)
+
+
+@pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
+def test_reference_sees_a_hill(width, tmp_path):
+    """q'' = -dU/dq, U = 1/4 exp(-(q/w)^2), passed at 1 m/s: the time lost is the integral of 1/v - 1."""
+    shape = name("q1") / node(width)
+    (q, v), doubt = follow(oscillator(shape / (2 * node(width)) * exp(-(shape**2)), start=(-1.0, 1.0)), tmp_path)
+    s = np.linspace(-10, 10, 4001)  # the trapezoidal rule converges exponentially
+    lost = width * np.trapezoid(1 / np.sqrt(1 - 0.5 * np.exp(-(s**2))) - 1, s)
+    assert doubt < 1e-13 and v == pytest.approx(1, abs=1e-14) and q == pytest.approx(1 - lost, abs=1e-13)
+
+
+def test_reference_sees_a_kink(tmp_path):
+    """q'' = -|q| from q = 0 at 1 m/s: a sine until pi, and from there a hyperbolic sine."""
+    (q, v), doubt = follow(oscillator(-absolute(name("q1")), start=(0.0, 1.0), length=5.0), tmp_path)
+    assert doubt < 1e-13
+    assert q == pytest.approx(-math.sinh(5 - math.pi), rel=1e-14) and v == pytest.approx(
+        -math.cosh(5 - math.pi), rel=1e-14
+    )
+
+
+def test_reference_agrees_with_taylor_series(tmp_path):
+    """With FLINT's series at 30 digits, where systems are smooth and their forces wide."""
+    compared = 0
+    for number in range(60):
+        system = generate(SEED, number)
+        # Motion knows neither kinks nor changes, and its atan2 has one branch.
+        if not system.families <= SMOOTH | {f for f in system.families if f.startswith("skeleton")}:
+            continue
+        if system.work or "atan2" in system.xml() or any(action.parameters for action in system.plan.actions):
+            continue
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        system.plan = Plan(0.0, 0.5, [Action()], 1e-10)
+        derivation = Derivation(system)
+        values = dict(zip(system.positions + system.velocities, system.start)) | system.parameters
+        exact = Motion(derivation.mechanics, values, 30).trajectory([0.5])[0]
+        ours = Reference(derivation, folder).trajectory(7, 1e-16, 0.5)[-1]
+        np.testing.assert_allclose(ours, exact, rtol=1e-14, atol=1e-14)
+        compared += 1
+        if compared == 6:
+            return
+    assert compared == 6
