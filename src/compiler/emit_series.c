@@ -68,7 +68,9 @@ static void write_needed(struct SeriesWriter *writer, Node node) {
     write_next(writer, expression.left);
     if (expression.arity == 2) write_next(writer, expression.right);
   }
-  if (graph->vertices[node].operation == POWER) write_next(writer, writer->plan->auxiliary[node]);
+  enum Operation operation = graph->vertices[node].operation;
+  if (operation == POWER || operation == MINIMUM || operation == MAXIMUM)
+    write_next(writer, writer->plan->auxiliary[node]);
 }
 
 static void write_next(struct SeriesWriter *writer, Node node) {
