@@ -157,7 +157,11 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
                      "history, so that a restored state goes on within the tolerance, not to the same bits.",
       [SOLVER_TAYLOR] = "Co-simulation integrates with Taylor series of the motion, of an order that follows from the "
                         "tolerance; a step depends only on the state that the FMU saves, so that a repeated step gives "
-                        "the same bits.",
+                        "the same bits. Each step is held against the equations of motion at its end, and is so short "
+                        "that no function in them (exp, tanh, powers, quotients, ...) can hide a hill, a wall or a "
+                        "pulse from the series, however narrow. abs, min, max and sign are followed piece by piece. A "
+                        "point where the equations have no solution, a stiff system, and a friction that sticks end "
+                        "in fmi2Discard with a message that names them.",
       [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
                        "time over the communication step.",
   };
@@ -168,11 +172,10 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
     char *text = format_text("No step of the method is longer than %g s.", program->model->max_step);
     element(writer, "p", text);
     free(text);
-  } else if (program->interface->depends_on_time && program->interface->method != SOLVER_EXACT)
-    element(
-        writer, "p",
-        "No step of the method is longer than the communication step. What happens within a shorter time, such as a "
-        "narrow pulse, may be stepped over unseen: maxStep in system.xml says how long a step may be.");
+  } else if (program->interface->method == SOLVER_ERK || program->interface->method == SOLVER_BDF)
+    element(writer, "p",
+            "The method looks at the equations in a few places of each step. What lies between them, such as a narrow "
+            "hill, wall or pulse, may be stepped over unseen: maxStep in system.xml says how long a step may be.");
 }
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {
