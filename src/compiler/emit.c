@@ -171,6 +171,11 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
                             .states = program->interface->state_count};
   announce_all(&emitter);
   struct SeriesWriter *series = program->series == NULL ? NULL : series_writer_create(&emitter);
+  if (series != NULL && program->interface->method != SOLVER_TAYLOR && !emitter.has_limit) {
+    series_writer_free(series);
+    series = NULL;
+  }
+  emitter.has_series = series != NULL;
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   fputs(series != NULL && !series->is_unrolled ? "#define SERIES_ROLLED 1\n" : "", file);
   fputs("#include <math.h>\n#include <string.h>\n\n#include \"lagrangian.h\"\n", file);

@@ -316,7 +316,7 @@ static struct SeriesWriter *writer_create(struct Emitter *emitter, const struct 
   return writer;
 }
 
-static void writer_free(struct SeriesWriter *writer) {
+void series_writer_free(struct SeriesWriter *writer) {
   free(writer->order_text);
   free(writer->uses);
   free(writer->row);
@@ -334,7 +334,8 @@ struct SeriesWriter *series_writer_create(struct Emitter *emitter) {
   writer->has_acceleration_rows = writer->keeps_factors = has_loops(emitter->equations);
   emitter->has_limit = limit_mark_rows(writer) > 0;
   writer->order_text = order_text(writer, write_order);
-  writer->is_unrolled = !has_loops(emitter->equations) && writer->recurrences <= UNROLLED_RECURRENCES;
+  writer->is_unrolled = emitter->program->interface->method == SOLVER_TAYLOR && !has_loops(emitter->equations) &&
+                        writer->recurrences <= UNROLLED_RECURRENCES;
   return writer;
 }
 
@@ -349,7 +350,7 @@ size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer) {
                 "Series *restrict w)",
                 series_body, 0);
   if (emitter->has_limit) emit_limit(emitter, writer);
-  writer_free(writer);
+  series_writer_free(writer);
   return rows;
 }
 
@@ -401,6 +402,6 @@ size_t emit_output_series(struct Emitter *emitter) {
                 "void output_series(const struct Point *point, int order, const Series *restrict input, "
                 "const Series *restrict x, Series *restrict w, Series *restrict y)",
                 output_series_body, 0);
-  writer_free(writer);
+  series_writer_free(writer);
   return rows;
 }

@@ -6,6 +6,7 @@
 
 /* Prepares series(); writer->is_unrolled then tells whether it gets code of its own for each order. */
 struct SeriesWriter *series_writer_create(struct Emitter *emitter);
+void series_writer_free(struct SeriesWriter *writer);
 
 /* Writes the function series() and frees the writer; returns how many rows of workspace the function needs. */
 size_t emit_series(struct Emitter *emitter, struct SeriesWriter *writer);

@@ -131,9 +131,9 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
           interface->depends_on_time ? "true" : "false", solvers[interface->method]);
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",
           moves ? "directional" : "NULL");
-  if (program->series != NULL)
+  if (emitter->has_series)
     fprintf(file, "    .series_rows = %zu,\n    .start = start,\n    .series = series,\n", emitter->series_rows);
-  if (emitter->has_limit) fputs("    .limit = limit,\n", file);
+  if (emitter->has_series && emitter->has_limit) fputs("    .limit = limit,\n", file);
   fprintf(file, "    .output_derivative_order = %d,\n", interface->output_derivative_order);
   if (program->output_series != NULL)
     fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", emitter->output_series_rows);

@@ -16,7 +16,7 @@ struct Emitter {
   size_t n, states;                       /* coordinates, state variables */
   struct SeriesWriter *series;            /* while series() is written */
   size_t series_rows, output_series_rows; /* of workspace that series() and output_series() need */
-  bool has_limit;                         /* limit() is written */
+  bool has_series, has_limit;             /* series() and limit() are written */
 };
 
 /* A growing list of nodes. */

@@ -63,10 +63,13 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
   free(column);
 }
 
+/* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
 static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
   const struct Equations *equations = program->equations;
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  if (kink == NULL) program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
+  bool is_taylor = program->interface->method == SOLVER_TAYLOR;
+  if (kink == NULL || !is_taylor)
+    program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
   else
     report_error(diagnostics, model->solver_line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
@@ -110,7 +113,8 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   derivative_along(graph, &equations->power, 1, seeds, &program->power_along);
   if (interface->method == SOLVER_BDF) create_jacobian(program, graph);
   free(seeds);
-  if (interface->method == SOLVER_TAYLOR) create_series(program, model, diagnostics);
+  if (interface->method == SOLVER_TAYLOR || interface->method == SOLVER_ERK || interface->method == SOLVER_BDF)
+    create_series(program, model, diagnostics);
   create_output_series(program, model);
   if (graph->overflow)
     report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",

@@ -51,7 +51,7 @@ static void destroy(struct Instance *instance) {
   if (bdf->cvode != NULL) CVodeFree(&bdf->cvode);
   if (bdf->linear_solver != NULL) SUNLinSolFree(bdf->linear_solver);
   if (bdf->matrix != NULL) SUNMatDestroy(bdf->matrix);
-  sundials_vectors_destroy(&bdf->vectors);
+  sundials_vectors_destroy(instance, &bdf->vectors);
   instance->free(bdf);
   instance->solver_memory = NULL;
 }
@@ -108,6 +108,18 @@ static bool limit_step(struct Instance *instance, struct Bdf *bdf, double commun
   return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, longest), "CVodeSetMaxStep");
 }
 
+/* Bounds the next step; but for the first ones, the method makes none that is more than ten times as long as the last. */
+static bool limit_by_functions(struct Instance *instance, struct Bdf *bdf, double time, double end) {
+  N_Vector state = bdf->vectors.state;
+  double last = 0.0;
+  /* At the start of a communication step, the vector holds the state of its start. */
+  if (time > instance->situation->time && CVodeGetDky(bdf->cvode, time, 0, state) < 0) return false;
+  if (CVodeGetLastStep(bdf->cvode, &last) < 0) return false;
+  double bound = last > 0.0 ? 100.0 * last : 2.0 * (end - time);
+  double longest = sundials_longest_step(instance, &bdf->vectors, time, N_VGetArrayPointer(state), bound);
+  return CVodeSetStopTime(bdf->cvode, time + longest) >= 0;
+}
+
 /*
  * Goes step by step to the end or past it: an interpolation gives the state there. NULL, or the reason why the state
  * stays at *time before the end.
@@ -117,6 +129,8 @@ static const char *reach(struct Instance *instance, struct Bdf *bdf, double *tim
   for (long steps = 0; *time < end; steps++) {
     if (steps == STEP_LIMIT) return "too many steps";
     double before = *time;
+    if (lagrangian.limit != NULL && !limit_by_functions(instance, bdf, before, end))
+      return "SUNDIALS has no state there";
     if (CVode(bdf->cvode, end, bdf->vectors.state, time, CV_ONE_STEP) < 0) return "no step is short enough";
     instance->situation->statistics[STATISTIC_STEPS]++;
     resting = *time > before ? 0 : resting + 1;

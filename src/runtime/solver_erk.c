@@ -35,7 +35,7 @@ static void destroy(struct Instance *instance) {
   if (erk->before != NULL) N_VDestroy(erk->before);
   if (erk->first != NULL) N_VDestroy(erk->first);
   if (erk->second != NULL) N_VDestroy(erk->second);
-  sundials_vectors_destroy(&erk->vectors);
+  sundials_vectors_destroy(instance, &erk->vectors);
   instance->free(erk);
   instance->solver_memory = NULL;
 }
@@ -134,6 +134,9 @@ static const char *reach(struct Instance *instance, struct Erk *erk, double *tim
     if (steps == STEP_LIMIT) return "too many steps";
     double before = *time;
     N_VScale(1.0, erk->vectors.state, erk->before);
+    const double *state = N_VGetArrayPointer(erk->vectors.state);
+    double longest = sundials_longest_step(instance, &erk->vectors, before, state, end - before);
+    ERKStepSetStopTime(erk->arkode, fmin(before + longest, end));
     int flag = ERKStepEvolve(erk->arkode, end, erk->vectors.state, time, ARK_ONE_STEP);
     if (flag >= 0 && obeys_equations(instance, erk, before, *time)) {
       instance->situation->statistics[STATISTIC_STEPS]++;

@@ -12,14 +12,22 @@ struct SundialsVectors {
   SUNContext context;
   N_Vector state, tolerance; /* tolerance: absolute, by state */
   double relative;           /* tolerance */
+  Series *series;            /* of the state, the inputs and the workspace; NULL where nothing limits a step */
 };
 
 /* False after logging where SUNDIALS has no memory. */
 bool sundials_vectors_create(struct Instance *instance, struct SundialsVectors *vectors);
-void sundials_vectors_destroy(struct SundialsVectors *vectors);
+void sundials_vectors_destroy(const struct Instance *instance, struct SundialsVectors *vectors);
 
 /* Sets the tolerances for the solver: its local errors add up over a simulation. */
 void sundials_set_tolerances(const struct Instance *instance, struct SundialsVectors *vectors, double safety);
+
+/*
+ * How far a step from a time and state may go, at most to the bound, without passing over what a function in the
+ * equations hides there, by the first terms of their Taylor series (series_limit.h).
+ */
+double sundials_longest_step(struct Instance *instance, const struct SundialsVectors *vectors, double time,
+                             const double *state, double bound);
 
 /* Logs that a call of SUNDIALS failed unless flag tells success; returns whether it succeeded. */
 bool sundials_succeeded(const struct Instance *instance, int flag, const char *call);
