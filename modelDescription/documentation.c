@@ -174,8 +174,8 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
     free(text);
   } else if (program->interface->method == SOLVER_ERK || program->interface->method == SOLVER_BDF)
     element(writer, "p",
-            "The method looks at the equations in a few places of each step. What lies between them, such as a narrow "
-            "hill, wall or pulse, may be stepped over unseen: maxStep in system.xml says how long a step may be.");
+            "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
+            "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");
 }
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {

@@ -14,8 +14,7 @@
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.1;
 enum { STEP_LIMIT = 10000000 }; /* steps in one communication step */
-enum { CACHE_LINE = 64 };
-enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
+enum { CRAWL_STEPS = 1000 };    /* so many steps of one kind move a system further than the tolerance */
 
 static size_t saved_size(void) {
   return sizeof(struct Saved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
@@ -24,7 +23,7 @@ static size_t saved_size(void) {
 static bool create(struct Instance *instance) {
   size_t rows = lagrangian.input_count + lagrangian.series_rows;
   size_t terms = 2 * lagrangian.state_count * sizeof(double);
-  struct Taylor *taylor = instance->allocate(1, sizeof *taylor + rows * sizeof(Series) + terms + CACHE_LINE);
+  struct Taylor *taylor = instance->allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
   if (taylor == NULL) {
     log_message(instance, fmi2Error, "allocateMemory returned no memory for the solver");
     return false;
@@ -32,9 +31,7 @@ static bool create(struct Instance *instance) {
   taylor->saved = instance->saved;
   taylor->low = (double *)(taylor->saved + 1);
   taylor->x = (Series *)(taylor->low + lagrangian.state_count);
-  /* Where rows straddle cache lines, series of many rows take half as long again. */
-  uintptr_t end = (uintptr_t)(taylor + 1);
-  taylor->input = (Series *)(end + CACHE_LINE - end % CACHE_LINE);
+  taylor->input = (Series *)(taylor + 1);
   taylor->work = taylor->input + lagrangian.input_count;
   taylor->term = (double *)(taylor->work + lagrangian.series_rows);
   taylor->derivative = taylor->term + lagrangian.state_count;
