@@ -108,16 +108,20 @@ static bool limit_step(struct Instance *instance, struct Bdf *bdf, double commun
   return sundials_succeeded(instance, CVodeSetMaxStep(bdf->cvode, longest), "CVodeSetMaxStep");
 }
 
-/* Bounds the next step; but for the first ones, the method makes none that is more than ten times as long as the last. */
-static bool limit_by_functions(struct Instance *instance, struct Bdf *bdf, double time, double end) {
+/*
+ * Bounds the next step; but for the first ones, the method makes none that is more than ten times as long as the last.
+ * NULL, or the reason why there is no step.
+ */
+static const char *limit_by_functions(struct Instance *instance, struct Bdf *bdf, double time, double end) {
   N_Vector state = bdf->vectors.state;
   double last = 0.0;
   /* At the start of a communication step, the vector holds the state of its start. */
-  if (time > instance->situation->time && CVodeGetDky(bdf->cvode, time, 0, state) < 0) return false;
-  if (CVodeGetLastStep(bdf->cvode, &last) < 0) return false;
+  bool has_state = time <= instance->situation->time || CVodeGetDky(bdf->cvode, time, 0, state) >= 0;
+  if (!has_state || CVodeGetLastStep(bdf->cvode, &last) < 0) return "SUNDIALS has no state there";
   double bound = last > 0.0 ? 100.0 * last : 2.0 * (end - time);
   double longest = sundials_longest_step(instance, &bdf->vectors, time, N_VGetArrayPointer(state), bound);
-  return CVodeSetStopTime(bdf->cvode, time + longest) >= 0;
+  if (longest < bound && sundials_rests(time, longest)) return resting_steps;
+  return CVodeSetStopTime(bdf->cvode, time + longest) >= 0 ? NULL : "SUNDIALS does not take a time to stop at";
 }
 
 /*
@@ -129,11 +133,11 @@ static const char *reach(struct Instance *instance, struct Bdf *bdf, double *tim
   for (long steps = 0; *time < end; steps++) {
     if (steps == STEP_LIMIT) return "too many steps";
     double before = *time;
-    if (lagrangian.limit != NULL && !limit_by_functions(instance, bdf, before, end))
-      return "SUNDIALS has no state there";
+    const char *problem = lagrangian.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, end);
+    if (problem != NULL) return problem;
     if (CVode(bdf->cvode, end, bdf->vectors.state, time, CV_ONE_STEP) < 0) return "no step is short enough";
     instance->situation->statistics[STATISTIC_STEPS]++;
-    resting = *time > before ? 0 : resting + 1;
+    resting = sundials_rests(before, *time - before) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return resting_steps;
   }
   return NULL;

@@ -136,11 +136,12 @@ static const char *reach(struct Instance *instance, struct Erk *erk, double *tim
     N_VScale(1.0, erk->vectors.state, erk->before);
     const double *state = N_VGetArrayPointer(erk->vectors.state);
     double longest = sundials_longest_step(instance, &erk->vectors, before, state, end - before);
+    if (longest < end - before && sundials_rests(before, longest)) return resting_steps;
     ERKStepSetStopTime(erk->arkode, fmin(before + longest, end));
     int flag = ERKStepEvolve(erk->arkode, end, erk->vectors.state, time, ARK_ONE_STEP);
     if (flag >= 0 && obeys_equations(instance, erk, before, *time)) {
       instance->situation->statistics[STATISTIC_STEPS]++;
-      resting = *time > before ? 0 : resting + 1;
+      resting = sundials_rests(before, *time - before) ? resting + 1 : 0;
       if (resting == RESTING_STEP_LIMIT) return resting_steps;
       ERKStepGetCurrentStep(erk->arkode, &trial);
       continue;
@@ -148,8 +149,7 @@ static const char *reach(struct Instance *instance, struct Erk *erk, double *tim
     trial = 0.1 * fmin(trial, end - before);
     *time = before;
     N_VScale(1.0, erk->before, erk->vectors.state);
-    if (before + trial <= before + 8 * DBL_EPSILON * fabs(before))
-      return "the equations have no solution there, or steps would be too short";
+    if (sundials_rests(before, trial)) return "the equations have no solution there, or steps would be too short";
     if (!start(instance, erk, before, trial, end)) return "SUNDIALS does not start again";
   }
   return NULL;

@@ -65,6 +65,10 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
   return false;
 }
 
+bool sundials_rests(double time, double step) {
+  return step <= 8 * DBL_EPSILON * fabs(time);
+}
+
 bool sundials_tiny_step(struct Instance *instance, double end) {
   double time = instance->situation->time, step = end - time;
   if (step > 8 * DBL_EPSILON * fmax(fabs(time), fabs(end))) return false;

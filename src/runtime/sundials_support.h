@@ -47,7 +47,10 @@ void sundials_ignore_error(int code, const char *module, const char *function, c
 enum { STEP_LIMIT = 10000000 }; /* internal steps in one communication step */
 
 /* SUNDIALS goes on where its steps are too short to change the time, and so passes through singularities. */
-enum { RESTING_STEP_LIMIT = 3 };
+enum { RESTING_STEP_LIMIT = 20 };
 extern const char resting_steps[]; /* the reason that a user reads */
+
+/* Whether a step is only a few units in the last place of the time. */
+bool sundials_rests(double time, double step);
 
 #endif
