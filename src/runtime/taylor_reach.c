@@ -14,8 +14,8 @@
 static const double defect_margin = 3.0;
 /* Polynomial motions have no length of their own. */
 static const double horizon = 1e4;
-/* Rounding of the right side at the end of the step, in units of the last place. */
-static const double rounding = 100.0;
+/* Rounding of the right side at the end of the step, in units of the last place, and of what rounding of the state does. */
+static const double rounding = 100.0, rounding_margin = 10.0;
 static const double logarithm_of_2 = 0.69314718055994530942;
 
 /*
@@ -175,15 +175,18 @@ static double exact_reach(const struct Saved *saved, double step) {
 /*
  * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one so short
  * that all that changes there is less than the tolerance, or less than the rounding of time makes of it. Returns that
- * step, whose end was measured, or 0.
+ * step, whose end was measured, or 0 where a step of the length that has a series does as well.
  */
-static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step,
+                            double length) {
   double tolerance = instance->situation->tolerance, step = communication_step * tolerance;
   double smallest = 2.0 * smallest_step(taylor->saved);
   for (size_t i = 0; i < lagrangian.state_count; i++)
     step = fmin(step, tolerance * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
-  step = limited(instance, taylor, fmax(step, smallest), true).step;
-  for (int trial = 0; trial < 4; trial++) {
+  step = fmax(step, smallest);
+  if (length >= step) return 0.0;
+  step = limited(instance, taylor, step, true).step;
+  for (int trial = 0; trial < 4 && step > length; trial++) {
     step = exact_reach(taylor->saved, step);
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0 || (step <= 2.0 * smallest && isfinite(size))) return step;
@@ -200,7 +203,7 @@ static double shortened(struct Instance *instance, struct Taylor *taylor, double
     if (step <= smallest_step(taylor->saved)) return 0.0;
     double size = taylor->is_limited ? defect_over(instance, taylor, step) : defect(instance, taylor, step);
     if (size <= 1.0) return step;
-    if (isfinite(size) && size <= rounding * rounding_of_right_side(instance, taylor, step)) return step;
+    if (isfinite(size) && size <= rounding_margin * rounding_of_right_side(instance, taylor, step)) return step;
     taylor->is_limited = true;
     step *= fmin(fmax(0.9 * pow(size, -power), 0.1), 0.8);
   }
@@ -218,9 +221,8 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   taylor->function = limit.function;
   taylor->is_limited = limit.step < promised;
   double crossing = 0.0;
-  if (limit.function != NULL && limit.step < communication_step * instance->situation->tolerance)
-    crossing = crossing_step(instance, taylor, communication_step);
-  taylor->crosses = crossing > limit.step;
+  if (limit.function != NULL) crossing = crossing_step(instance, taylor, communication_step, limit.step);
+  taylor->crosses = crossing > 0.0;
   saved->reach = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
   taylor->is_measured = saved->reach > 0.0;
 }
