@@ -196,8 +196,9 @@ static SERIES_INLINE double series_quotient(int k, double top, double inverse, c
   return ((top - b[k] * c[0]) - series_middle(k, b, c)) * inverse;
 }
 
-/* (sqrt a)_k */
+/* (sqrt a)_k; the root of 0 at all times is 0 */
 static SERIES_INLINE double series_root(int k, const double *a, const double *c) {
+  if (c[0] == 0.0 && c[k - 1] == 0.0 && a[k] == 0.0) return 0.0;
   return (a[k] - series_dot(k - 1, c + 1, c + k - 1)) / (2.0 * c[0]);
 }
 
@@ -208,6 +209,7 @@ static SERIES_INLINE double series_root(int k, const double *a, const double *c)
 static inline double series_power(int k, double n, const double *a, const double *c) {
   int m = 0;
   while (m <= k && a[m] == 0.0) m++;
+  if (m > k && n > 0.0) return 0.0;
   if (m > 0 && !(n >= 0.0 && n == floor(n))) return NAN;
   if (m > k || m * n > k) return 0.0;
   int first = m * (int)n, last = k - first;

@@ -17,7 +17,7 @@ struct SeriesLimit {
   int order;            /* of the polynomials */
   double step;          /* what the functions below shorten */
   const char *function; /* the one that shortened it last; NULL for none */
-  bool crosses;         /* roots, kinks and jumps, which stay finite, do not shorten it */
+  bool crosses;         /* roots, powers, kinks and jumps, which stay finite, do not shorten it */
 };
 
 /* exp(u), also as the power of a constant */

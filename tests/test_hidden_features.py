@@ -53,6 +53,8 @@ def texts():
     systems |= {name: force(f, *start) for name, (f, start, _) in CLOSED_FORMS.items()}
     systems["Ball"] = particle.format(1, 0, "<potential>9.81*x + 1e4*0.01*log(1 + exp(-x/0.01))</potential>")
     systems["RootPotential"] = particle.format(1, 0, "<potential>sqrt(x^2)</potential>")
+    systems["Clamp"] = particle.format(-1, 1, "<potential>max(0, min(1, (x - 0.3)/1e-6))*0.3</potential>")
+    systems["Hertz"] = particle.format(1, 0, '<potential>9.81*x</potential><force coordinate="x">1e6*max(0, -x)^1.5</force>')
     systems["Throw"] = particle.format(1, 2, "<potential>9.81*x</potential>")
     systems["WeakPole"] = force("1e-6/x", 1, -1)
     systems["Stick"] = force("-sign(v)", 0, 1) + '<solver method="taylor"/>'
@@ -99,6 +101,18 @@ def lobes(t):
     return x, v
 
 
+def through_a_zone(t):
+    """200 N over 1 cm from x = 0.3 on, which is reached after 1.3 s with 1 m/s."""
+    fast = mp.sqrt(1 + 2 * 200 * mp.mpf("0.01"))
+    return mp.mpf("0.31") + fast * (t - mp.mpf("1.3") - (fast - 1) / 200), fast
+
+
+def up_a_ramp(t):
+    """A potential that rises by 0.3 J over 1e-6 m from x = 0.3 on, which is reached after 1.3 s with 1 m/s."""
+    slow, width = mp.sqrt(mp.mpf("0.4")), mp.mpf("1e-6")
+    return mp.mpf("0.3") + width + slow * (t - mp.mpf("1.3") - 2 * width / (1 + slow)), slow
+
+
 # Force, (start, velocity there), and the motion at t = 3.
 CLOSED_FORMS = {
     "Pulse": ("exp(-(time - 1)^2/1e-4)", (0, 0), lambda t: (mp.sqrt(mp.pi) / 100 * 2, mp.sqrt(mp.pi) / 100)),
@@ -108,6 +122,8 @@ CLOSED_FORMS = {
     "RootsOfSquares": ("-(x^2)^0.25*(x^2)^0.25", (1, 0), with_either_sign),
     "TimeRoot": ("sqrt((time - 1)^2)", (0, 0), distance_from_one),
     "Larger": ("max(time - 1, 1 - time)", (0, 0), distance_from_one),
+    "Zone": ("(sign(x - 0.3) - sign(x - 0.31))*100", (-1, 1), through_a_zone),
+    "RootOfTime": ("sqrt(time)", (0, 0), lambda t: (mp.mpf(t) ** 2.5 * 4 / 15, mp.mpf(t) ** 1.5 * 2 / 3)),
     "Lobes": ("-max(0, sin(3*time))", (0, 0), lobes),
     "LobesByMin": ("min(-sin(3*time), 0)", (0, 0), lobes),
     "Triangle": ("acos(cos(time - 1))", (0, 0), distance_from_one),
@@ -172,6 +188,23 @@ def test_the_slope_of_a_potential_may_jump(open_fmu):
     exact = [float(value) for value in on_springs(3)]
     for tolerance, x, v in outcomes(open_fmu("RootPotential"), 3.0):
         assert [x, v] == pytest.approx(exact, abs=100 * tolerance)
+
+
+def test_a_potential_may_be_cut_off(open_fmu):
+    exact = [float(value) for value in up_a_ramp(3)]
+    for tolerance, x, v in outcomes(open_fmu("Clamp"), 3.0):
+        assert [x, v] == pytest.approx(exact, abs=100 * tolerance + 5e-9), "300 kN act for the rounding of time"
+
+
+def test_a_contact_by_hertz(open_fmu):
+    """It falls from 1 m, and is back after twice the time of its fall."""
+    potential = lambda x: mp.mpf("9.81") * x + (mp.mpf(10) ** 6 * (-x) ** mp.mpf("2.5") / 2.5 if x < 0 else 0)
+    lowest = turning_point(lambda depth: potential(-depth) - potential(1) + mp.mpf("0.5"), 0, 1)
+    time = lambda depth: 1 / mp.sqrt(2 * abs(potential(1) - potential(-depth)))
+    back = 2 * (mp.sqrt(2 / mp.mpf("9.81")) + mp.quad(time, [0, lowest / 2, lowest]))
+    for tolerance, x, v in outcomes(open_fmu("Hertz"), float(back)):
+        assert x == pytest.approx(1, abs=100 * tolerance)
+        assert v == pytest.approx(0, abs=440 * tolerance), "it has fallen with 4.4 m/s"
 
 
 def test_a_ball_rests_on_its_floor(open_fmu):

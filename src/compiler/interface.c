@@ -99,13 +99,8 @@ static enum SolverMethod method_of(const struct Model *model, const struct Equat
   if (model->coordinates.count == 0) return SOLVER_NONE;
   if (model->method != SOLVER_DEFAULT) return model->method;
   if (model->linearized) return SOLVER_EXACT;
-  /* Where a force jumps as dry friction does, a motion may stick, which is one jump after another. */
-  const Node energies[] = {model->potential.node, model->dissipation.node, model->kinetic.node};
-  bool jumps = jump_of(model->graph, energies, 3) != NULL;
-  for (size_t i = 0; i < model->coordinates.count; i++)
-    jumps |= jump_of(model->graph, &model->forces[i].node, 1) != NULL;
-  bool has_series = kink_without_series_of(model->graph, equations->residual, equations->count) == NULL;
-  return has_series && !jumps ? SOLVER_TAYLOR : SOLVER_ERK;
+  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
+  return kink == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */

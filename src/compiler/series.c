@@ -83,10 +83,6 @@ static const char *kink_at(const struct Graph *graph, Node node) {
   return has_pieces ? operation_name(operation) : kink_without_series(graph, node);
 }
 
-static const char *jump_at(const struct Graph *graph, Node node) {
-  return graph->vertices[node].operation == SIGN ? "sign" : NULL;
-}
-
 /* What `at` says of the first node below these that changes in time and of which it says something. */
 static const char *find_kink(const struct Graph *graph, const Node *nodes, size_t count,
                              const char *(*at)(const struct Graph *, Node)) {
@@ -105,10 +101,6 @@ const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count) 
 
 const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count) {
   return find_kink(graph, nodes, count, kink_without_series);
-}
-
-const char *jump_of(const struct Graph *graph, const Node *nodes, size_t count) {
-  return find_kink(graph, nodes, count, jump_at);
 }
 
 static void append_equations(struct SeriesPlan *plan, const struct Equations *equations) {

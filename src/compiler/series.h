@@ -23,9 +23,6 @@ const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 /* The same for a kink that no series sees, as that of asin(sin(x)). */
 const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);
 
-/* The same for sign(x), a jump where it was written by itself. */
-const char *jump_of(const struct Graph *graph, const Node *nodes, size_t count);
-
 /* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
 

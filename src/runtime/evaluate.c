@@ -6,8 +6,11 @@
 
 void log_singularity(const struct Instance *instance, fmi2Status status, double time) {
   if (instance->singular == 0) {
-    log_message(instance, status,
-                "time %g: the accelerations are not finite; try other parameters, inputs or start values", time);
+    log_message(
+        instance, status,
+        "time %g: the accelerations are not finite, as where exp or cosh takes a large argument; try other parameters, "
+        "inputs or start values",
+        time);
     return;
   }
   size_t coordinate = (size_t)instance->singular - 1;

@@ -99,7 +99,7 @@ void series_limit_root(struct SeriesLimit *limit, const double *u, double share)
 }
 
 void series_limit_whole_power(struct SeriesLimit *limit, const double *u, double share) {
-  shorten(limit, u, power_fits, share * fabs(u[0]), "a power");
+  if (!limit->crosses) shorten(limit, u, power_fits, share * fabs(u[0]), "a power");
 }
 
 void series_limit_power(struct SeriesLimit *limit, const double *u, double exponent) {

@@ -156,11 +156,11 @@ static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
 static const char *reach(struct Instance *instance, struct Taylor *taylor, double length, double end) {
   struct Saved *saved = taylor->saved;
   struct Crawl regular = {0}, crossing = {0};
-  double tolerance = instance->situation->tolerance;
+  double tolerance = fmin(instance->situation->tolerance, 1e-6);
   for (long steps = 1; saved->reach == 0.0 || end > saved->origin + saved->reach; steps++) {
     double moved = saved->reach > 0.0 ? advance(instance, taylor) : 0.0;
     if (!taylor->crosses) crossing.path += moved;
-    else if (crawls(&crossing, moved, 4.0 * tolerance))
+    else if (crawls(&crossing, moved, 1e-9))
       return "a function jumps to and fro there, as dry friction that sticks; write it with tanh, or choose "
              "<solver method=\"erk\"/> in system.xml";
     if (!taylor->is_limited && crawls(&regular, moved, tolerance))

@@ -6,12 +6,16 @@
  */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "evaluate.h"
 #include "taylor.h"
 
 /* A step of the promised length has a defect of about a third of the order times the tolerance. */
 static const double defect_margin = 3.0;
+/* The share of its scale by which the state moves where a kink is crossed. */
+static const double crossing_share = 1e-12;
 /* Polynomial motions have no length of their own. */
 static const double horizon = 1e4;
 /* Rounding of the right side at the end of the step, in units of the last place, and of what rounding of the state does. */
@@ -44,24 +48,32 @@ static void norms(const struct Taylor *taylor, int64_t order, double *last, doub
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double inverse = 1.0 / taylor_scale(taylor, i);
     double size = fabs(taylor->x[i][order]) * inverse, size_before = fabs(taylor->x[i][order - 1]) * inverse;
-    if (!(size <= *last)) *last = size;
-    if (!(size_before <= *before)) *before = size_before;
+    if (size > *last || isnan(size)) *last = size; /* a NaN stays */
+    if (size_before > *before || isnan(size_before)) *before = size_before;
   }
 }
 
 /*
  * The logarithm to base 2 of a positive number to 0.01, and 2^x to 1 %: more than a step length needs, without the time
- * of the library's functions, and the same on all machines.
+ * of the library's functions, and the same on all machines. Both work on the exponent of an IEEE 754 double.
  */
 static double rough_logarithm(double x) {
-  int exponent;
-  double mantissa = frexp(x, &exponent); /* from 1/2 to 1 */
-  return exponent + (mantissa - 1.0) * (2.65 - 1.32 * mantissa);
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  double exponent = (double)((int)(bits >> 52) - 1023), mantissa;
+  bits = (bits & 0xfffffffffffffu) | (uint64_t)1023 << 52;
+  memcpy(&mantissa, &bits, sizeof mantissa); /* from 1 to 2 */
+  return exponent + 1.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
 }
 
 static double rough_power_of_two(double x) {
-  double whole = floor(x), rest = x - whole;
-  return ldexp(1.0 + rest * (0.66 + 0.34 * rest), (int)whole);
+  if (x > 1000.0) return INFINITY;
+  if (x < -1000.0) return 0.0;
+  int exponent = (int)(x + 1023.0);
+  double rest = x + 1023.0 - exponent, power;
+  uint64_t bits = (uint64_t)exponent << 52;
+  memcpy(&power, &bits, sizeof power);
+  return power * (1.0 + rest * (0.66 + 0.34 * rest));
 }
 
 /* Where the last two terms that do not vanish are as small as the tolerance asks; 0 where they are not finite. */
@@ -153,12 +165,12 @@ static double defect_over(struct Instance *instance, struct Taylor *taylor, doub
 /* The step as far as the functions in the equations allow it. */
 static struct SeriesLimit limited(const struct Instance *instance, const struct Taylor *taylor, double step,
                                   bool crosses) {
+  struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
+  if (lagrangian.limit == NULL) return limit;
   struct Point point = evaluate_point(instance);
   point.time = taylor->saved->origin;
-  struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
-  if (lagrangian.limit != NULL)
-    lagrangian.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x, (const Series *)taylor->work,
-                     &limit);
+  lagrangian.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x, (const Series *)taylor->work,
+                   &limit);
   return limit;
 }
 
@@ -173,16 +185,16 @@ static double exact_reach(const struct Saved *saved, double step) {
 }
 
 /*
- * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one so short
- * that all that changes there is less than the tolerance, or less than the rounding of time makes of it. Returns that
- * step, whose end was measured, or 0 where a step of the length that has a series does as well.
+ * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one in which
+ * the state moves by a millionth of a millionth of its scale, so that two such points are not taken for one, and in which
+ * all that changes is less than the tolerance, or less than the rounding of time makes of it. Returns that step, whose
+ * end was measured, or 0 where a step of the length that has a series does as well.
  */
 static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step,
                             double length) {
-  double tolerance = instance->situation->tolerance, step = communication_step * tolerance;
-  double smallest = 2.0 * smallest_step(taylor->saved);
+  double step = crossing_share * communication_step, smallest = 2.0 * smallest_step(taylor->saved);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    step = fmin(step, tolerance * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
+    step = fmin(step, crossing_share * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
   step = fmax(step, smallest);
   if (length >= step) return 0.0;
   step = limited(instance, taylor, step, true).step;
@@ -193,6 +205,15 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
     step = fmax(0.1 * step, fmin(step, smallest));
   }
   return 0.0;
+}
+
+/*
+ * A root has no series where its operand is 0, but leaves the accelerations finite: the state goes on along its first
+ * terms alone.
+ */
+static void cut_off(const struct Taylor *taylor) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
 }
 
 /* Shortens the step until its defect is small. A defect that rounding explains stays in a shorter step too. */
@@ -221,7 +242,9 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   taylor->function = limit.function;
   taylor->is_limited = limit.step < promised;
   double crossing = 0.0;
-  if (limit.function != NULL) crossing = crossing_step(instance, taylor, communication_step, limit.step);
+  if (promised == 0.0) cut_off(taylor);
+  if (promised == 0.0 || limit.function != NULL)
+    crossing = crossing_step(instance, taylor, communication_step, limit.step);
   taylor->crosses = crossing > 0.0;
   saved->reach = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
   taylor->is_measured = saved->reach > 0.0;
