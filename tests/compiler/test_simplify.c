@@ -26,6 +26,26 @@ static void test_simplifications(void **state) {
   expressions_free(&e);
 }
 
+/* A root of an even power has a kink, which abs shows; values for both signs of the base are the test's own. */
+static void test_roots_of_even_powers(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  assert_prints(&e, "sqrt(x^2)", "abs(x)");
+  assert_prints(&e, "(x^4)^0.5", "x^2");
+  assert_prints(&e, "sqrt(exp(x)^2)", "exp(x)");
+  assert_prints(&e, "1^x", "1");
+  static const struct {
+    const char *text;
+    double value; /* at x = -3, y = 5 */
+  } cases[] = {{"sqrt(x^2)", 3.0},      {"(x^2)^1.5", 27.0},
+               {"x*sqrt(x^2)", -9.0},   {"sqrt(4*x^2*y)", 6.0 * 2.23606797749979},
+               {"(x^6)^(1/3)", 9.0},    {"(x^-2)^0.5", 1.0 / 3.0},
+               {"sqrt(x^2*y^4)", 75.0}, {"sqrt(x^2 - 2*x + 1)", 4.0}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    assert_true(fabs(value_at(&e, parse(&e, cases[i].text), -3, 5, 0) - cases[i].value) < 1e-13);
+  expressions_free(&e);
+}
+
 static void test_signs_and_precedence(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -148,7 +168,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_simplifications),      cmocka_unit_test(test_signs_and_precedence),
       cmocka_unit_test(test_algebra_keeps_values), cmocka_unit_test(test_printed_text_reads_back),
-      cmocka_unit_test(test_fractions_cancel),
+      cmocka_unit_test(test_fractions_cancel),     cmocka_unit_test(test_roots_of_even_powers),
   };
   return cmocka_run_group_tests_name("simplify", tests, NULL, NULL);
 }
