@@ -11,8 +11,6 @@
 #include "solver.h"
 #include "taylor.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
-static const double safety = 0.1;
 enum { STEP_LIMIT = 10000000 }; /* steps in one communication step */
 enum { CRAWL_STEPS = 1000 };    /* so many steps of one kind move a system further than the tolerance */
 
@@ -50,16 +48,8 @@ static void destroy(struct Instance *instance) {
  */
 static bool start(struct Instance *instance, struct Taylor *taylor) {
   if (taylor->is_measured) return true;
-  double *state = instance->work, time = taylor->saved->origin;
-  for (size_t i = 0; i < lagrangian.state_count; i++) state[i] = taylor->x[i][0];
-  struct Point point = evaluate_point(instance);
-  point.time = time;
-  point.state = state;
-  if (lagrangian.input_count > 0) {
-    evaluate_inputs(instance, time, state + lagrangian.state_count);
-    point.input = state + lagrangian.state_count;
-  }
-  instance->singular = lagrangian.start(&point, taylor->derivative, taylor->work);
+  for (size_t i = 0; i < lagrangian.state_count; i++) instance->work[i] = taylor->x[i][0];
+  instance->singular = taylor_start(instance, taylor, taylor->saved->origin, taylor->derivative);
   return instance->singular == 0;
 }
 
@@ -100,11 +90,11 @@ static double advance(struct Instance *instance, struct Taylor *taylor) {
 }
 
 static void begin(struct Instance *instance, struct Taylor *taylor) {
-  double tolerance = fmax(safety * instance->situation->tolerance, 1e-17);
   taylor->saved->origin = instance->situation->time;
   taylor->saved->reach = 0.0;
   taylor->is_measured = false;
-  taylor->saved->order = (int64_t)fmin(fmax(ceil(1.0 - 0.5 * log(tolerance)), 4.0), SERIES_LENGTH - 2);
+  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
+  taylor->saved->order = (int64_t)fmin(fmax(order, 4.0), SERIES_LENGTH - 2);
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     taylor->low[i] = 0.0;
     taylor->x[i][0] = instance->state[i];

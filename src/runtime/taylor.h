@@ -49,6 +49,18 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   return (first * s + second) * s;
 }
 
+/* The tolerance of a local error: errors of its order add up to more than it; see tests/test_motion.py. */
+static inline double taylor_tolerance(const struct Instance *instance) {
+  double tolerance = 0.1 * instance->situation->tolerance;
+  return tolerance > 1e-17 ? tolerance : 1e-17;
+}
+
+/*
+ * d state / dt at a time and at the state that instance->work holds, and the first coefficients of all series. Returns
+ * what lagrangian.start returns.
+ */
+int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative);
+
 /*
  * Sets the reach of the series that taylor->x holds: as long as its last coefficients promise, but no longer than the
  * functions in the equations allow (series_limit.h), and so that the polynomials were found to obey the equations of

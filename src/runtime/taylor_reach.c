@@ -89,26 +89,30 @@ static double promised_step(const struct Taylor *taylor) {
   return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - (2.0 + 0.7 * inverse) / logarithm_of_2);
 }
 
+int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative) {
+  struct Point point = evaluate_point(instance);
+  point.time = time;
+  point.state = instance->work;
+  if (lagrangian.input_count > 0) {
+    double *input = instance->work + lagrangian.state_count;
+    evaluate_inputs(instance, time, input);
+    point.input = input;
+  }
+  return lagrangian.start(&point, derivative, taylor->work);
+}
+
 /*
  * The right side of the equations of motion at s after the origin, at the state that taylor->term leads to, with each
  * of its numbers made larger or smaller by the share; false where it does not exist.
  */
 static bool right_side(struct Instance *instance, const struct Taylor *taylor, double s, double share,
                        double *derivative) {
-  size_t states = lagrangian.state_count;
-  double *state = instance->work, *input = state + states;
-  for (size_t i = 0; i < states; i++) {
+  double *state = instance->work;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
     state[i] = taylor->x[i][0] + (taylor->term[i] + taylor->low[i]);
     if (share != 0.0) state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
   }
-  struct Point point = evaluate_point(instance);
-  point.time = taylor->saved->origin + s;
-  point.state = state;
-  if (lagrangian.input_count > 0) {
-    evaluate_inputs(instance, point.time, input);
-    point.input = input;
-  }
-  return lagrangian.start(&point, derivative, taylor->work) == 0;
+  return taylor_start(instance, taylor, taylor->saved->origin + s, derivative) == 0;
 }
 
 /*
@@ -116,7 +120,7 @@ static bool right_side(struct Instance *instance, const struct Taylor *taylor, d
  * step, the defect grows with the power order, so that the error is smaller by order + 1.
  */
 static double allowed_defect(const struct Instance *instance, const struct Taylor *taylor) {
-  double tolerance = 0.1 * instance->situation->tolerance, size = tolerance > 1e-17 ? tolerance : 1e-17;
+  double size = taylor_tolerance(instance);
   return taylor->is_limited ? size : defect_margin * (double)(taylor->saved->order + 1) * size;
 }
 
