@@ -6,11 +6,11 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "../src/compiler/differentiate.h"
-#include "../src/compiler/memory.h"
-#include "../src/compiler/print.h"
-#include "../src/compiler/rational.h"
-#include "../src/compiler/simplify.h"
+#include "algebra/differentiate.h"
+#include "memory.h"
+#include "algebra/formula.h"
+#include "algebra/rational.h"
+#include "algebra/simplify.h"
 #include "xml_output.h"
 
 static const char *const style =

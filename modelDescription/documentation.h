@@ -4,7 +4,7 @@
 
 #include <libxml/tree.h>
 
-#include "../src/compiler/program.h"
+#include "program/program.h"
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program);
 

@@ -6,8 +6,8 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "../src/compiler/memory.h"
-#include "../src/compiler/print.h"
+#include "memory.h"
+#include "algebra/formula.h"
 #include "model_structure.h"
 #include "xml_output.h"
 

@@ -4,7 +4,7 @@
 
 #include <libxml/tree.h>
 
-#include "../src/compiler/interface.h"
+#include "mechanics/interface.h"
 
 /* Appends the file's text to buffer. Returns false where libxml2 reports an error. */
 bool model_description_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,

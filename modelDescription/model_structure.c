@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "../src/compiler/memory.h"
+#include "memory.h"
 #include "xml_output.h"
 
 struct Structure {

@@ -4,7 +4,7 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "../src/compiler/interface.h"
+#include "mechanics/interface.h"
 
 void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
                            const struct Interface *interface);

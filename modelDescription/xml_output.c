@@ -1,6 +1,6 @@
 #include "xml_output.h"
 
-#include "../src/compiler/print.h"
+#include "algebra/formula.h"
 
 void write_attribute(xmlTextWriterPtr writer, const char *name, const char *value) {
   xmlTextWriterWriteAttribute(writer, BAD_CAST name, BAD_CAST value);

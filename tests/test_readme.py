@@ -55,7 +55,7 @@ def test_every_system_is_in_the_table():
 
 
 def test_every_element_is_described():
-    schema = (ROOT / "modelDescription" / "system.xsd").read_text()
+    schema = (ROOT / "fmu" / "system.xsd").read_text()
     for element in re.findall(r'<xs:element name="(\w+)"', schema):
         assert f"<{element}" in README, element
 

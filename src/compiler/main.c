@@ -5,12 +5,12 @@
 
 #include <libxml/parser.h>
 
-#include "lagrange.h"
-#include "linearize.h"
+#include "mechanics/lagrange.h"
+#include "mechanics/linearize.h"
 #include "memory.h"
 #include "output.h"
-#include "program.h"
-#include "reader.h"
+#include "program/program.h"
+#include "read/reader.h"
 
 static const char *const usage =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [-D NAME=VALUE ...]\n"

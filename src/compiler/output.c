@@ -6,9 +6,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../../modelDescription/documentation.h"
-#include "../../modelDescription/model_description.h"
-#include "emit.h"
+#include "documentation.h"
+#include "model_description.h"
+#include "write/emit.h"
 #include "guid.h"
 #include "memory.h"
 

@@ -3,7 +3,7 @@
 #define OUTPUT_H
 
 #include "diagnostics.h"
-#include "program.h"
+#include "program/program.h"
 
 /*
  * Writes system.c, modelDescription.xml and documentation/index.html into the directory, which is created where it

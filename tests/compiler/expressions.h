@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
-#include "parser.h"
-#include "print.h"
-#include "simplify.h"
+#include "read/parser.h"
+#include "algebra/formula.h"
+#include "algebra/simplify.h"
 
 struct Expressions {
   struct Diagnostics diagnostics;

@@ -1,5 +1,5 @@
 /* Forward and reverse differentiation of every operation, against each other and against difference quotients. */
-#include "differentiate.h"
+#include "algebra/differentiate.h"
 #include "expressions.h"
 
 static const char *const functions[] = {

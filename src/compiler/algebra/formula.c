@@ -1,0 +1,157 @@
+#include "algebra/formula.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+#include "algebra/simplify.h"
+
+enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
+
+/* What surrounds an expression: a looser one inside a tighter place needs parentheses. */
+enum Tightness { IN_SUM, IN_PRODUCT, IN_POWER };
+
+struct Printer {
+  FILE *file;
+  const struct Graph *graph;
+  long start;
+  int depth;
+};
+
+static void print(struct Printer *printer, Node node, enum Tightness tightness);
+
+void number_text(double value, char text[NUMBER_LENGTH]) {
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, NUMBER_LENGTH, "%.*g", digits, value);
+    if (strtod(text, NULL) == value) return;
+  }
+}
+
+void print_number(FILE *file, double value) {
+  char text[NUMBER_LENGTH];
+  number_text(value, text);
+  fputs(text, file);
+}
+
+static bool is_cut(struct Printer *printer) {
+  if (ftell(printer->file) - printer->start < LENGTH_LIMIT && printer->depth < DEPTH_LIMIT) return false;
+  fputs("...", printer->file);
+  return true;
+}
+
+static void print_power(struct Printer *printer, Node base, double exponent) {
+  if (exponent == 0.5) {
+    fputs("sqrt(", printer->file);
+    print(printer, base, IN_SUM);
+    fputs(")", printer->file);
+    return;
+  }
+  print(printer, base, exponent == 1.0 ? IN_PRODUCT : IN_POWER);
+  if (exponent == 1.0) return;
+  fputs("^", printer->file);
+  print_number(printer->file, exponent);
+}
+
+/* One side of the fraction bar: the factors whose exponent has this sign, led by a number unless it is 1. */
+static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count, int sign) {
+  const char *separator = "";
+  if (number != 1.0) {
+    print_number(printer->file, number);
+    separator = "*";
+  }
+  for (int i = 0; i < count; i++) {
+    if (factors[i].exponent * sign < 0) continue;
+    fputs(separator, printer->file);
+    print_power(printer, factors[i].base, factors[i].exponent * sign);
+    separator = "*";
+  }
+  if (*separator == '\0') fputs("1", printer->file);
+}
+
+/* A product with a positive coefficient. */
+static void print_product(struct Printer *printer, double coefficient, Node base) {
+  struct Factor factors[FACTOR_LIMIT];
+  int count = factors_of(printer->graph, base, factors);
+  if (count < 0) {
+    const struct Vertex *vertex = &printer->graph->vertices[base];
+    if (coefficient != 1.0) {
+      print_number(printer->file, coefficient);
+      fputs("*", printer->file);
+    }
+    print(printer, vertex->left, IN_PRODUCT);
+    fputs("*", printer->file);
+    print(printer, vertex->right, IN_PRODUCT);
+    return;
+  }
+  double inverse = 1.0 / coefficient;
+  bool fraction = coefficient < 1.0 && inverse == floor(inverse);
+  int below = fraction ? 1 : 0;
+  for (int i = 0; i < count; i++) below += factors[i].exponent < 0;
+  print_factors(printer, fraction ? 1.0 : coefficient, factors, count, 1);
+  if (below == 0) return;
+  fputs(below > 1 ? "/(" : "/", printer->file);
+  print_factors(printer, fraction ? inverse : 1.0, factors, count, -1);
+  if (below > 1) fputs(")", printer->file);
+}
+
+static void print_term(struct Printer *printer, Node node, bool first) {
+  if (printer->graph->vertices[node].operation == ADD) {
+    if (is_cut(printer)) return;
+    printer->depth++;
+    print_term(printer, printer->graph->vertices[node].left, first);
+    print_term(printer, printer->graph->vertices[node].right, false);
+    printer->depth--;
+    return;
+  }
+  Node base;
+  double coefficient = coefficient_of(printer->graph, node, &base);
+  if (coefficient < 0) fputs(first ? "-" : " - ", printer->file);
+  else if (!first) fputs(" + ", printer->file);
+  if (base == ONE) print_number(printer->file, fabs(coefficient));
+  else print_product(printer, fabs(coefficient), base);
+}
+
+static void print_function(struct Printer *printer, const struct Vertex *vertex) {
+  fprintf(printer->file, "%s(", operation_name(vertex->operation));
+  print(printer, vertex->left, IN_SUM);
+  if (operation_arity(vertex->operation) == 2) {
+    fputs(", ", printer->file);
+    print(printer, vertex->right, IN_SUM);
+  }
+  fputs(")", printer->file);
+}
+
+static void print(struct Printer *printer, Node node, enum Tightness tightness) {
+  if (is_cut(printer)) return;
+  printer->depth++;
+  const struct Vertex *vertex = &printer->graph->vertices[node];
+  Node base;
+  bool sum = vertex->operation == ADD || coefficient_of(printer->graph, node, &base) < 0;
+  bool product = vertex->operation == MULTIPLY || vertex->operation == POWER;
+  bool variable_power = vertex->operation == POWER && !graph_is_constant(printer->graph, vertex->right);
+  bool parentheses = (sum && tightness > IN_SUM) || (product && tightness > IN_PRODUCT);
+  if (parentheses) fputs("(", printer->file);
+  if (variable_power) {
+    print(printer, vertex->left, IN_POWER);
+    fputs("^", printer->file);
+    print(printer, vertex->right, IN_POWER);
+  } else if (sum || product || vertex->operation == CONSTANT) print_term(printer, node, true);
+  else if (vertex->operation == SYMBOL) fputs(graph_symbol_of(printer->graph, node)->name, printer->file);
+  else print_function(printer, vertex);
+  if (parentheses) fputs(")", printer->file);
+  printer->depth--;
+}
+
+void print_expression(FILE *file, const struct Graph *graph, Node node) {
+  struct Printer printer = {.file = file, .graph = graph, .start = ftell(file)};
+  print(&printer, node, IN_SUM);
+}
+
+char *expression_text(const struct Graph *graph, Node node) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&text, &length);
+  print_expression(file, graph, node);
+  fclose(file);
+  return text;
+}

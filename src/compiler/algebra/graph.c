@@ -1,0 +1,211 @@
+#include "algebra/graph.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "memory.h"
+
+static const char *const names[OPERATION_COUNT] = {
+    [ATAN2] = "atan2",  [MINIMUM] = "min",     [MAXIMUM] = "max",       [LESS] = "less",         [SINE] = "sin",
+    [COSINE] = "cos",   [TANGENT] = "tan",     [ARCSINE] = "asin",      [ARCCOSINE] = "acos",    [ARCTANGENT] = "atan",
+    [SINH] = "sinh",    [COSH] = "cosh",       [TANH] = "tanh",         [ARSINH] = "asinh",      [ARCOSH] = "acosh",
+    [ARTANH] = "atanh", [EXPONENTIAL] = "exp", [LOGARITHM] = "log",     [ABSOLUTE] = "abs",      [SIGN] = "sign",
+    [POWER] = "pow",    [ADD] = "add",         [MULTIPLY] = "multiply", [CONSTANT] = "constant", [SYMBOL] = "symbol",
+};
+
+int operation_arity(enum Operation operation) {
+  if (operation <= SYMBOL) return 0;
+  return operation <= LESS ? 2 : 1;
+}
+
+const char *operation_name(enum Operation operation) {
+  return names[operation];
+}
+
+/* sin and cos of whole quarter turns are exact, so that linearising about theta = pi leaves no rounding. */
+static double exact_sine(double angle, double quarter_turns) {
+  double turns = quarter_turns + nearbyint(angle / (M_PI / 2));
+  if (fabs(turns) < 1e6 && angle == (turns - quarter_turns) * (M_PI / 2)) {
+    static const double values[4] = {0.0, 1.0, 0.0, -1.0};
+    return values[(long)turns & 3];
+  }
+  return quarter_turns > 0 ? cos(angle) : sin(angle);
+}
+
+double operation_evaluate(enum Operation operation, double left, double right) {
+  switch (operation) {
+  case ADD: return left + right;
+  case MULTIPLY: return left * right;
+  case POWER: return pow(left, right);
+  case ATAN2: return atan2(left, right);
+  case MINIMUM: return fmin(left, right);
+  case MAXIMUM: return fmax(left, right);
+  case LESS: return left < right ? 1.0 : 0.0;
+  case SINE: return exact_sine(left, 0.0);
+  case COSINE: return exact_sine(left, 1.0);
+  case TANGENT: return exact_sine(left, 0.0) / exact_sine(left, 1.0);
+  case ARCSINE: return asin(left);
+  case ARCCOSINE: return acos(left);
+  case ARCTANGENT: return atan(left);
+  case SINH: return sinh(left);
+  case COSH: return cosh(left);
+  case TANH: return tanh(left);
+  case ARSINH: return asinh(left);
+  case ARCOSH: return acosh(left);
+  case ARTANH: return atanh(left);
+  case EXPONENTIAL: return exp(left);
+  case LOGARITHM: return log(left);
+  case ABSOLUTE: return fabs(left);
+  case SIGN: return (double)((left > 0.0) - (left < 0.0));
+  case CONSTANT:
+  case SYMBOL:
+  case OPERATION_COUNT: break;
+  }
+  return NAN;
+}
+
+struct Graph *graph_create(void) {
+  struct Graph *graph = allocate(1, sizeof *graph);
+  graph->capacity = 1024;
+  graph->vertices = allocate(graph->capacity, sizeof *graph->vertices);
+  graph->bucket_count = 4096;
+  graph->buckets = allocate(graph->bucket_count, sizeof *graph->buckets);
+  graph_constant(graph, 0.0);
+  graph_constant(graph, 1.0);
+  return graph;
+}
+
+void graph_free(struct Graph *graph) {
+  if (graph == NULL) return;
+  for (size_t i = 0; i < graph->symbol_count; i++) free(graph->symbols[i].name);
+  free(graph->symbols);
+  free(graph->vertices);
+  free(graph->buckets);
+  free(graph);
+}
+
+/* Constants are told apart by their bits: -0 is not 0, and NaN is itself. */
+static uint64_t bits_of(double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+static uint64_t hash(const struct Vertex *vertex) {
+  uint64_t key =
+      bits_of(vertex->value) ^ ((uint64_t)vertex->left << 32) ^ vertex->right ^ ((uint64_t)vertex->operation << 56);
+  key ^= key >> 31;
+  key *= 0x9e3779b97f4a7c15u;
+  key ^= key >> 29;
+  key *= 0xbf58476d1ce4e5b9u;
+  return key ^ (key >> 32);
+}
+
+static bool same(const struct Vertex *a, const struct Vertex *b) {
+  return a->operation == b->operation && a->left == b->left && a->right == b->right &&
+         bits_of(a->value) == bits_of(b->value);
+}
+
+static void insert(struct Graph *graph, Node node) {
+  size_t place = hash(&graph->vertices[node]) & (graph->bucket_count - 1);
+  while (graph->buckets[place] != 0) place = (place + 1) & (graph->bucket_count - 1);
+  graph->buckets[place] = node + 1;
+}
+
+static void grow(struct Graph *graph) {
+  if (graph->count == graph->capacity) {
+    graph->capacity *= 2;
+    graph->vertices = reallocate(graph->vertices, graph->capacity, sizeof *graph->vertices);
+  }
+  if (2 * graph->count < graph->bucket_count) return;
+  graph->bucket_count *= 2;
+  free(graph->buckets);
+  graph->buckets = allocate(graph->bucket_count, sizeof *graph->buckets);
+  for (Node node = 0; node < graph->count; node++) insert(graph, node);
+}
+
+static Node intern(struct Graph *graph, struct Vertex vertex) {
+  size_t place = hash(&vertex) & (graph->bucket_count - 1);
+  for (; graph->buckets[place] != 0; place = (place + 1) & (graph->bucket_count - 1)) {
+    Node node = graph->buckets[place] - 1;
+    if (same(&graph->vertices[node], &vertex)) return node;
+  }
+  if (graph->count >= NODE_LIMIT) {
+    graph->overflow = true;
+    return ZERO;
+  }
+  grow(graph);
+  Node node = (Node)graph->count++;
+  graph->vertices[node] = vertex;
+  insert(graph, node);
+  return node;
+}
+
+Node graph_constant(struct Graph *graph, double value) {
+  graph->not_finite |= !isfinite(value);
+  if (value == 0.0) value = 0.0; /* one zero: -0.0 and 0.0 are the same node */
+  return intern(graph, (struct Vertex){.operation = CONSTANT, .value = value});
+}
+
+Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name) {
+  size_t number = graph->symbol_count++;
+  graph->symbols = reallocate(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
+  Node node =
+      intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = (uint16_t)(1u << kind)});
+  graph->symbols[number] = (struct Symbol){.kind = kind, .index = index, .name = copy_text(name), .node = node};
+  return node;
+}
+
+const struct Symbol *graph_symbol_of(const struct Graph *graph, Node node) {
+  return &graph->symbols[graph->vertices[node].left];
+}
+
+Node graph_node(struct Graph *graph, enum Operation operation, Node left, Node right) {
+  uint16_t kinds = graph->vertices[left].kinds;
+  if (operation_arity(operation) == 2) kinds |= graph->vertices[right].kinds;
+  return intern(graph, (struct Vertex){.operation = operation, .left = left, .right = right, .kinds = kinds});
+}
+
+bool graph_is_constant(const struct Graph *graph, Node node) {
+  return graph->vertices[node].operation == CONSTANT;
+}
+
+double graph_value(const struct Graph *graph, Node node) {
+  return graph->vertices[node].value;
+}
+
+bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind) {
+  return ((unsigned)graph->vertices[node].kinds >> kind & 1u) != 0;
+}
+
+bool graph_is_constant_in_time(const struct Graph *graph, Node node) {
+  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+}
+
+void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags) {
+  memset(flags, 0, graph->count * sizeof *flags);
+  Node last = 0;
+  for (size_t i = 0; i < count; i++) {
+    flags[targets[i]] = true;
+    if (targets[i] > last) last = targets[i];
+  }
+  for (Node node = last + 1; node-- > 0;) {
+    if (!flags[node]) continue;
+    const struct Vertex *vertex = &graph->vertices[node];
+    int arity = operation_arity(vertex->operation);
+    if (arity > 0) flags[vertex->left] = true;
+    if (arity > 1) flags[vertex->right] = true;
+  }
+}
+
+double *graph_evaluate(const struct Graph *graph, const double *symbol_values) {
+  double *values = allocate(graph->count, sizeof *values);
+  for (Node node = 0; node < graph->count; node++) {
+    const struct Vertex *vertex = &graph->vertices[node];
+    if (vertex->operation == CONSTANT) values[node] = vertex->value;
+    else if (vertex->operation == SYMBOL) values[node] = symbol_values[vertex->left];
+    else values[node] = operation_evaluate(vertex->operation, values[vertex->left], values[vertex->right]);
+  }
+  return values;
+}

@@ -1,0 +1,224 @@
+#include "mechanics/interface.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+#include "program/series_plan.h"
+
+static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
+                                        const char *name, const char *description) {
+  interface->variables = reallocate(interface->variables, interface->count + 1, sizeof *interface->variables);
+  struct InterfaceVariable *variable = &interface->variables[interface->count++];
+  *variable = (struct InterfaceVariable){
+      .entry = {.name = copy_text(name), .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
+      .description = description != NULL ? copy_text(description) : NULL,
+      .nominal = NAN};
+  return variable;
+}
+
+static void append_list(struct Interface *interface, const struct VariableList *list, enum VariableKind kind,
+                        size_t first_index) {
+  for (size_t i = 0; i < list->count; i++) {
+    const struct Variable *source = &list->items[i];
+    struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
+    variable->entry.is_output = kind == VARIABLE_STATE || kind == VARIABLE_RESULT;
+    variable->entry.start = source->start;
+    variable->entry.minimum = source->minimum;
+    variable->entry.maximum = source->maximum;
+    variable->unit = variable_unit(source);
+    variable->nominal = source->nominal;
+    variable->node = source->node;
+  }
+}
+
+static void append_derivative(struct Interface *interface, const struct Variable *state, size_t index, Node node) {
+  char *name = format_text("der(%s)", state->name), *text = format_text("time derivative of %s", state->name);
+  struct InterfaceVariable *variable = append(interface, VARIABLE_DERIVATIVE, index, name, text);
+  variable->node = node;
+  struct Dimension second;
+  const char *problem;
+  unit_parse("s", &second, &problem);
+  struct Dimension dimension = dimension_multiply(state->dimension, second, -1.0);
+  variable->unit = dimension.known ? unit_text(dimension) : NULL;
+  free(name);
+  free(text);
+}
+
+static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
+                          const char *description) {
+  struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
+  variable->unit = copy_text(unit);
+  variable->node = node;
+}
+
+static void append_bodies(struct Interface *interface, const struct Model *model) {
+  static const char *const axes[] = {"x", "y", "z"};
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    for (int axis = 0; axis < 3; axis++) {
+      if (!body->has_position[axis]) continue;
+      char *name = format_text("%s.%s", body->name, axes[axis]);
+      char *text = format_text("%s position of %s", axes[axis], body->name);
+      append_result(interface, name, "m", body->position[axis].node, text);
+      free(name);
+      free(text);
+    }
+    if (!body->has_angle) continue;
+    char *name = format_text("%s.angle", body->name), *text = format_text("angle of %s", body->name);
+    append_result(interface, name, "rad", body->angle.node, text);
+    free(name);
+    free(text);
+  }
+}
+
+static void append_statistics(struct Interface *interface) {
+  append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
+  if (interface->method == SOLVER_EXACT) return;
+  append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
+         interface->method == SOLVER_TAYLOR ? "series of the equations of motion"
+                                            : "evaluations of the equations of motion");
+  if (interface->method == SOLVER_BDF)
+    append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
+           "evaluations of the Jacobian matrix");
+}
+
+static bool uses_time(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
+  for (size_t i = 0; i < equations->count; i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, model->outputs.items[i].node, TIME);
+  for (size_t i = 0; i < model->body_count; i++) {
+    for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, model->bodies[i].position[axis].node, TIME);
+    uses |= graph_depends_on(graph, model->bodies[i].angle.node, TIME);
+  }
+  return uses;
+}
+
+static enum SolverMethod method_of(const struct Model *model, const struct Equations *equations) {
+  if (model->coordinates.count == 0) return SOLVER_NONE;
+  if (model->method != SOLVER_DEFAULT) return model->method;
+  if (model->linearized) return SOLVER_EXACT;
+  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
+  return kink == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
+}
+
+/* Higher derivatives than the first are read from Taylor series, which end at a kink. */
+static int output_derivative_order(const struct Interface *interface, const struct Model *model) {
+  if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return 1;
+  const char *kink = NULL;
+  for (size_t i = 0; i < model->outputs.count && kink == NULL; i++)
+    kink = kink_of(model->graph, &model->outputs.items[i].node, 1);
+  return kink == NULL ? OUTPUT_ORDER : 1;
+}
+
+struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
+  struct Interface *interface = allocate(1, sizeof *interface);
+  size_t n = model->coordinates.count;
+  interface->method = method_of(model, equations);
+  interface->output_derivative_order = output_derivative_order(interface, model);
+  interface->depends_on_time = uses_time(model, equations);
+  interface->state_count = 2 * n + (model->work_line > 0 ? 1 : 0);
+  if (interface->depends_on_time) {
+    struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
+    time->unit = copy_text("s");
+    time->node = model->time;
+  }
+  append_list(interface, &model->coordinates, VARIABLE_STATE, 0);
+  append_list(interface, &model->velocities, VARIABLE_STATE, n);
+  struct Variable work = {.name = (char *)"nonConservativeWork",
+                          .line = 0,
+                          .minimum = NAN,
+                          .maximum = NAN,
+                          .nominal = NAN,
+                          .description = (char *)"work of the non-conservative forces"};
+  const char *problem;
+  unit_parse("J", &work.dimension, &problem);
+  if (model->work_line > 0) {
+    append_list(interface, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
+    interface->variables[interface->count - 1].entry.is_output = false;
+  }
+  for (size_t i = 0; i < n; i++)
+    append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
+  for (size_t i = 0; i < n; i++)
+    append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
+  if (model->work_line > 0) append_derivative(interface, &work, 2 * n, equations->power);
+  append_list(interface, &model->inputs, VARIABLE_INPUT, 0);
+  append_list(interface, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_list(interface, &model->outputs, VARIABLE_RESULT, 0);
+  interface->result_count = model->outputs.count;
+  if (n == 0) return interface;
+  append_bodies(interface, model);
+  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
+  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
+  append_result(interface, "totalEnergy", "J", equations->total, "kinetic and potential energy");
+  append_statistics(interface);
+  return interface;
+}
+
+void interface_free(struct Interface *interface) {
+  if (interface == NULL) return;
+  for (size_t i = 0; i < interface->count; i++) {
+    free((char *)interface->variables[i].entry.name);
+    free(interface->variables[i].unit);
+    free(interface->variables[i].description);
+  }
+  free(interface->variables);
+  free(interface);
+}
+
+size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index) {
+  size_t place = 0;
+  while (place < interface->count &&
+         (interface->variables[place].entry.kind != kind || interface->variables[place].entry.index != index))
+    place++;
+  return place;
+}
+
+double interface_tolerance(const struct Model *model) {
+  return isnan(model->tolerance) ? 1e-8 : model->tolerance;
+}
+
+static enum Dependency larger(enum Dependency a, enum Dependency b) {
+  return a > b ? a : b;
+}
+
+/* The factor of a product that does not depend on the symbol decides how constant the product's factor is. */
+static enum Dependency through_factor(const struct Graph *graph, enum Dependency dependency, Node factor) {
+  if (graph_is_constant(graph, factor)) return dependency;
+  bool of_parameters = (graph->vertices[factor].kinds & ~(1u << PARAMETER)) == 0;
+  return larger(dependency, of_parameters ? TUNABLE_FACTOR : DEPENDENT);
+}
+
+static void sweep_dependencies(const struct Graph *graph, enum Dependency *of) {
+  for (Node node = 0; node < graph->count; node++) {
+    const struct Vertex *vertex = &graph->vertices[node];
+    int arity = operation_arity(vertex->operation);
+    if (arity == 0) continue;
+    enum Dependency left = of[vertex->left], right = arity == 2 ? of[vertex->right] : INDEPENDENT;
+    if (left == INDEPENDENT && right == INDEPENDENT) of[node] = INDEPENDENT;
+    else if (vertex->operation == ADD) of[node] = larger(left, right);
+    else if (vertex->operation != MULTIPLY || (left != INDEPENDENT && right != INDEPENDENT)) of[node] = DEPENDENT;
+    else of[node] = through_factor(graph, larger(left, right), left == INDEPENDENT ? vertex->left : vertex->right);
+  }
+}
+
+enum Dependency *dependencies_on(const struct Graph *graph, const struct Equations *equations, Node symbol) {
+  enum Dependency *of = allocate(graph->count, sizeof *of);
+  of[symbol] = CONSTANT_FACTOR;
+  sweep_dependencies(graph, of);
+  size_t n = equations->count;
+  enum Dependency *acceleration = allocate(n, sizeof *acceleration);
+  for (size_t i = 0; i < n; i++) {
+    acceleration[i] = of[equations->acceleration[i]];
+    if (equations->explicit_form || equations->unrolled[equations->block[i]]) continue;
+    for (size_t j = 0; j < n; j++)
+      if (equations->block[j] == equations->block[i] && of[equations->residual[j]] != INDEPENDENT)
+        acceleration[i] = DEPENDENT;
+  }
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == ACCELERATION) of[graph->symbols[i].node] = acceleration[graph->symbols[i].index];
+  sweep_dependencies(graph, of);
+  free(acceleration);
+  return of;
+}

@@ -1,0 +1,50 @@
+#include "mechanics/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+
+static void free_variables(struct VariableList *list) {
+  for (size_t i = 0; i < list->count; i++) {
+    free(list->items[i].name);
+    free(list->items[i].description);
+    free(list->items[i].unit);
+  }
+  free(list->items);
+}
+
+void model_free(struct Model *model) {
+  if (model == NULL) return;
+  free_variables(&model->parameters);
+  free_variables(&model->inputs);
+  free_variables(&model->coordinates);
+  free_variables(&model->velocities);
+  free_variables(&model->outputs);
+  for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
+  free(model->bodies);
+  free(model->accelerations);
+  free(model->forces);
+  free(model->point.values);
+  free(model->point.given);
+  graph_free(model->graph);
+  free(model->name);
+  free(model->description);
+  free(model);
+}
+
+double *start_values(const struct Model *model) {
+  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
+                                              &model->velocities};
+  double *values = allocate(model->graph->symbol_count, sizeof *values);
+  values[model->graph->vertices[model->time].left] = isnan(model->start_time) ? 0.0 : model->start_time;
+  for (size_t list = 0; list < 4; list++)
+    for (size_t i = 0; i < lists[list]->count; i++)
+      values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
+  return values;
+}
+
+char *variable_unit(const struct Variable *variable) {
+  if (variable->unit != NULL) return copy_text(variable->unit);
+  return variable->dimension.known ? unit_text(variable->dimension) : NULL;
+}

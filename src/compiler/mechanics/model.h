@@ -1,0 +1,72 @@
+/* A mechanical system as its author wrote it: variables, energies, forces. The reader fills it. */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include "algebra/quantity.h"
+#include "diagnostics.h"
+
+struct Variable {
+  char *name, *description;
+  char *unit; /* as written, NULL where none was given */
+  struct Dimension dimension;
+  double start, minimum, maximum, nominal; /* NAN where none was given */
+  Node node;                               /* the symbol, or the value of an output */
+  long line;
+};
+
+struct VariableList {
+  struct Variable *items;
+  size_t count;
+};
+
+/* A particle or a planar rigid body. Components that were not given are ZERO and not present. */
+struct Body {
+  char *name;
+  struct Quantity mass, inertia;
+  struct Quantity position[3], angle;
+  bool has_position[3], has_angle;
+  long line;
+};
+
+enum SolverMethod { SOLVER_DEFAULT, SOLVER_ERK, SOLVER_BDF, SOLVER_EXACT, SOLVER_TAYLOR, SOLVER_NONE };
+
+/* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
+struct LinearizationPoint {
+  Node *values;
+  bool *given;
+};
+
+struct Model {
+  char *name, *description;
+  struct Graph *graph;
+  struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct Body *bodies;
+  size_t body_count;
+  Node *accelerations; /* the symbol of each coordinate's acceleration */
+  Node time;
+  struct Quantity kinetic;                /* J: K of L = K - U, of the bodies and of the <kinetic> terms */
+  struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
+  struct Quantity kinetic_energy;         /* J: the energy of both, see energies.h */
+  bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
+  struct Quantity potential, dissipation; /* J, W */
+  struct Quantity *forces;                /* generalized force along each coordinate */
+  struct Quantity driven_power;           /* W: of Cartesian forces along the motion that time alone gives */
+  bool has_forces;                        /* some force or dissipation was given */
+  long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
+  bool linearized;
+  struct LinearizationPoint point; /* where linearized */
+  enum SolverMethod method;
+  double tolerance, max_step;              /* NAN where none was given; max_step in s */
+  double start_time, stop_time, step_size; /* NAN where none was given */
+  long solver_line;
+};
+
+void model_free(struct Model *model);
+
+/* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
+double *start_values(const struct Model *model);
+
+/* The unit of a variable, for output: as written, else from its dimension; NULL where unknown. Free with free(). */
+char *variable_unit(const struct Variable *variable);
+
+#endif

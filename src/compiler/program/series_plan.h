@@ -1,0 +1,33 @@
+/* What Taylor series of the motion need beside the equations themselves. */
+#ifndef SERIES_PLAN_H
+#define SERIES_PLAN_H
+
+#include "mechanics/lagrange.h"
+
+/*
+ * The nodes whose series are computed: accelerations (or M and the right side of large blocks), the power of the
+ * forces where its work is asked for, and the auxiliary nodes that recurrences rest on, such as cos(x) for sin(x).
+ */
+struct SeriesPlan {
+  Node *targets;
+  size_t count;
+  Node *auxiliary; /* for each node of the graph, the node that its recurrence needs beside its operands; ZERO: none */
+};
+
+/*
+ * The name of a function with a kink or a jump, such as "min", below the nodes; NULL for none. Its pieces have series,
+ * which end where the next piece begins.
+ */
+const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
+
+/* The same for a kink that no series sees, as that of asin(sin(x)). */
+const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);
+
+/* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
+
+/* For expressions of the motion, without kinks. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);
+void series_plan_free(struct SeriesPlan *plan);
+
+#endif

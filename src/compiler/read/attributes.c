@@ -1,0 +1,86 @@
+#include "read/attributes.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+char *attribute(xmlNodePtr node, const char *name) {
+  xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
+  if (value == NULL) return NULL;
+  char *copy = copy_text((const char *)value);
+  xmlFree(value);
+  return copy;
+}
+
+bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
+  char *text = attribute(node, name);
+  if (text == NULL) return false;
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  bool right = *text != '\0' && parse_number(reader->scope, text, place, value);
+  free(text);
+  return right;
+}
+
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  char *text = attribute(node, name);
+  if (text == NULL) return NULL;
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  char *expanded = parse_name(reader->scope, text, place);
+  free(text);
+  return expanded;
+}
+
+bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
+                          struct Quantity *value) {
+  char *text = attribute(node, name);
+  if (text == NULL) return false;
+  char *what = format_text("%s of <%s>", name, (const char *)node->name);
+  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  if (*text != '\0') *value = parse_expression(reader->scope, text, place);
+  free(what);
+  free(text);
+  return true;
+}
+
+/* The element's text; a comment separates what stands before and after it. */
+static char *text_of(xmlNodePtr node) {
+  char *text = copy_text("");
+  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
+    bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
+    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
+    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
+    xmlFree(content);
+    free(text);
+    text = longer;
+  }
+  return text;
+}
+
+struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  char *text = text_of(node);
+  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Quantity value = parse_expression(reader->scope, text, place);
+  free(text);
+  return value;
+}
+
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
+  struct Dimension dimension = dimension_unknown;
+  const char *problem;
+  char *text = attribute(node, "unit");
+  if (text != NULL && !unit_parse(text, &dimension, &problem))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text, problem);
+  reader->scope->checks_units |= text != NULL;
+  free(text);
+  return dimension;
+}
+
+void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
+                  struct Dimension expected) {
+  if (quantity.literal || scope_units_agree(reader->scope, quantity.dimension, expected)) return;
+  char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
+  report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
+               expected_unit);
+  free(actual_unit);
+  free(expected_unit);
+}

@@ -1,0 +1,45 @@
+/* Attributes of XML elements as strings, numbers, names and expressions. */
+#ifndef ATTRIBUTES_H
+#define ATTRIBUTES_H
+
+#include <libxml/tree.h>
+
+#include "read/parser.h"
+#include "read/reader.h"
+
+/* Each pass uses the names that the ones before it made known, wherever in the file they stand. */
+enum Pass { DECLARATIONS, POSITIONS, EXPRESSIONS };
+
+struct Reader {
+  struct Model *model;
+  struct Scope *scope;
+  struct Diagnostics *diagnostics;
+  const struct ReaderOptions *options;
+  bool *definition_used;
+  bool has_solver, has_experiment;
+};
+
+/* NULL where missing; to be freed with free(). */
+char *attribute(xmlNodePtr node, const char *name);
+
+/* True and *value set where the attribute is present and right; reports an error where it is not right. */
+bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
+
+/* The name in an attribute, its index worked out; NULL where missing or after an error. Free with free(). */
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* An expression in an attribute; true where present. kinds as in struct Place. */
+bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
+                          struct Quantity *value);
+
+/* The text of an element as an expression; what names it in messages. */
+struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
+/* The element's unit; unknown where missing or after an error. */
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node);
+
+/* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
+void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
+                  struct Dimension expected);
+
+#endif

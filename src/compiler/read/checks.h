@@ -1,0 +1,10 @@
+/* What no single element of a system shows. */
+#ifndef CHECKS_H
+#define CHECKS_H
+
+#include "read/attributes.h"
+
+/* Reports a system without content, work without forces, ... and warns of what is likely a mistake. */
+void check_system(struct Reader *reader);
+
+#endif

@@ -1,0 +1,352 @@
+#include "read/elements.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "mechanics/energies.h"
+#include "memory.h"
+#include "algebra/simplify.h"
+
+#define KIND(kind) (1u << (kind))
+
+enum {
+  IN_MASS = KIND(PARAMETER),
+  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME),
+  IN_ENERGY = IN_POSITION | KIND(VELOCITY),
+  IN_FORCE = IN_ENERGY | KIND(INPUT),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION),
+};
+
+static const char *const axes[3] = {"x", "y", "z"};
+
+static struct Dimension unit_of(const char *text) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(text, &dimension, &problem);
+  return dimension;
+}
+
+static struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
+  list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
+  list->items[list->count] = variable;
+  return &list->items[list->count++];
+}
+
+static struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
+  struct Variable variable = {.name = name_attribute(reader, node, "name"),
+                              .description = attribute(node, "description"),
+                              .unit = attribute(node, "unit"),
+                              .dimension = unit_attribute(reader, node),
+                              .start = NAN,
+                              .minimum = NAN,
+                              .maximum = NAN,
+                              .nominal = NAN,
+                              .line = xmlGetLineNo(node)};
+  if (variable.name == NULL) variable.name = copy_text("?"); /* reported already */
+  return variable;
+}
+
+static void check_range(struct Reader *reader, const struct Variable *variable) {
+  if (variable->minimum > variable->maximum)
+    report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
+                 variable->minimum, variable->maximum);
+  else if (variable->start < variable->minimum || variable->start > variable->maximum)
+    report_error(reader->diagnostics, variable->line, "'%s': start %g is outside min and max", variable->name,
+                 variable->start);
+}
+
+static void read_constant(struct Reader *reader, xmlNodePtr node) {
+  char *name = attribute(node, "name");
+  double value = 0;
+  bool right = name != NULL && number_attribute(reader, node, "value", &value);
+  struct Place place = {.line = 0, .what = "-D"};
+  for (size_t i = 0; right && i < reader->options->definition_count; i++) {
+    const char *definition = reader->options->definitions[i];
+    size_t length = strlen(name);
+    if (strncmp(definition, name, length) != 0 || definition[length] != '=') continue;
+    reader->definition_used[i] = true;
+    right = parse_number(reader->scope, definition + length + 1, place, &value);
+  }
+  struct Quantity number = {
+      .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
+  if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
+  free(name);
+}
+
+static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
+  struct Variable variable = common_attributes(reader, node);
+  variable.start = 0.0;
+  number_attribute(reader, node, "start", &variable.start);
+  number_attribute(reader, node, "min", &variable.minimum);
+  number_attribute(reader, node, "max", &variable.maximum);
+  check_range(reader, &variable);
+  variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
+  append_variable(list, variable);
+}
+
+static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  double nominal = NAN;
+  if (number_attribute(reader, node, name, &nominal) && !(nominal > 0)) {
+    report_error(reader->diagnostics, xmlGetLineNo(node), "%s is %g; expected a positive number", name, nominal);
+    nominal = NAN;
+  }
+  return nominal;
+}
+
+static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable position = common_attributes(reader, node);
+  struct Variable velocity = {.name = name_attribute(reader, node, "velocity"),
+                              .description = attribute(node, "velocityDescription"),
+                              .dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0),
+                              .minimum = NAN,
+                              .maximum = NAN,
+                              .line = position.line};
+  if (velocity.name == NULL) velocity.name = copy_text("?");
+  if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
+  position.start = velocity.start = 0.0;
+  number_attribute(reader, node, "start", &position.start);
+  number_attribute(reader, node, "velocityStart", &velocity.start);
+  position.nominal = nominal_attribute(reader, node, "nominal");
+  velocity.nominal = nominal_attribute(reader, node, "velocityNominal");
+  int index = (int)model->coordinates.count;
+  position.node = scope_symbol(reader->scope, COORDINATE, index, position.name, position.dimension, position.line);
+  velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
+  append_variable(&model->coordinates, position);
+  append_variable(&model->velocities, velocity);
+}
+
+static void add_term(struct Model *model, struct Quantity *sum, Node term) {
+  sum->node = add(model->graph, sum->node, term);
+}
+
+/* 1/2 inertia rate^2 */
+static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node inertia, Node position) {
+  struct Graph *graph = model->graph;
+  Node rate = total_time_derivative(scope, position);
+  Node energy = scale(graph, 0.5, multiply(graph, inertia, power_number(graph, rate, 2.0)));
+  add_term(model, &model->kinetic, energy);
+  add_term(model, &model->kinetic_energy, energy);
+  model->driven |= graph_depends_on(graph, position, TIME);
+}
+
+static void define_component(struct Reader *reader, const struct Body *body, const char *component,
+                             struct Quantity value) {
+  char *name = format_text("%s.%s", body->name, component);
+  scope_define(reader->scope, name, value, body->line);
+  free(name);
+}
+
+static const struct Body *find_body(const struct Model *model, const char *name) {
+  for (size_t i = 0; i < model->body_count; i++)
+    if (strcmp(model->bodies[i].name, name) == 0) return &model->bodies[i];
+  return NULL;
+}
+
+static void read_body(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
+  if (body.name == NULL) body.name = format_text("body%zu", model->body_count + 1);
+  const struct Body *other = find_body(model, body.name);
+  if (other != NULL)
+    report_error(reader->diagnostics, body.line,
+                 "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
+                 other->line);
+  expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
+  require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
+  for (int axis = 0; axis < 3; axis++) {
+    body.has_position[axis] = expression_attribute(reader, node, axes[axis], IN_POSITION, &body.position[axis]);
+    if (!body.has_position[axis]) continue;
+    require_unit(reader, body.line, axes[axis], body.position[axis], unit_of("m"));
+    define_component(reader, &body, axes[axis], body.position[axis]);
+  }
+  body.has_angle = expression_attribute(reader, node, "angle", IN_POSITION, &body.angle);
+  if (body.has_angle) {
+    require_unit(reader, body.line, "the angle", body.angle, unit_of("rad"));
+    define_component(reader, &body, "angle", body.angle);
+    expression_attribute(reader, node, "inertia", IN_MASS, &body.inertia);
+    require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
+  }
+  if (!body.has_position[0] && !body.has_position[1] && !body.has_position[2])
+    report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
+  for (int axis = 0; axis < 3; axis++)
+    add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
+  add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
+  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
+  model->bodies[model->body_count++] = body;
+}
+
+/* Adds the element's expression to a sum and returns it. */
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what, unsigned kinds,
+                        const char *unit) {
+  struct Quantity term = expression_text_of(reader, node, what, kinds);
+  require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
+  add_term(reader->model, sum, term.node);
+  return term.node;
+}
+
+static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  bool driven;
+  Node term = read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
+  add_term(model, &model->explicit_kinetic, term);
+  add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
+  model->driven |= driven;
+}
+
+static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
+  struct Model *model = reader->model;
+  for (size_t i = 0; i < model->coordinates.count; i++) {
+    if (strcmp(model->coordinates.items[i].name, coordinate) != 0) continue;
+    struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
+    require_unit(reader, xmlGetLineNo(node), "the force", force,
+                 dimension_multiply(unit_of("J"), model->coordinates.items[i].dimension, -1.0));
+    add_term(model, &model->forces[i], force.node);
+    return;
+  }
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "there is no coordinate '%s' for this force; "
+               "expected the name of a <coordinate>",
+               coordinate);
+}
+
+/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work); its power is F . dr/dt. */
+static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Model *model = reader->model;
+  const struct Body *body = find_body(model, name);
+  if (body == NULL) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "there is no particle or body '%s' for this force; expected the name of one", name);
+    return;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    struct Quantity force;
+    if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &force)) continue;
+    require_unit(reader, xmlGetLineNo(node), axes[axis], force, unit_of("N"));
+    if (!body->has_position[axis])
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
+                   axes[axis]);
+    for (size_t i = 0; i < model->coordinates.count; i++) {
+      Node lever = derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
+      add_term(model, &model->forces[i], multiply(model->graph, force.node, lever));
+    }
+    Node drive = derivative_by(model->graph, body->position[axis].node, model->time);
+    add_term(model, &model->driven_power, multiply(model->graph, force.node, drive));
+  }
+}
+
+static bool is_blank(xmlNodePtr node) {
+  xmlChar *text = xmlNodeGetContent(node);
+  bool blank = text == NULL || strspn((const char *)text, " \t\r\n") == strlen((const char *)text);
+  xmlFree(text);
+  return blank;
+}
+
+static void read_force(struct Reader *reader, xmlNodePtr node) {
+  char *coordinate = name_attribute(reader, node, "coordinate"), *on = name_attribute(reader, node, "on");
+  reader->model->has_forces = true;
+  bool has_components = false;
+  for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
+  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
+  else if (on != NULL && !is_blank(node))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
+  else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
+  else add_cartesian_force(reader, node, on);
+  free(coordinate);
+  free(on);
+}
+
+static void read_output(struct Reader *reader, xmlNodePtr node) {
+  struct Variable output = common_attributes(reader, node);
+  char *what = format_text("the output '%s'", output.name);
+  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
+  require_unit(reader, output.line, what, value, output.dimension);
+  free(what);
+  if (!output.dimension.known) output.dimension = value.dimension;
+  output.node = value.node;
+  value.dimension = output.dimension;
+  scope_define(reader->scope, output.name, value, output.line);
+  append_variable(&reader->model->outputs, output);
+}
+
+static void read_definition(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  struct Quantity value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  struct Dimension unit = unit_attribute(reader, node);
+  require_unit(reader, xmlGetLineNo(node), "the definition", value, unit);
+  if (unit.known) value.dimension = unit;
+  value.literal = value.literal && !unit.known;
+  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
+  free(name);
+}
+
+void read_solver(struct Reader *reader, xmlNodePtr node) {
+  static const struct {
+    const char *name;
+    enum SolverMethod method;
+  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
+  char *method = attribute(node, "method");
+  reader->model->solver_line = xmlGetLineNo(node);
+  if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
+  reader->has_solver = true;
+  for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
+    if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
+  double *tolerance = &reader->model->tolerance;
+  if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
+                 *tolerance);
+  number_attribute(reader, node, "maxStep", &reader->model->max_step);
+  free(method);
+}
+
+void read_experiment(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  if (reader->has_experiment)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "a second <experiment>; expected one");
+  reader->has_experiment = true;
+  number_attribute(reader, node, "startTime", &model->start_time);
+  number_attribute(reader, node, "stopTime", &model->stop_time);
+  if (number_attribute(reader, node, "stepSize", &model->step_size) && !(model->step_size > 0))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number", model->step_size);
+  double start = isnan(model->start_time) ? 0.0 : model->start_time;
+  if (model->stop_time <= start)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g", model->stop_time,
+                 start);
+}
+
+static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
+  struct Model *model = reader->model;
+  if (strcmp(element, "constant") == 0) read_constant(reader, node);
+  else if (strcmp(element, "parameter") == 0) read_quantity(reader, node, &model->parameters, PARAMETER);
+  else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
+  else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (strcmp(element, "solver") == 0) read_solver(reader, node);
+  else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
+  else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
+}
+
+static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
+  struct Model *model = reader->model;
+  if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
+  else if (strcmp(element, "potential") == 0)
+    read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
+  else if (strcmp(element, "dissipation") == 0) {
+    read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+    model->has_forces = true;
+  } else if (strcmp(element, "force") == 0) read_force(reader, node);
+  else if (strcmp(element, "output") == 0) read_output(reader, node);
+}
+
+void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  const char *element = (const char *)node->name;
+  if (pass == DECLARATIONS) read_declaration(reader, node, element);
+  else if (pass == EXPRESSIONS) read_expression(reader, node, element);
+  else if (strcmp(element, "define") == 0) read_definition(reader, node);
+  else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
+}

@@ -1,0 +1,85 @@
+#include "read/linearization_reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "read/elements.h"
+#include "memory.h"
+#include "read/parser.h"
+
+char *linearized_path(xmlNodePtr root, const char *path) {
+  char *of = attribute(root, "of");
+  const char *slash = strrchr(path, '/');
+  if (of == NULL || *of == '/' || slash == NULL) return of;
+  char *joined = format_text("%.*s/%s", (int)(slash - path), path, of);
+  free(of);
+  return joined;
+}
+
+static void begin_point(struct Model *model) {
+  model->linearized = true;
+  model->point.values = allocate(model->graph->symbol_count, sizeof *model->point.values);
+  model->point.given = allocate(model->graph->symbol_count, sizeof *model->point.given);
+}
+
+static void set_point(struct Model *model, struct Scope *scope, const char *name, const char *value, long line,
+                      struct Diagnostics *diagnostics) {
+  const struct Quantity *quantity = scope_find(scope, name);
+  bool is_symbol = quantity != NULL && model->graph->vertices[quantity->node].operation == SYMBOL;
+  enum SymbolKind kind = is_symbol ? graph_symbol_of(model->graph, quantity->node)->kind : PARAMETER;
+  if (kind != COORDINATE && kind != VELOCITY && kind != INPUT) {
+    report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity or an input", name);
+    return;
+  }
+  Node symbol = model->graph->vertices[quantity->node].left;
+  if (model->point.given[symbol])
+    report_error(diagnostics, line, "the point names '%s' twice; expected one value", name);
+  struct Dimension dimension = quantity->dimension;
+  struct Place place = {.line = line, .what = name, .kinds = 1u << PARAMETER};
+  struct Quantity parsed = parse_expression(scope, value, place);
+  if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension))
+    report_error(diagnostics, line, "unit mismatch: the value for '%s' has another unit than the variable", name);
+  model->point.values[symbol] = parsed.node;
+  model->point.given[symbol] = true;
+}
+
+void apply_point(struct Model *model, struct Scope *scope, const char *const *point, size_t count,
+                 struct Diagnostics *diagnostics) {
+  if (model->linearized) {
+    report_error(diagnostics, 0, "this file is a linearization already; expected a <system> for --linearize");
+    return;
+  }
+  scope->diagnostics = diagnostics;
+  begin_point(model);
+  for (size_t i = 0; i < count; i++) {
+    const char *equals = strchr(point[i], '=');
+    char *name = format_text("%.*s", equals != NULL ? (int)(equals - point[i]) : 0, point[i]);
+    if (equals == NULL) report_error(diagnostics, 0, "--at %s: expected name=value", point[i]);
+    else set_point(model, scope, name, equals + 1, 0, diagnostics);
+    free(name);
+  }
+}
+
+void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr root, struct Diagnostics *diagnostics) {
+  struct Reader reader = {.model = model, .scope = scope, .diagnostics = diagnostics};
+  scope->diagnostics = diagnostics;
+  free(model->name);
+  free(model->description);
+  model->name = attribute(root, "name");
+  model->description = attribute(root, "description");
+  model->method = SOLVER_DEFAULT;
+  model->max_step = NAN;
+  begin_point(model);
+  for (xmlNodePtr node = root->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    if (strcmp((const char *)node->name, "solver") == 0) read_solver(&reader, node);
+    else if (strcmp((const char *)node->name, "experiment") == 0) read_experiment(&reader, node);
+    else {
+      char *name = name_attribute(&reader, node, "name"), *value = attribute(node, "value");
+      if (name != NULL && value != NULL) set_point(model, scope, name, value, xmlGetLineNo(node), diagnostics);
+      free(name);
+      free(value);
+    }
+  }
+}

@@ -1,0 +1,21 @@
+/* <linearization>: another system and the point at which it is linearised. */
+#ifndef LINEARIZATION_READER_H
+#define LINEARIZATION_READER_H
+
+#include <libxml/tree.h>
+
+#include "diagnostics.h"
+#include "mechanics/model.h"
+#include "read/scope.h"
+
+/* The path of the system that root linearises, relative to the file that holds it. Free with free(). */
+char *linearized_path(xmlNodePtr root, const char *path);
+
+/* Turns the model that was read from there into the linearised one of this name. */
+void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr root, struct Diagnostics *diagnostics);
+
+/* Sets the point from "name=value" texts and marks the model as linearised. */
+void apply_point(struct Model *model, struct Scope *scope, const char *const *point, size_t count,
+                 struct Diagnostics *diagnostics);
+
+#endif

@@ -1,0 +1,180 @@
+#include "read/reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "read/attributes.h"
+#include "read/checks.h"
+#include "read/elements.h"
+#include "read/linearization_reader.h"
+#include "memory.h"
+#include "read/parser.h"
+#include "read/xml.h"
+
+enum { REPETITION_LIMIT = 10000 };
+
+/* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
+static char refused, backwards, repeated;
+
+static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass);
+
+/* Whether the bounds are right and the index is a new name; names may have been defined since the last pass. */
+static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
+  if (from != floor(from) || to != floor(to) || to - from >= REPETITION_LIMIT) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<for> from %g to %g; expected whole numbers and at most %d repetitions", from, to, REPETITION_LIMIT);
+    return false;
+  }
+  if (scope_find(reader->scope, index) == NULL) return true;
+  report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
+               index);
+  return false;
+}
+
+static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  struct Scope *scope = reader->scope;
+  double from = 0, to = -1;
+  if (node->_private == &refused) return;
+  char *index = attribute(node, "index");
+  if (index == NULL || !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
+      !check_repetition(reader, node, index, from, to)) {
+    node->_private = &refused;
+    free(index);
+    return;
+  }
+  if (from <= to) node->_private = &repeated;
+  else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
+  for (double i = from; i <= to && node->_private != &refused && !reader->model->graph->overflow; i++) {
+    scope_set_number(scope, index, i);
+    read_children(reader, node, pass);
+  }
+  scope_remove(scope, index);
+  free(index);
+}
+
+/*
+ * from="1" to="0" is how a system with N = 0 repeats nothing, and from="2" to="i-1" repeats nothing for the first i.
+ * A loop that always runs backwards is a mistake.
+ */
+static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    check_repetitions(reader, node);
+    if (node->_private != &backwards) continue;
+    char *from = attribute(node, "from"), *to = attribute(node, "to");
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
+                   to);
+    free(from);
+    free(to);
+  }
+}
+
+static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    if (xmlStrEqual(node->name, (const xmlChar *)"for")) read_repetition(reader, node, pass);
+    else read_element(reader, node, pass);
+  }
+}
+
+/* Symbols for time and the accelerations; what der(...) makes of each symbol. */
+static void relate_to_time(struct Model *model, struct Scope *scope) {
+  size_t n = model->coordinates.count;
+  model->accelerations = allocate(n, sizeof *model->accelerations);
+  model->forces = allocate(n, sizeof *model->forces);
+  scope_set_time_derivative(scope, model->time, ONE);
+  for (size_t i = 0; i < n; i++) {
+    char *name = format_text("der(%s)", model->velocities.items[i].name);
+    model->accelerations[i] = scope_symbol(scope, ACCELERATION, (int)i, name, model->velocities.items[i].dimension, 0);
+    free(name);
+    scope_set_time_derivative(scope, model->coordinates.items[i].node, model->velocities.items[i].node);
+    scope_set_time_derivative(scope, model->velocities.items[i].node, model->accelerations[i]);
+  }
+}
+
+static void check_definitions_used(struct Reader *reader) {
+  for (size_t i = 0; i < reader->options->definition_count; i++)
+    if (!reader->definition_used[i])
+      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name",
+                   reader->options->definitions[i]);
+}
+
+/* Results that every system has; their names must stay free. */
+static void reserve_result_names(struct Scope *scope) {
+  static const char *const results[] = {"kineticEnergy",       "potentialEnergy", "totalEnergy",
+                                        "nonConservativeWork", "solverSteps",     "derivativeEvaluations",
+                                        "jacobianEvaluations"};
+  for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
+}
+
+static struct Model *model_create(void) {
+  struct Model *model = allocate(1, sizeof *model);
+  model->graph = graph_create();
+  model->tolerance = model->max_step = model->start_time = model->stop_time = model->step_size = NAN;
+  return model;
+}
+
+/* The names that each system knows. */
+static struct Scope *language_of(struct Model *model, struct Diagnostics *diagnostics) {
+  struct Scope *scope = scope_create(model->graph, diagnostics);
+  define_language(scope);
+  reserve_result_names(scope);
+  /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */
+  model->time = scope_symbol(scope, TIME, 0, "time", dimension_unknown, 0);
+  return scope;
+}
+
+static void read_system(struct Reader *reader, xmlNodePtr root) {
+  reader->model->name = attribute(root, "name");
+  reader->model->description = attribute(root, "description");
+  read_children(reader, root, DECLARATIONS);
+  check_repetitions(reader, root);
+  check_definitions_used(reader);
+  relate_to_time(reader->model, reader->scope);
+  read_children(reader, root, POSITIONS);
+  read_children(reader, root, EXPRESSIONS);
+  check_system(reader);
+  if (reader->model->graph->overflow)
+    report_error(reader->diagnostics, 0, "the system is too large: more than %d operations", NODE_LIMIT);
+}
+
+/* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
+static struct Model *read_file(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics,
+                               int depth, struct Scope **scope) {
+  struct Diagnostics local = {.file = path};
+  struct Model *model = NULL;
+  xmlDocPtr document = xml_load(path, &local);
+  xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
+  if (root != NULL && xmlStrEqual(root->name, (const xmlChar *)"linearization")) {
+    char *original = depth == 0 ? linearized_path(root, path) : NULL;
+    if (depth > 0) report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
+    else if (original != NULL) {
+      model = read_file(original, options, &local, depth + 1, scope);
+      if (model != NULL) read_linearization(model, *scope, root, &local);
+    }
+    free(original);
+  } else if (root != NULL) {
+    model = model_create();
+    *scope = language_of(model, &local);
+    struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
+    reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
+    read_system(&reader, root);
+    free(reader.definition_used);
+  }
+  if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
+    apply_point(model, *scope, options->point, options->point_count, &local);
+  xmlFreeDoc(document);
+  diagnostics->errors += local.errors;
+  if (local.errors == 0) return model;
+  model_free(model);
+  return NULL;
+}
+
+struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {
+  struct Scope *scope = NULL;
+  struct Model *model = read_file(path, options, diagnostics, 0, &scope);
+  scope_free(scope);
+  return model;
+}

@@ -1,0 +1,47 @@
+/* The names that an expression may use, and what they stand for. */
+#ifndef SCOPE_H
+#define SCOPE_H
+
+#include <libxml/hash.h>
+
+#include "algebra/domain.h"
+#include "algebra/quantity.h"
+#include "diagnostics.h"
+
+struct Scope {
+  struct Graph *graph;
+  struct Diagnostics *diagnostics;
+  xmlHashTablePtr names;            /* name -> struct Entry */
+  bool checks_units;                /* some variable has a unit; a file without any is free of them */
+  struct Requirements requirements; /* of all expressions read */
+  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
+};
+
+struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
+void scope_free(struct Scope *scope);
+
+/* Makes a name known. Where it is taken already, reports this and returns false. */
+bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line);
+
+/* A compile-time number; a second definition replaces the first (used for loop indices). */
+void scope_set_number(struct Scope *scope, const char *name, double value);
+void scope_remove(struct Scope *scope, const char *name);
+
+/* NULL where the name is unknown. */
+const struct Quantity *scope_find(const struct Scope *scope, const char *name);
+
+/* A known name that differs from this one by at most two letters, or NULL. */
+const char *scope_similar_name(const struct Scope *scope, const char *name);
+
+/* Whether two quantities may be added; always true where units are not checked. */
+bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second);
+
+/* Adds a symbol to graph and scope; its time derivative is set with scope_set_time_derivative. */
+Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
+                  long line);
+void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);
+
+/* d node / dt by the chain rule, the part explicit in time included. */
+Node total_time_derivative(struct Scope *scope, Node node);
+
+#endif

@@ -1,0 +1,50 @@
+#include "read/xml.h"
+
+#include <string.h>
+
+#include <libxml/parser.h>
+#include <libxml/xmlschemas.h>
+
+/* What may stand where an element was not expected; libxml2 does not tell. */
+static const char *expected_elements(const xmlError *error) {
+  const xmlNode *node = error->node;
+  if (error->domain != XML_FROM_SCHEMASV || error->code != XML_SCHEMAV_ELEMENT_CONTENT || node->parent == NULL)
+    return "";
+  if (xmlStrEqual(node->parent->name, (const xmlChar *)"linearization")) return " Expected at, solver or experiment.";
+  return " Expected constant, parameter, input, coordinate, particle, body, kinetic, potential, dissipation, force, "
+         "define, output or for, and outside of <for> also work, solver or experiment.";
+}
+
+static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
+  const char *message = error->message != NULL ? error->message : "not readable";
+  int length = (int)strcspn(message, "\n");
+  if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
+  else report_error(diagnostics, error->line, "%.*s%s", length, message, expected_elements(error));
+}
+
+static void validate(xmlDocPtr document, struct Diagnostics *diagnostics) {
+  xmlSchemaParserCtxtPtr parser = xmlSchemaNewMemParserCtxt(system_schema, (int)strlen(system_schema));
+  xmlSchemaPtr schema = parser != NULL ? xmlSchemaParse(parser) : NULL;
+  xmlSchemaValidCtxtPtr validation = schema != NULL ? xmlSchemaNewValidCtxt(schema) : NULL;
+  if (validation != NULL) {
+    int errors = diagnostics->errors;
+    xmlSchemaSetValidStructuredErrors(validation, (xmlStructuredErrorFunc)report_xml_error, diagnostics);
+    if (xmlSchemaValidateDoc(validation, document) != 0 && diagnostics->errors == errors)
+      report_error(diagnostics, 0, "the file does not match the schema of system.xml");
+  } else {
+    report_error(diagnostics, 0, "the schema of system.xml cannot be used; expected libxml2 with schema support");
+  }
+  xmlSchemaFreeValidCtxt(validation);
+  xmlSchemaFree(schema);
+  xmlSchemaFreeParserCtxt(parser);
+}
+
+xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
+  xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
+  xmlDocPtr document = xmlReadFile(path, NULL, XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
+  if (document == NULL && diagnostics->errors == 0)
+    report_error(diagnostics, 0, "cannot be read; expected an XML file");
+  if (document != NULL) validate(document, diagnostics);
+  xmlSetStructuredErrorFunc(NULL, NULL);
+  return document;
+}
