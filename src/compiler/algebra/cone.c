@@ -1,0 +1,63 @@
+#include "algebra/cone.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+struct Cone *cone_create(void) {
+  return allocate(1, sizeof(struct Cone));
+}
+
+void cone_free(struct Cone *cone) {
+  if (cone == NULL) return;
+  free(cone->nodes);
+  free(cone->place);
+  free(cone);
+}
+
+bool cone_has(const struct Cone *cone, Node node) {
+  if (node >= cone->capacity) return false;
+  size_t place = cone->place[node];
+  return place < cone->count && cone->nodes[place] == node;
+}
+
+size_t cone_place(const struct Cone *cone, Node node) {
+  return cone->place[node];
+}
+
+/* The places of nodes that are no members hold anything, so that nothing is cleared between two collections. */
+static void add(struct Cone *cone, Node node) {
+  if (cone_has(cone, node)) return;
+  cone->place[node] = cone->count;
+  cone->nodes[cone->count++] = node;
+}
+
+static void grow(struct Cone *cone, size_t capacity) {
+  if (capacity <= cone->capacity) return;
+  capacity += capacity / 2;
+  cone->nodes = reallocate(cone->nodes, capacity, sizeof *cone->nodes);
+  cone->place = reallocate(cone->place, capacity, sizeof *cone->place);
+  for (size_t i = cone->capacity; i < capacity; i++) cone->place[i] = 0;
+  cone->capacity = capacity;
+}
+
+static int compare(const void *first, const void *second) {
+  Node a = *(const Node *)first, b = *(const Node *)second;
+  return (a > b) - (a < b);
+}
+
+void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
+                  bool (*stops)(const struct Graph *graph, Node node)) {
+  grow(cone, graph->count);
+  cone->count = 0;
+  for (size_t i = 0; i < count; i++) add(cone, targets[i]);
+  for (size_t i = 0; i < cone->count; i++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[i]];
+    int arity = operation_arity(vertex->operation);
+    if (arity == 0 || (stops != NULL && stops(graph, cone->nodes[i]))) continue;
+    add(cone, vertex->left);
+    if (arity == 2) add(cone, vertex->right);
+  }
+  qsort(cone->nodes, cone->count, sizeof *cone->nodes, compare);
+  for (size_t i = 0; i < cone->count; i++) cone->place[cone->nodes[i]] = i;
+}
