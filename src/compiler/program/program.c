@@ -1,137 +1,245 @@
 #include "program/program.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "algebra/differentiate.h"
 #include "memory.h"
-#include "algebra/simplify.h"
-
-/* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
-static Node *create_seeds(struct Graph *graph) {
-  static const enum SymbolKind seed_kinds[] = {
-      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
-      [VELOCITY] = SEED_VELOCITY,   [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
-  };
-  size_t count = graph->symbol_count;
-  Node *seeds = allocate(2 * count, sizeof *seeds);
-  for (size_t i = 0; i < count; i++) {
-    char *name = format_text("d %s", graph->symbols[i].name);
-    seeds[i] = graph_symbol(graph, seed_kinds[graph->symbols[i].kind], graph->symbols[i].index, name);
-    free(name);
-  }
-  return seeds;
-}
 
 /*
- * Along a direction, 0 = d (M a - right_side) = M da + d(M a - right_side)|a held; explicit accelerations are
- * differentiated as they are. In large blocks result holds the right side of this system.
+ * A C compiler takes more than proportionally long for long functions: for this many instructions some seconds, where a
+ * table takes a fraction of one.
  */
-static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
-                                Node *result) {
-  size_t n = equations->count;
-  derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds, result);
-  if (equations->explicit_form) return;
-  Node *right = allocate(n, sizeof *right);
-  for (size_t i = 0; i < n; i++) right[i] = negate(graph, result[i]);
-  equations_solve(graph, equations, right, result);
+enum { STATEMENT_LIMIT = 6000 };
+
+static Place target(size_t index) {
+  return place_in(SPACE_TARGET, index);
+}
+
+static void copy_place(struct Values *values, Place to, Place from) {
+  routine_append(values->routine, COPY, to, from, 0, 0);
+}
+
+static struct Routine *prepare_routine(struct Values *values, const struct Equations *equations) {
+  struct Routine *routine = values_begin(values);
+  struct NodeList targets = {0};
+  const struct Inertia *inertia = equations->inertia;
+  append_nodes(&targets, values->prepared->nodes, values->prepared->count);
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &inertia->pivots[i];
+    if (pivot_is_prepared(values->graph, pivot))
+      append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
+  }
+  values_compute(values, targets.nodes, targets.count, true);
+  for (size_t i = 0; i < inertia->pivot_count; i++)
+    if (pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
+  for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target(i), values->prepared->nodes[i]);
+  free(targets.nodes);
+  return routine;
+}
+
+static struct Routine *derivatives_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  size_t n = program->equations->count;
+  append_accelerations(values, program->equations, &program->blocks);
+  if (has_work(program->expressions)) values_compute(values, &program->equations->power, 1, false);
+  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_STATE, n + i));
+  if (has_work(program->expressions)) values_copy(values, target(2 * n), program->equations->power);
+  return routine;
+}
+
+/* Where differentiated equations hold accelerations, or blocks must be factored. */
+static void append_needed_accelerations(const struct Program *program, struct Values *values, const Node *nodes,
+                                        size_t count) {
+  bool needed = program->blocks.count > 0;
+  for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(values->graph, nodes[i], ACCELERATION);
+  if (needed) append_accelerations(values, program->equations, &program->blocks);
+}
+
+static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  const struct Expressions *expressions = program->expressions;
+  const Node *along = expressions->along;
+  size_t n = program->equations->count;
+  append_needed_accelerations(program, values, along, n);
+  values_compute(values, along, n, false);
+  if (has_work(expressions)) values_compute(values, &expressions->power_along, 1, false);
+  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
   for (size_t i = 0; i < n; i++)
-    if (!equations->unrolled[equations->block[i]]) result[i] = right[i];
-  free(right);
-}
-
-static void without_accelerations(const struct Graph *graph, Node *seeds) {
-  for (size_t i = 0; i < graph->symbol_count; i++)
-    if (graph->symbols[i].kind == ACCELERATION) seeds[i] = ZERO;
-}
-
-static void create_jacobian(struct Program *program, struct Graph *graph) {
-  const struct Model *model = program->model;
-  size_t n = program->equations->count, states = program->interface->state_count;
-  program->jacobian = allocate(n * states, sizeof(Node));
-  program->power_jacobian = allocate(states, sizeof(Node));
-  Node *column = allocate(n, sizeof *column);
-  for (size_t j = 0; j < 2 * n; j++) {
-    Node symbol = j < n ? model->coordinates.items[j].node : model->velocities.items[j - n].node;
-    Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
-    seeds[graph->vertices[symbol].left] = ONE;
-    accelerations_along(graph, program->equations, seeds, column);
-    for (size_t i = 0; i < n; i++) program->jacobian[i * states + j] = column[i];
-    free(seeds);
-    if (model->work_line > 0) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
+    if (!is_looped(program->equations, i)) values_copy(values, target(n + i), along[i]);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct LoopedBlock *looped = &program->blocks.items[b];
+    Node *right_side = allocate(looped->block->count, sizeof *right_side);
+    for (size_t i = 0; i < looped->block->count; i++) right_side[i] = along[looped->block->coordinates[i]];
+    append_solution(values, &program->blocks, b, right_side);
+    for (size_t i = 0; i < looped->block->count; i++)
+      copy_place(values, target(n + looped->block->coordinates[i]), place_in(SPACE_SIDE, looped->first_side + i));
+    free(right_side);
   }
-  free(column);
+  if (has_work(expressions)) values_copy(values, target(2 * n), expressions->power_along);
+  return routine;
 }
 
-/* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
-static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
-  const struct Equations *equations = program->equations;
-  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  bool is_taylor = program->interface->method == SOLVER_TAYLOR;
-  if (kink == NULL || !is_taylor)
-    program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
-  else
-    report_error(diagnostics, model->solver_line,
-                 "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
-}
+/* Where the coordinates stand in large blocks: 1 + the block's number, 0 for none, and the row in it. */
+struct BlockRows {
+  size_t *number, *row;
+  size_t *solved; /* of each block: 1 + the column of the Jacobian that its right side holds the solution for */
+};
 
-static void create_output_series(struct Program *program, const struct Model *model) {
-  size_t count = model->outputs.count;
-  if (count == 0 || program->interface->output_derivative_order == 1) return;
-  Node *outputs = allocate(count, sizeof *outputs);
-  for (size_t i = 0; i < count; i++) outputs[i] = model->outputs.items[i].node;
-  program->output_series = series_plan_of_outputs(model->graph, outputs, count);
-  free(outputs);
-}
-
-struct Program *program_create(struct Model *model, const struct Equations *equations,
-                               const struct Interface *interface, struct Diagnostics *diagnostics) {
-  struct Graph *graph = model->graph;
-  size_t n = equations->count;
-  int errors = diagnostics->errors;
-  struct Program *program = allocate(1, sizeof *program);
-  *program = (struct Program){.model = model, .equations = equations, .interface = interface};
-  if (interface->method == SOLVER_EXACT) {
-    if (!isnan(model->max_step))
-      report_error(diagnostics, model->solver_line,
-                   "the method 'exact' takes a communication step as a whole; expected no maxStep");
-    program->linear = linear_system_of(model, equations, diagnostics);
-    if (model->work_line > 0)
-      report_error(diagnostics, model->solver_line,
-                   "<work/> is not linear in the state; expected another method than 'exact'");
+static struct BlockRows block_rows_create(const struct Program *program) {
+  size_t n = program->equations->count;
+  struct BlockRows rows = {allocate(n, sizeof(size_t)), allocate(n, sizeof(size_t)),
+                           allocate(program->blocks.count, sizeof(size_t))};
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct InertiaBlock *block = program->blocks.items[b].block;
+    for (size_t i = 0; i < block->count; i++) {
+      rows.number[block->coordinates[i]] = b + 1;
+      rows.row[block->coordinates[i]] = i;
+    }
   }
-  Node *seeds = create_seeds(graph);
-  program->result_along = allocate(interface->result_count, sizeof(Node));
+  return rows;
+}
+
+static void block_rows_free(struct BlockRows *rows) {
+  free(rows->number);
+  free(rows->row);
+  free(rows->solved);
+}
+
+/* First the right sides of large blocks, of which a column has all rows or none; then their solutions. */
+static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
+                                   struct BlockRows *rows) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  size_t n = program->equations->count;
+  for (int solving = 0; solving <= 1; solving++) {
+    for (size_t e = jacobian->start[column]; e < jacobian->start[column + 1]; e++) {
+      size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
+      if (number == 0) {
+        if (!solving) values_copy(values, target(e), jacobian->value[e]);
+        continue;
+      }
+      Place side = place_in(SPACE_SIDE, program->blocks.items[number - 1].first_side + rows->row[row - n]);
+      if (!solving) {
+        values_copy(values, side, jacobian->value[e]);
+        continue;
+      }
+      if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
+      rows->solved[number - 1] = column + 1;
+      copy_place(values, target(e), side);
+    }
+  }
+}
+
+static struct Routine *jacobian_routine(const struct Program *program, struct Values *values) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  struct Routine *routine = values_begin(values);
+  struct BlockRows rows = block_rows_create(program);
+  append_needed_accelerations(program, values, jacobian->value, jacobian->count);
+  values_compute(values, jacobian->value, jacobian->count, false);
+  for (size_t column = 0; column < program->interface->state_count; column++)
+    append_jacobian_column(program, values, column, &rows);
+  block_rows_free(&rows);
+  return routine;
+}
+
+/* Rows of A, B and c. */
+static struct Routine *linear_routine(const struct LinearSystem *linear, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  size_t states = linear->states, inputs = linear->inputs, columns = states + inputs + 1;
+  for (size_t i = 0; i < states; i++) {
+    for (size_t j = 0; j < states; j++) values_copy(values, target(i * columns + j), linear->a[i * states + j]);
+    for (size_t j = 0; j < inputs; j++)
+      values_copy(values, target(i * columns + states + j), linear->b[i * inputs + j]);
+    values_copy(values, target(i * columns + states + inputs), linear->c[i]);
+  }
+  return routine;
+}
+
+static struct Routine *result_routine(struct Values *values, Node node) {
+  struct Routine *routine = values_begin(values);
+  values_compute(values, &node, 1, false);
+  values_copy(values, target(0), node);
+  return routine;
+}
+
+static void create_results(struct Program *program, struct Values *values) {
+  const struct Interface *interface = program->interface;
+  program->result = allocate(interface->result_count, sizeof(struct Routine *));
+  program->result_along = allocate(interface->result_count, sizeof(struct Routine *));
   for (size_t i = 0; i < interface->count; i++) {
-    const struct InterfaceVariable *variable = &interface->variables[i];
-    if (variable->entry.kind == VARIABLE_RESULT && variable->entry.is_output)
-      derivative_along(graph, &variable->node, 1, seeds, &program->result_along[variable->entry.index]);
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (entry->kind != VARIABLE_RESULT) continue;
+    program->result[entry->index] = result_routine(values, program->expressions->result[entry->index]);
+    if (entry->is_output)
+      program->result_along[entry->index] = result_routine(values, program->expressions->result_along[entry->index]);
   }
-  without_accelerations(graph, seeds);
-  program->along = allocate(n, sizeof(Node));
-  accelerations_along(graph, equations, seeds, program->along);
-  derivative_along(graph, &equations->power, 1, seeds, &program->power_along);
-  if (interface->method == SOLVER_BDF) create_jacobian(program, graph);
-  free(seeds);
-  if (interface->method == SOLVER_TAYLOR || interface->method == SOLVER_ERK || interface->method == SOLVER_BDF)
-    create_series(program, model, diagnostics);
-  create_output_series(program, model);
-  if (graph->overflow)
-    report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",
-                 NODE_LIMIT);
-  if (diagnostics->errors == errors) return program;
-  program_free(program);
-  return NULL;
+}
+
+/* The methods of SUNDIALS need the series for its limits alone. */
+static void create_series(struct Program *program, struct Values *values) {
+  const struct Expressions *expressions = program->expressions;
+  if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
+  if (program->series != NULL && program->interface->method != SOLVER_TAYLOR &&
+      program->series->limit.count == 0) {
+    series_program_free(program->series);
+    program->series = NULL;
+  }
+  if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, values);
+}
+
+static size_t count_of(const struct Routine *routine) {
+  return routine != NULL ? routine->count : 0;
+}
+
+static size_t instruction_count(const struct Program *program) {
+  size_t count = count_of(program->prepare) + count_of(program->derivatives) + count_of(program->directional) +
+                 count_of(program->jacobian);
+  for (size_t i = 0; i < program->interface->result_count; i++)
+    count += count_of(program->result[i]) + count_of(program->result_along[i]);
+  const struct SeriesProgram *const series[] = {program->series, program->output_series};
+  for (int i = 0; i < 2; i++)
+    if (series[i] != NULL) count += count_of(series[i]->start) + count_of(series[i]->order);
+  return count;
+}
+
+struct Program *program_create(const struct Expressions *expressions) {
+  struct Program *program = allocate(1, sizeof *program);
+  *program = (struct Program){.model = expressions->model,
+                              .equations = expressions->equations,
+                              .interface = expressions->interface,
+                              .expressions = expressions};
+  struct NodeList targets = expressions_targets(expressions);
+  program->prepared = prepared_create(expressions->model->graph, targets);
+  free(targets.nodes);
+  program->blocks = looped_blocks_of(expressions->equations);
+  struct Values *values =
+      values_create(expressions->model->graph, program->prepared, expressions->equations->count);
+  program->prepare = prepare_routine(values, expressions->equations);
+  if (expressions->equations->count > 0) {
+    program->derivatives = derivatives_routine(program, values);
+    program->directional = directional_routine(program, values);
+  }
+  if (expressions->jacobian != NULL) program->jacobian = jacobian_routine(program, values);
+  if (expressions->linear != NULL) program->linear = linear_routine(expressions->linear, values);
+  create_results(program, values);
+  create_series(program, values);
+  values_free(values);
+  program->is_table = instruction_count(program) > STATEMENT_LIMIT;
+  return program;
 }
 
 void program_free(struct Program *program) {
   if (program == NULL) return;
-  linear_system_free(program->linear);
-  series_plan_free(program->series);
-  series_plan_free(program->output_series);
-  free(program->along);
-  free(program->jacobian);
-  free(program->power_jacobian);
+  struct Routine *const routines[] = {program->prepare, program->derivatives, program->directional, program->jacobian,
+                                      program->linear};
+  for (size_t i = 0; i < sizeof routines / sizeof *routines; i++) routine_free(routines[i]);
+  for (size_t i = 0; i < program->interface->result_count; i++) {
+    routine_free(program->result[i]);
+    routine_free(program->result_along[i]);
+  }
+  free(program->result);
   free(program->result_along);
+  series_program_free(program->series);
+  series_program_free(program->output_series);
+  prepared_free(program->prepared);
+  free(program->blocks.items);
   free(program);
 }

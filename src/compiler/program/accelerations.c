@@ -1,0 +1,88 @@
+#include "program/accelerations.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
+  struct LoopedBlocks blocks = {0};
+  if (equations->explicit_form) return blocks;
+  const struct Inertia *inertia = equations->inertia;
+  blocks.items = allocate(inertia->block_count, sizeof *blocks.items);
+  for (size_t i = 0; i < inertia->block_count; i++) {
+    const struct InertiaBlock *block = &inertia->blocks[i];
+    if (block->is_unrolled) continue;
+    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count};
+    blocks.mass_count += block->start[block->count];
+    blocks.side_count += block->count;
+  }
+  return blocks;
+}
+
+bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
+  return graph_is_constant_in_time(graph, pivot->value) && graph_is_constant_in_time(graph, pivot->scale);
+}
+
+struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations) {
+  struct NodeList targets = {0};
+  for (size_t i = 0; i < equations->count; i++)
+    append_node(&targets, is_looped(equations, i) ? equations->right_side[i] : equations->acceleration[i]);
+  const struct Inertia *inertia = equations->inertia;
+  for (size_t i = 0; !equations->explicit_form && i < inertia->block_count; i++) {
+    const struct InertiaBlock *block = &inertia->blocks[i];
+    if (!block->is_unrolled) append_nodes(&targets, block->mass, block->start[block->count]);
+  }
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &inertia->pivots[i];
+    if (pivot_is_prepared(graph, pivot)) continue;
+    append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
+  }
+  return targets;
+}
+
+void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
+  Place number = (Place)pivot->coordinate + 1, value = values_place(values, pivot->value);
+  Place diagonal = values_place(values, pivot->diagonal), scale = values_place(values, pivot->scale);
+  if (value != diagonal) routine_append(values->routine, CHECK_PIVOT, number, value, diagonal, 0);
+  if (diagonal != scale) routine_append(values->routine, CHECK_DIAGONAL, number, diagonal, scale, 0);
+  if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
+}
+
+static void append_side(struct Values *values, const struct LoopedBlock *looped, const Node *right_side) {
+  for (size_t i = 0; i < looped->block->count; i++)
+    values_copy(values, place_in(SPACE_SIDE, looped->first_side + i), right_side[i]);
+}
+
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side) {
+  append_side(values, &blocks->items[block], right_side);
+  routine_append(values->routine, SOLVE, (Place)block, 0, 0, 0);
+}
+
+/* Factors a large block and solves it for its accelerations. */
+static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                         size_t number) {
+  const struct LoopedBlock *looped = &blocks->items[number];
+  const struct InertiaBlock *block = looped->block;
+  Node *right_side = allocate(block->count, sizeof *right_side);
+  for (size_t i = 0; i < block->count; i++) right_side[i] = equations->right_side[block->coordinates[i]];
+  for (size_t i = 0; i < block->start[block->count]; i++)
+    values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+  routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
+  append_solution(values, blocks, number, right_side);
+  for (size_t i = 0; i < block->count; i++)
+    routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
+                   place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  free(right_side);
+}
+
+void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks) {
+  const struct Inertia *inertia = equations->inertia;
+  struct NodeList targets = accelerations_targets(values->graph, equations);
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+  for (size_t i = 0; i < inertia->pivot_count; i++)
+    if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
+  for (size_t i = 0; i < equations->count; i++)
+    if (!is_looped(equations, i)) values_copy(values, place_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
+  for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block);
+}

@@ -1,0 +1,168 @@
+#include "program/expressions.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "memory.h"
+#include "program/accelerations.h"
+#include "program/jacobian.h"
+
+/* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
+static Node *create_seeds(struct Graph *graph) {
+  static const enum SymbolKind seed_kinds[] = {
+      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
+      [VELOCITY] = SEED_VELOCITY,   [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
+  };
+  size_t count = graph->symbol_count;
+  Node *seeds = allocate(2 * count, sizeof *seeds);
+  for (size_t i = 0; i < count; i++) {
+    char *name = format_text("d %s", graph->symbols[i].name);
+    seeds[i] = graph_symbol(graph, seed_kinds[graph->symbols[i].kind], graph->symbols[i].index, name);
+    free(name);
+  }
+  return seeds;
+}
+
+/*
+ * Along a direction, 0 = d (M a - right_side) = M da + d(M a - right_side)|a held; explicit accelerations are
+ * differentiated as they are. In large blocks result holds the right side of this system.
+ */
+static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
+                                Node *result) {
+  size_t n = equations->count;
+  derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds, result);
+  if (equations->explicit_form) return;
+  Node *right = allocate(n, sizeof *right);
+  for (size_t i = 0; i < n; i++) right[i] = negate(graph, result[i]);
+  inertia_solve(graph, equations->inertia, right, result);
+  for (size_t i = 0; i < n; i++)
+    if (is_looped(equations, i)) result[i] = right[i];
+  free(right);
+}
+
+static void without_accelerations(const struct Graph *graph, Node *seeds) {
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == ACCELERATION) seeds[i] = ZERO;
+}
+
+static void create_results(struct Expressions *expressions, const Node *seeds) {
+  const struct Interface *interface = expressions->interface;
+  struct NodeList outputs = {0};
+  expressions->result = allocate(interface->result_count, sizeof(Node));
+  expressions->result_along = allocate(interface->result_count, sizeof(Node));
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    if (variable->entry.kind != VARIABLE_RESULT) continue;
+    expressions->result[variable->entry.index] = variable->node;
+    if (variable->entry.is_output) append_node(&outputs, variable->node);
+  }
+  Node *along = allocate(outputs.count, sizeof *along);
+  derivative_along(expressions->model->graph, outputs.nodes, outputs.count, seeds, along);
+  size_t next = 0;
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (entry->kind == VARIABLE_RESULT && entry->is_output) expressions->result_along[entry->index] = along[next++];
+  }
+  free(along);
+  free(outputs.nodes);
+}
+
+static void create_directional(struct Expressions *expressions) {
+  struct Graph *graph = expressions->model->graph;
+  Node *seeds = create_seeds(graph);
+  create_results(expressions, seeds);
+  without_accelerations(graph, seeds);
+  expressions->along = allocate(expressions->equations->count, sizeof(Node));
+  accelerations_along(graph, expressions->equations, seeds, expressions->along);
+  derivative_along(graph, &expressions->equations->power, 1, seeds, &expressions->power_along);
+  free(seeds);
+}
+
+static void create_linear(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  if (!isnan(model->max_step))
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' takes a communication step as a whole; expected no maxStep");
+  expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
+  if (has_work(expressions))
+    report_error(diagnostics, model->solver_line,
+                 "<work/> is not linear in the state; expected another method than 'exact'");
+}
+
+/* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
+static void create_series(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  const struct Equations *equations = expressions->equations;
+  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
+  bool is_taylor = expressions->interface->method == SOLVER_TAYLOR;
+  if (kink == NULL || !is_taylor)
+    expressions->series = series_plan_of_motion(model->graph, equations, has_work(expressions));
+  else
+    report_error(diagnostics, model->solver_line,
+                 "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
+}
+
+static void create_output_series(struct Expressions *expressions) {
+  const struct Model *model = expressions->model;
+  size_t count = model->outputs.count;
+  if (count == 0 || expressions->interface->output_derivative_order == 1) return;
+  expressions->output_series = series_plan_of_outputs(model->graph, expressions->result, count);
+}
+
+bool has_work(const struct Expressions *expressions) {
+  return expressions->interface->state_count > 2 * expressions->equations->count;
+}
+
+struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
+                                       const struct Interface *interface, struct Diagnostics *diagnostics) {
+  int errors = diagnostics->errors;
+  enum SolverMethod method = interface->method;
+  struct Expressions *expressions = allocate(1, sizeof *expressions);
+  *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
+  if (method == SOLVER_EXACT) create_linear(expressions, diagnostics);
+  create_directional(expressions);
+  if (method == SOLVER_BDF) expressions->jacobian = jacobian_create(model->graph, equations, has_work(expressions));
+  if (method == SOLVER_TAYLOR || method == SOLVER_ERK || method == SOLVER_BDF) create_series(expressions, diagnostics);
+  create_output_series(expressions);
+  if (model->graph->overflow)
+    report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",
+                 NODE_LIMIT);
+  if (diagnostics->errors == errors) return expressions;
+  expressions_free(expressions);
+  return NULL;
+}
+
+struct NodeList expressions_targets(const struct Expressions *expressions) {
+  const struct Equations *equations = expressions->equations;
+  struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
+  append_nodes(&targets, expressions->along, equations->count);
+  if (has_work(expressions))
+    append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
+  if (expressions->jacobian != NULL) append_nodes(&targets, expressions->jacobian->value, expressions->jacobian->count);
+  if (expressions->linear != NULL) {
+    const struct LinearSystem *linear = expressions->linear;
+    append_nodes(&targets, linear->a, linear->states * linear->states);
+    append_nodes(&targets, linear->b, linear->states * linear->inputs);
+    append_nodes(&targets, linear->c, linear->states);
+  }
+  append_nodes(&targets, expressions->result, expressions->interface->result_count);
+  append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
+  const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series};
+  for (int i = 0; i < 2; i++)
+    if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets, plans[i]->count);
+  return targets;
+}
+
+void expressions_free(struct Expressions *expressions) {
+  if (expressions == NULL) return;
+  linear_system_free(expressions->linear);
+  series_plan_free(expressions->series);
+  series_plan_free(expressions->output_series);
+  jacobian_free(expressions->jacobian);
+  free(expressions->along);
+  free(expressions->result);
+  free(expressions->result_along);
+  free(expressions);
+}

@@ -1,0 +1,46 @@
+/* All expressions that the generated code computes: what derivation gave, differentiated once more where needed. */
+#ifndef EXPRESSIONS_H
+#define EXPRESSIONS_H
+
+#include "mechanics/interface.h"
+#include "mechanics/lagrange.h"
+#include "mechanics/linearize.h"
+#include "program/node_list.h"
+#include "program/series_plan.h"
+
+/*
+ * d derivatives / d state by columns: column j has elements start[j] .. start[j + 1] - 1, their rows ascending. In
+ * blocks of M that are factored at run time, the values are right sides: each column has all rows of such a block, or
+ * none.
+ */
+struct JacobianExpressions {
+  size_t *start, *row;
+  Node *value;
+  size_t count;
+};
+
+struct Expressions {
+  const struct Model *model;
+  const struct Equations *equations;
+  const struct Interface *interface;
+  struct LinearSystem *linear;         /* NULL unless the solver is exact */
+  struct SeriesPlan *series;           /* of the motion; NULL for exact and without coordinates */
+  struct SeriesPlan *output_series;    /* NULL where outputs have no derivatives above the first, or are variables */
+  Node *along;                         /* derivative of the accelerations, or right sides for it, as above */
+  Node power_along;                    /* of the power of the forces */
+  struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
+  Node *result, *result_along;         /* one for each result; along is ZERO unless it is an output */
+};
+
+/* Reports errors where the chosen solver does not fit the system; NULL then. Free with expressions_free(). */
+struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
+                                       const struct Interface *interface, struct Diagnostics *diagnostics);
+void expressions_free(struct Expressions *expressions);
+
+/* Whether the power of the forces is a derivative, that of their work. */
+bool has_work(const struct Expressions *expressions);
+
+/* All nodes that are computed. Free its nodes with free(). */
+struct NodeList expressions_targets(const struct Expressions *expressions);
+
+#endif

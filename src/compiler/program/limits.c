@@ -1,0 +1,177 @@
+#include "program/limits.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+
+/* A check whose rows are still nodes; ZERO for none. */
+struct Check {
+  enum LimitRule rule;
+  Node rows[2];
+  const char *function;
+  Node exponent; /* known at run time alone; ZERO for none */
+  double share;  /* for powers with a number as exponent, else NAN */
+  size_t next;   /* 1 + the next check of the same first row, 0 for none */
+  bool is_covered;
+};
+
+struct CheckList {
+  const struct SeriesBuilder *builder;
+  struct Check *items;
+  size_t count, capacity;
+  size_t *first; /* for each node: 1 + the first check of this row, 0 for none */
+};
+
+/* One check serves all powers of a base; of two, the one with the smaller share shortens more. */
+static void append(struct CheckList *list, struct Check check) {
+  size_t *end = &list->first[check.rows[0]];
+  for (; *end != 0; end = &list->items[*end - 1].next) {
+    struct Check *other = &list->items[*end - 1];
+    if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent) continue;
+    if (check.share < other->share) other->share = check.share;
+    return;
+  }
+  size_t number = list->count + 1;
+  *end = number;
+  if (list->count == list->capacity) {
+    list->capacity = 2 * list->capacity + 16;
+    list->items = reallocate(list->items, list->capacity, sizeof *list->items);
+  }
+  list->items[list->count++] = check;
+}
+
+static bool can_have_row(const struct SeriesBuilder *builder, Node node) {
+  return !is_constant_series(builder, node) &&
+         (builder->is_computed[node] || builder->graph->vertices[node].operation == SYMBOL);
+}
+
+/* base^exponent with constant factors and inner powers of the base taken off, as they do not matter here. */
+static Node bare_base(const struct SeriesBuilder *builder, Node base, double *exponent) {
+  const struct Graph *graph = builder->graph;
+  for (;;) {
+    const struct Vertex *vertex = &graph->vertices[base];
+    Node inner = base;
+    double factor = 1.0;
+    if (vertex->operation == MULTIPLY && is_constant_series(builder, vertex->left)) inner = vertex->right;
+    else if (vertex->operation == MULTIPLY && is_constant_series(builder, vertex->right)) inner = vertex->left;
+    else if (vertex->operation == POWER && graph_is_constant(graph, vertex->right)) {
+      inner = vertex->left;
+      factor = graph_value(graph, vertex->right);
+    }
+    if (inner == base || !can_have_row(builder, inner)) return base;
+    base = inner;
+    *exponent *= factor;
+  }
+}
+
+/* The numerator is known to be 0 for some motions through a point where the denominator vanishes. */
+static void check_division(struct CheckList *list, Node numerator, Node denominator) {
+  double exponent = -1.0;
+  Node base = bare_base(list->builder, denominator, &exponent);
+  struct Check check = {.rule = LIMIT_QUOTIENT, .rows = {base}, .share = series_limit_share(exponent)};
+  if (can_have_row(list->builder, numerator)) {
+    check.rule = LIMIT_DIVISION;
+    check.rows[1] = numerator;
+  }
+  append(list, check);
+}
+
+static void check_number_power(struct CheckList *list, Node base, double exponent) {
+  base = bare_base(list->builder, base, &exponent);
+  bool is_whole = exponent == floor(exponent);
+  if (is_whole && exponent > 0.0 && exponent <= 3.0) return;
+  enum LimitRule rule = exponent < 0.0 ? LIMIT_QUOTIENT : is_whole ? LIMIT_WHOLE_POWER : LIMIT_ROOT;
+  append(list, (struct Check){.rule = rule, .rows = {base}, .share = series_limit_share(exponent)});
+}
+
+static void check_power(struct CheckList *list, Node node) {
+  const struct Graph *graph = list->builder->graph;
+  const struct Vertex *vertex = &graph->vertices[node];
+  Node auxiliary = list->builder->plan->auxiliary[node];
+  if (graph_is_constant(graph, vertex->right))
+    check_number_power(list, vertex->left, graph_value(graph, vertex->right));
+  else if (is_constant_series(list->builder, vertex->right))
+    append(list,
+           (struct Check){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
+  else if (can_have_row(list->builder, auxiliary))
+    append(list, (struct Check){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
+}
+
+static void check_function(struct CheckList *list, Node node) {
+  const struct SeriesBuilder *builder = list->builder;
+  const struct Vertex *vertex = &builder->graph->vertices[node];
+  Node auxiliary = builder->plan->auxiliary[node];
+  struct Check check = {.rows = {vertex->left}, .function = operation_name(vertex->operation), .share = NAN};
+  switch (vertex->operation) {
+  case EXPONENTIAL: check.rule = LIMIT_EXPONENTIAL; break;
+  case SINH:
+  case COSH: check.rule = LIMIT_HYPERBOLIC; break;
+  case LOGARITHM: check.rule = LIMIT_POSITIVE; break;
+  case ARCTANGENT:
+  case ARTANH:
+    check.rule = LIMIT_POSITIVE;
+    check.rows[0] = auxiliary;
+    break;
+  case ABSOLUTE:
+  case SIGN: check.rule = LIMIT_SIGN; break;
+  case MINIMUM:
+  case MAXIMUM:
+  case LESS:
+    check.rule = LIMIT_SIGN;
+    check.rows[0] = auxiliary;
+    break;
+  case TANH: check.rule = LIMIT_TANH; break;
+  case TANGENT: check.rule = LIMIT_TANGENT; break;
+  case ATAN2:
+    check.rule = LIMIT_POSITIVE;
+    check.rows[0] = auxiliary;
+    if (can_have_row(builder, auxiliary)) append(list, check);
+    if (!can_have_row(builder, vertex->left) || !can_have_row(builder, vertex->right)) return;
+    check = (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN};
+    break;
+  default: return;
+  }
+  if (can_have_row(builder, check.rows[0])) append(list, check);
+}
+
+/* Where a power of the denominator itself is checked, its numerators do not matter. */
+static void find_covered(struct CheckList *list) {
+  for (size_t i = 0; i < list->count; i++) {
+    struct Check *check = &list->items[i];
+    if (check->rule != LIMIT_DIVISION) continue;
+    for (size_t j = list->first[check->rows[0]]; j != 0; j = list->items[j - 1].next)
+      check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share;
+  }
+}
+
+static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct CheckList *list) {
+  struct LimitChecks checks = {.items = allocate(list->count, sizeof *checks.items)};
+  for (size_t i = 0; i < list->count; i++) {
+    const struct Check *check = &list->items[i];
+    if (check->is_covered) continue;
+    struct LimitCheck *taken = &checks.items[checks.count++];
+    *taken = (struct LimitCheck){.rule = check->rule, .function = check->function, .share = check->share};
+    taken->row = series_row(builder, check->rows[0]);
+    if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
+    if (check->exponent != ZERO) taken->exponent = values_place(builder->values, check->exponent);
+  }
+  return checks;
+}
+
+struct LimitChecks limits_of(struct SeriesBuilder *builder) {
+  struct CheckList list = {.builder = builder, .first = allocate(builder->graph->count, sizeof(size_t))};
+  for (size_t i = 0; i < builder->nodes.count; i++) {
+    Node node = builder->nodes.nodes[i];
+    struct Form form = form_of(builder->needs, node);
+    if (form.kind == FORM_POWER) check_power(&list, node);
+    else if (form.kind == FORM_FUNCTION) check_function(&list, node);
+    else if (form.kind == FORM_QUOTIENT && can_have_row(builder, form.right))
+      check_division(&list, form.left, form.right);
+  }
+  find_covered(&list);
+  struct LimitChecks checks = take_rows(builder, &list);
+  free(list.items);
+  free(list.first);
+  return checks;
+}
