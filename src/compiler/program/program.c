@@ -34,9 +34,9 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
   if (equations->explicit_form) return;
   Node *right = allocate(n, sizeof *right);
   for (size_t i = 0; i < n; i++) right[i] = negate(graph, result[i]);
-  equations_solve(graph, equations, right, result);
+  inertia_solve(graph, equations->inertia, right, result);
   for (size_t i = 0; i < n; i++)
-    if (!equations->unrolled[equations->block[i]]) result[i] = right[i];
+    if (is_looped(equations, i)) result[i] = right[i];
   free(right);
 }
 

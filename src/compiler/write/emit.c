@@ -73,16 +73,16 @@ static void prepare_body(struct Emitter *emitter, size_t unused) {
   struct Statements *statements = emitter->statements;
   struct NodeList targets = {0};
   append_nodes(&targets, statements->prepared, statements->prepared_count);
-  for (size_t i = 0; i < emitter->equations->pivot_count; i++) {
-    const struct Pivot *pivot = &emitter->equations->pivots[i];
+  for (size_t i = 0; i < emitter->equations->inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &emitter->equations->inertia->pivots[i];
     if (!pivot_is_prepared(emitter->graph, pivot)) continue;
     append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
   }
   statements->preparing = true;
   statements_emit(statements, targets.nodes, targets.count);
-  for (size_t i = 0; i < emitter->equations->pivot_count; i++)
-    if (pivot_is_prepared(emitter->graph, &emitter->equations->pivots[i]))
-      emit_pivot_check(emitter, &emitter->equations->pivots[i]);
+  for (size_t i = 0; i < emitter->equations->inertia->pivot_count; i++)
+    if (pivot_is_prepared(emitter->graph, &emitter->equations->inertia->pivots[i]))
+      emit_pivot_check(emitter, &emitter->equations->inertia->pivots[i]);
   for (size_t i = 0; i < statements->prepared_count; i++)
     emit_assignment(emitter, "prepared", i, statements->prepared[i]);
   fputs("  return 0;\n", emitter->file);
@@ -181,6 +181,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
   fputs("#include <math.h>\n#include <string.h>\n\n#include \"lagrangian.h\"\n", file);
   fputs(has_loops(emitter.equations) ? "#include \"ldlt.h\"\n" : "", file);
   fputs(emitter.n > 0 ? "#include \"solver.h\"\n\n" : "\n", file);
+  emit_patterns(&emitter);
   emit_function(&emitter, "What depends on parameters alone", "int prepare(const double *p, double *prepared)",
                 prepare_body, 0);
   if (emitter.n > 0) {

@@ -18,11 +18,12 @@ struct NodeList acceleration_targets(const struct Emitter *emitter) {
       continue;
     }
     append_nodes(&targets, &equations->right_side[i], 1);
-    for (size_t j = 0; j <= i; j++)
-      if (equations->block[j] == equations->block[i]) append_nodes(&targets, &equations->mass[i * n + j], 1);
+    const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
+    size_t row = equations->inertia->place_of[i];
+    append_nodes(&targets, block->mass + block->start[row], block->start[row + 1] - block->start[row]);
   }
-  for (size_t i = 0; i < equations->pivot_count; i++) {
-    const struct Pivot *pivot = &equations->pivots[i];
+  for (size_t i = 0; i < equations->inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &equations->inertia->pivots[i];
     if (pivot_is_prepared(emitter->graph, pivot)) continue;
     append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
   }
@@ -52,14 +53,6 @@ void emit_pivot_check(const struct Emitter *emitter, const struct Pivot *pivot) 
   fprintf(emitter->file, ")) return %zu;\n", pivot->coordinate + 1);
 }
 
-/* The members of a block; returns their number. */
-static size_t block_members(const struct Equations *equations, size_t block, size_t *members) {
-  size_t count = 0;
-  for (size_t i = 0; i < equations->count; i++)
-    if (equations->block[i] == block) members[count++] = i;
-  return count;
-}
-
 static void emit_array(const struct Emitter *emitter, const char *name, size_t block, const Node *nodes, size_t count) {
   fprintf(emitter->file, "  double %s%zu[] = {", name, block);
   for (size_t i = 0; i < count; i++) {
@@ -69,33 +62,55 @@ static void emit_array(const struct Emitter *emitter, const char *name, size_t b
   fputs("};\n", emitter->file);
 }
 
-/* Multiplications, divisions and additions of factoring and solving a block of this size. */
+/* Multiplications, divisions and additions of factoring and solving a full block of this size. */
 static size_t factor_operations(size_t n) {
   return n * (n * n - 1) / 3 + n * (n - 1) + 2 * n * (n - 1) + n;
 }
 
-/* Factors a large block and solves it for its accelerations, written to target. */
-static void emit_block_solution(struct Emitter *emitter, size_t block, const char *target) {
-  const struct Equations *equations = emitter->equations;
-  size_t n = emitter->n, *members = allocate(n, sizeof *members);
-  size_t count = block_members(equations, block, members);
-  struct NodeList mass = {0}, right = {0};
-  for (size_t i = 0; i < count; i++) {
-    append_nodes(&right, &equations->right_side[members[i]], 1);
-    for (size_t j = 0; j <= i; j++) append_nodes(&mass, &equations->mass[members[i] * n + members[j]], 1);
+static void emit_sizes(FILE *file, const char *name, size_t number, const size_t *sizes, size_t count) {
+  fprintf(file, "static const size_t %s%zu[] = {%zu", name, number, sizes[0]);
+  for (size_t i = 1; i < count; i++) fprintf(file, ", %zu", sizes[i]);
+  fputs("};\n", file);
+}
+
+void emit_patterns(const struct Emitter *emitter) {
+  const struct Inertia *inertia = emitter->equations->inertia;
+  for (size_t number = 0; number < inertia->block_count; number++) {
+    const struct InertiaBlock *block = &inertia->blocks[number];
+    if (block->is_unrolled || block_is_full(block)) continue;
+    fprintf(emitter->file, "/* Where block %zu of the mass matrix and its factors have elements (ldlt.h) */\n", number);
+    emit_sizes(emitter->file, "start", number, block->start, block->count + 1);
+    emit_sizes(emitter->file, "column", number, block->column, block->start[block->count]);
+    fputs("\n", emitter->file);
   }
-  emit_array(emitter, "mass", block, mass.nodes, mass.count);
-  emit_array(emitter, "x", block, right.nodes, right.count);
-  fprintf(emitter->file, "  static const int coordinate%zu[] = {0", block);
-  for (size_t i = 0; i < count; i++) fprintf(emitter->file, ", %zu", members[i] + 1);
-  fprintf(emitter->file, "};\n  const size_t singular%zu = ldlt_factor(%zu, mass%zu);\n", block, count, block);
-  fprintf(emitter->file, "  if (singular%zu != 0) return coordinate%zu[singular%zu];\n", block, block, block);
-  fprintf(emitter->file, "  ldlt_solve(%zu, mass%zu, x%zu);\n", count, block, block);
-  for (size_t i = 0; i < count; i++) fprintf(emitter->file, "  %s[%zu] = x%zu[%zu];\n", target, members[i], block, i);
+}
+
+char *pattern_text(const struct Inertia *inertia, size_t number) {
+  if (block_is_full(&inertia->blocks[number])) return copy_text("NULL, NULL");
+  return format_text("start%zu, column%zu", number, number);
+}
+
+/* Factors a large block and solves it for its accelerations, written to target. */
+static void emit_block_solution(struct Emitter *emitter, size_t number, const char *target) {
+  const struct Equations *equations = emitter->equations;
+  const struct InertiaBlock *block = &equations->inertia->blocks[number];
+  size_t count = block->count;
+  struct NodeList right = {0};
+  char *pattern = pattern_text(equations->inertia, number);
+  for (size_t i = 0; i < count; i++) append_nodes(&right, &equations->right_side[block->coordinates[i]], 1);
+  emit_array(emitter, "mass", number, block->mass, block->start[count]);
+  emit_array(emitter, "x", number, right.nodes, right.count);
+  fprintf(emitter->file, "  static const int coordinate%zu[] = {0", number);
+  for (size_t i = 0; i < count; i++) fprintf(emitter->file, ", %zu", block->coordinates[i] + 1);
+  fprintf(emitter->file, "};\n  const size_t singular%zu = ldlt_factor(%zu, %s, mass%zu);\n", number, count, pattern,
+          number);
+  fprintf(emitter->file, "  if (singular%zu != 0) return coordinate%zu[singular%zu];\n", number, number, number);
+  fprintf(emitter->file, "  ldlt_solve(%zu, %s, mass%zu, x%zu);\n", count, pattern, number, number);
+  for (size_t i = 0; i < count; i++)
+    fprintf(emitter->file, "  %s[%zu] = x%zu[%zu];\n", target, block->coordinates[i], number, i);
   emitter->statements->operation_count += factor_operations(count);
-  free(mass.nodes);
+  free(pattern);
   free(right.nodes);
-  free(members);
 }
 
 void emit_accelerations(struct Emitter *emitter, const char *target) {
@@ -103,33 +118,33 @@ void emit_accelerations(struct Emitter *emitter, const char *target) {
   struct NodeList targets = acceleration_targets(emitter);
   statements_emit(emitter->statements, targets.nodes, targets.count);
   free(targets.nodes);
-  for (size_t i = 0; i < equations->pivot_count; i++)
-    if (!pivot_is_prepared(emitter->graph, &equations->pivots[i])) emit_pivot_check(emitter, &equations->pivots[i]);
+  for (size_t i = 0; i < equations->inertia->pivot_count; i++)
+    if (!pivot_is_prepared(emitter->graph, &equations->inertia->pivots[i]))
+      emit_pivot_check(emitter, &equations->inertia->pivots[i]);
   for (size_t i = 0; i < emitter->n; i++) {
     if (is_looped(equations, i)) continue;
     fprintf(emitter->file, "  %s[%zu] = ", target, i);
     statements_operand(emitter->statements, equations->acceleration[i]);
     fputs(";\n", emitter->file);
   }
-  for (size_t block = 0; block < equations->block_count; block++)
-    if (block_is_looped(equations, block)) emit_block_solution(emitter, block, target);
+  for (size_t block = 0; block < equations->inertia->block_count; block++)
+    if (!equations->inertia->blocks[block].is_unrolled) emit_block_solution(emitter, block, target);
 }
 
 void emit_along_blocks(struct Emitter *emitter, const Node *nodes, size_t stride, const char *target, size_t number) {
-  const struct Equations *equations = emitter->equations;
-  size_t *members = allocate(emitter->n, sizeof *members);
-  for (size_t block = 0; block < equations->block_count; block++) {
-    if (!block_is_looped(equations, block)) continue;
-    size_t count = block_members(equations, block, members);
-    char *name = format_text("y%zu_", number);
+  const struct Inertia *inertia = emitter->equations->inertia;
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    if (block->is_unrolled) continue;
+    char *name = format_text("y%zu_", number), *pattern = pattern_text(inertia, b);
     struct NodeList right = {0};
-    for (size_t i = 0; i < count; i++) append_nodes(&right, &nodes[members[i] * stride], 1);
-    emit_array(emitter, name, block, right.nodes, right.count);
-    fprintf(emitter->file, "  ldlt_solve(%zu, mass%zu, %s%zu);\n", count, block, name, block);
-    for (size_t i = 0; i < count; i++)
-      fprintf(emitter->file, "  %s[%zu] = %s%zu[%zu];\n", target, members[i], name, block, i);
+    for (size_t i = 0; i < block->count; i++) append_nodes(&right, &nodes[block->coordinates[i] * stride], 1);
+    emit_array(emitter, name, b, right.nodes, right.count);
+    fprintf(emitter->file, "  ldlt_solve(%zu, %s, mass%zu, %s%zu);\n", block->count, pattern, b, name, b);
+    for (size_t i = 0; i < block->count; i++)
+      fprintf(emitter->file, "  %s[%zu] = %s%zu[%zu];\n", target, block->coordinates[i], name, b, i);
     free(right.nodes);
+    free(pattern);
     free(name);
   }
-  free(members);
 }

@@ -10,6 +10,10 @@ bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
 /* What must be computed before the accelerations are known: themselves, or M and the right side of large blocks. */
 struct NodeList acceleration_targets(const struct Emitter *emitter);
 
+/* Tables of the patterns of blocks that are not full, and how a block is named in calls of ldlt.h; free with free(). */
+void emit_patterns(const struct Emitter *emitter);
+char *pattern_text(const struct Inertia *inertia, size_t number);
+
 /* Returns from the generated function where the pivot is no larger than a rounding error. */
 void emit_pivot_check(const struct Emitter *emitter, const struct Pivot *pivot);
 

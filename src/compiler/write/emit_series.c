@@ -38,11 +38,9 @@ static void find_needed(struct SeriesWriter *writer) {
   free(below);
 }
 
-/* Rows of workspace for the lower triangle of a block's factors. */
-static size_t block_factor_rows(const struct Equations *equations, size_t block) {
-  size_t size = 0;
-  for (size_t i = 0; i < equations->count; i++) size += equations->block[i] == block;
-  return (size * (size + 1) / 2 + SERIES_LENGTH - 1) / SERIES_LENGTH;
+/* Rows of workspace for a block's factors. */
+static size_t block_factor_rows(const struct InertiaBlock *block) {
+  return (block->start[block->count] + SERIES_LENGTH - 1) / SERIES_LENGTH;
 }
 
 /* Rows for the nodes that are arrays, then, where asked for, for the accelerations themselves. */
@@ -53,9 +51,9 @@ static void assign_rows(struct SeriesWriter *writer) {
   writer->acceleration_row = writer->row_count;
   if (writer->has_acceleration_rows) writer->row_count += writer->emitter->n;
   writer->factor_row = writer->row_count;
-  const struct Equations *equations = writer->emitter->equations;
-  for (size_t block = 0; writer->keeps_factors && block < equations->block_count; block++)
-    if (block_is_looped(equations, block)) writer->row_count += block_factor_rows(equations, block);
+  const struct Inertia *inertia = writer->emitter->equations->inertia;
+  for (size_t b = 0; writer->keeps_factors && b < inertia->block_count; b++)
+    if (!inertia->blocks[b].is_unrolled) writer->row_count += block_factor_rows(&inertia->blocks[b]);
 }
 
 static void write_next(struct SeriesWriter *writer, Node node);
@@ -92,32 +90,29 @@ static void write_next(struct SeriesWriter *writer, Node node) {
 }
 
 /* M_0 a_k = b_k - sum over l of M_l a_(k-l) in each large block. */
-static void write_block_order(struct SeriesWriter *writer, size_t block) {
+static void write_block_order(struct SeriesWriter *writer, size_t number) {
   struct Emitter *emitter = writer->emitter;
-  const struct Equations *equations = emitter->equations;
-  size_t n = emitter->n, count = 0, *place = allocate(n, sizeof *place);
-  for (size_t i = 0; i < n; i++)
-    if (equations->block[i] == block) place[i] = count++;
-  fprintf(emitter->file, "    double y%zu[%zu];\n", block, count);
-  for (size_t i = 0; i < n; i++) {
-    if (equations->block[i] != block) continue;
-    fprintf(emitter->file, "    y%zu[%zu] = ", block, place[i]);
-    write_coefficient(writer, equations->right_side[i]);
-    for (size_t j = 0; j < n; j++) {
-      Node mass = equations->mass[(i > j ? i : j) * n + (i > j ? j : i)];
-      if (equations->block[j] != block || is_constant_series(writer, mass)) continue;
+  const struct Inertia *inertia = emitter->equations->inertia;
+  const struct InertiaBlock *block = &inertia->blocks[number];
+  fprintf(emitter->file, "    double y%zu[%zu];\n", number, block->count);
+  for (size_t i = 0; i < block->count; i++) {
+    fprintf(emitter->file, "    y%zu[%zu] = ", number, i);
+    write_coefficient(writer, emitter->equations->right_side[block->coordinates[i]]);
+    for (size_t j = 0; j < block->count; j++) {
+      Node mass = inertia_element(inertia, block->coordinates[i], block->coordinates[j]);
+      if (is_constant_series(writer, mass)) continue;
       fputs(" - series_rest(k, ", emitter->file);
       write_row(writer, mass);
-      fprintf(emitter->file, ", w[%zu])", writer->acceleration_row + j);
+      fprintf(emitter->file, ", w[%zu])", writer->acceleration_row + block->coordinates[j]);
       writer->recurrences++;
     }
     fputs(";\n", emitter->file);
   }
-  fprintf(emitter->file, "    ldlt_solve(%zu, mass%zu, y%zu);\n", count, block, block);
-  for (size_t i = 0; i < n; i++)
-    if (equations->block[i] == block)
-      fprintf(emitter->file, "    w[%zu][k] = y%zu[%zu];\n", writer->acceleration_row + i, block, place[i]);
-  free(place);
+  char *pattern = pattern_text(inertia, number);
+  fprintf(emitter->file, "    ldlt_solve(%zu, %s, mass%zu, y%zu);\n", block->count, pattern, number, number);
+  free(pattern);
+  for (size_t i = 0; i < block->count; i++)
+    fprintf(emitter->file, "    w[%zu][k] = y%zu[%zu];\n", writer->acceleration_row + block->coordinates[i], number, i);
 }
 
 /* The coefficient k + 1 of the state from coefficient k of its derivative. */
@@ -137,10 +132,10 @@ static void write_state_order(struct SeriesWriter *writer) {
 }
 
 static void write_order(struct SeriesWriter *writer) {
-  const struct Equations *equations = writer->emitter->equations;
+  const struct Inertia *inertia = writer->emitter->equations->inertia;
   for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
-  for (size_t block = 0; block < equations->block_count; block++)
-    if (block_is_looped(equations, block)) write_block_order(writer, block);
+  for (size_t block = 0; block < inertia->block_count; block++)
+    if (!inertia->blocks[block].is_unrolled) write_block_order(writer, block);
   write_state_order(writer);
 }
 
@@ -261,13 +256,13 @@ static void declare_time(const struct SeriesWriter *writer) {
 
 /* Blocks that are factored at run time hand their factors from start() to series() in rows of the workspace. */
 static void write_block_factors(const struct SeriesWriter *writer, bool keep) {
-  const struct Equations *equations = writer->emitter->equations;
+  const struct Inertia *inertia = writer->emitter->equations->inertia;
   size_t row = writer->factor_row;
-  for (size_t block = 0; block < equations->block_count; block++) {
-    if (!block_is_looped(equations, block)) continue;
+  for (size_t block = 0; block < inertia->block_count; block++) {
+    if (inertia->blocks[block].is_unrolled) continue;
     if (keep) fprintf(writer->emitter->file, "  memcpy(w[%zu], mass%zu, sizeof mass%zu);\n", row, block, block);
     else fprintf(writer->emitter->file, "  const double *mass%zu = w[%zu];\n", block, row);
-    row += block_factor_rows(equations, block);
+    row += block_factor_rows(&inertia->blocks[block]);
   }
 }
 

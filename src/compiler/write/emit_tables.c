@@ -57,11 +57,9 @@ static void emit_result_table(const struct Emitter *emitter) {
 
 /* What the elimination of coordinate i rests on: the mass matrix of its block up to row and column i. */
 static struct NodeList inertia_of(const struct Equations *equations, size_t i) {
+  const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   struct NodeList inertia = {0};
-  for (size_t k = 0; k <= i; k++)
-    for (size_t j = 0; j <= k; j++)
-      if (equations->block[k] == equations->block[i] && equations->block[j] == equations->block[i])
-        append_nodes(&inertia, &equations->mass[k * equations->count + j], 1);
+  append_nodes(&inertia, block->mass, block->start[equations->inertia->place_of[i] + 1]);
   return inertia;
 }
 
