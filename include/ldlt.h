@@ -1,6 +1,8 @@
 /*
- * M = L D L^T of a symmetric positive definite matrix in packed storage: row i of the lower triangle starts at
- * i (i + 1) / 2. For mass matrix blocks too large for straight-line code.
+ * M = L D L^T of a symmetric positive definite matrix that is stored by rows of its lower triangle, in the pattern of L:
+ * row i has elements start[i] .. start[i + 1] - 1, at ascending columns, the diagonal last; M is 0 where L fills in.
+ * start and column are NULL for a full matrix, whose row i begins at i (i + 1) / 2. For mass matrix blocks too large for
+ * straight-line code.
  */
 #ifndef LDLT_H
 #define LDLT_H
@@ -8,9 +10,9 @@
 #include <stddef.h>
 
 /* Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the row in which M is not definite. */
-size_t ldlt_factor(size_t n, double *m);
+size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *m);
 
 /* Solves L D L^T x = b in place, with the result of ldlt_factor(). */
-void ldlt_solve(size_t n, const double *m, double *x);
+void ldlt_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
 
 #endif

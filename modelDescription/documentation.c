@@ -48,10 +48,13 @@ static void write_motion(xmlTextWriterPtr writer, const struct Program *program,
     free(left);
     return;
   }
+  const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   Node inertia = ZERO;
-  for (size_t j = 0; j < equations->count; j++)
-    inertia = add(graph, inertia,
-                  multiply(graph, equations->mass[i * equations->count + j], program->model->accelerations[j]));
+  for (size_t k = 0; k < block->count; k++) {
+    size_t j = block->coordinates[k];
+    Node mass = inertia_element(equations->inertia, i, j);
+    inertia = add(graph, inertia, multiply(graph, mass, program->model->accelerations[j]));
+  }
   char *left = readable_text(graph, inertia);
   write_equation(writer, graph, left, equations->right_side[i]);
   free(left);

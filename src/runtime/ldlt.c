@@ -3,7 +3,7 @@
 /* A pivot below this share of its diagonal element has lost all its digits. */
 static const double rounding = 1e-14;
 
-size_t ldlt_factor(size_t n, double *m) {
+static size_t factor_full(size_t n, double *m) {
   for (size_t i = 0; i < n; i++) {
     double *row = m + i * (i + 1) / 2;
     double diagonal = row[i], pivot = diagonal;
@@ -24,10 +24,51 @@ size_t ldlt_factor(size_t n, double *m) {
   return 0;
 }
 
-void ldlt_solve(size_t n, const double *m, double *x) {
+/* The sum of L_ik D_k L_jk over the columns k < j that rows i and j share; place: where row i has column j. */
+static double product_of_rows(const size_t *start, const size_t *column, const double *m, size_t i, size_t place) {
+  size_t j = column[place], a = place, b = start[j + 1] - 1;
+  double sum = 0.0;
+  while (a > start[i] && b > start[j]) {
+    if (column[a - 1] > column[b - 1]) a--;
+    else if (column[a - 1] < column[b - 1]) b--;
+    else sum += m[--a] * m[--b];
+  }
+  return sum;
+}
+
+size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *m) {
+  if (start == NULL) return factor_full(n, m);
+  for (size_t i = 0; i < n; i++) {
+    size_t last = start[i + 1] - 1;
+    double diagonal = m[last], pivot = diagonal;
+    for (size_t k = start[i]; k < last; k++) m[k] -= product_of_rows(start, column, m, i, k);
+    for (size_t k = start[i]; k < last; k++) {
+      double l = m[k] / m[start[column[k] + 1] - 1];
+      pivot -= l * m[k];
+      m[k] = l;
+    }
+    if (!(pivot > rounding * diagonal)) return i + 1;
+    m[last] = pivot;
+  }
+  return 0;
+}
+
+static void solve_full(size_t n, const double *m, double *x) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < i; k++) x[i] -= m[i * (i + 1) / 2 + k] * x[k];
   for (size_t i = 0; i < n; i++) x[i] /= m[i * (i + 1) / 2 + i];
   for (size_t i = n; i-- > 0;)
     for (size_t k = 0; k < i; k++) x[k] -= m[i * (i + 1) / 2 + k] * x[i];
+}
+
+void ldlt_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x) {
+  if (start == NULL) {
+    solve_full(n, m, x);
+    return;
+  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) x[i] -= m[k] * x[column[k]];
+  for (size_t i = 0; i < n; i++) x[i] /= m[start[i + 1] - 1];
+  for (size_t i = n; i-- > 0;)
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) x[column[k]] -= m[k] * x[i];
 }

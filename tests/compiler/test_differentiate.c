@@ -29,7 +29,7 @@ static void test_every_operation(void **state) {
     struct Expressions e = expressions_create();
     Node node = parse(&e, functions[i]), symbols[] = {e.x, e.y, e.z}, gradient[3];
     assert_int_equal(e.diagnostics.errors, 0);
-    gradient_of(e.graph, node, symbols, 3, gradient);
+    gradient_of(e.graph, node, COORDINATE, 3, gradient);
     for (int k = 0; k < 3; k++) {
       double reverse = value_at(&e, gradient[k], at[0], at[1], at[2]);
       double forward = value_at(&e, derivative_by(e.graph, node, symbols[k]), at[0], at[1], at[2]);
@@ -46,13 +46,33 @@ static void test_directions_and_weights(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
   Node targets[] = {parse(&e, "x*y"), parse(&e, "sin(z)*x")}, seeds[] = {parse(&e, "3"), parse(&e, "y"), ZERO};
-  Node along[2], gradient[2], symbols[] = {e.x, e.z}, weights[] = {parse(&e, "y"), parse(&e, "2")};
+  Node along[2], gradient[3], weights[] = {parse(&e, "y"), parse(&e, "2")};
   derivative_along(e.graph, targets, 2, seeds, along);
   assert_true(fabs(value_at(&e, along[0], 0.8, 1.1, 0.6) - (3 * 1.1 + 0.8 * 1.1)) < 1e-14);
   assert_true(fabs(value_at(&e, along[1], 0.8, 1.1, 0.6) - 3 * sin(0.6)) < 1e-14);
-  weighted_gradient_of(e.graph, targets, weights, 2, symbols, 2, gradient);
+  weighted_gradient_of(e.graph, targets, weights, 2, COORDINATE, 3, gradient);
   assert_true(fabs(value_at(&e, gradient[0], 0.8, 1.1, 0.6) - (1.1 * 1.1 + 2 * sin(0.6))) < 1e-14);
-  assert_true(fabs(value_at(&e, gradient[1], 0.8, 1.1, 0.6) - 2 * 0.8 * cos(0.6)) < 1e-14);
+  assert_true(fabs(value_at(&e, gradient[2], 0.8, 1.1, 0.6) - 2 * 0.8 * cos(0.6)) < 1e-14);
+  expressions_free(&e);
+}
+
+/* A gradient holds just the symbols of its kinds that the target depends on, whatever else the graph has. */
+static void test_sparse_gradient(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  Node speed = scope_symbol(e.scope, VELOCITY, 0, "v", dimension_unknown, 1);
+  Node node = multiply(e.graph, parse(&e, "x*z + sin(y - y)"), speed);
+  struct Gradient all = gradient_by_kinds(e.graph, node, 1u << COORDINATE | 1u << VELOCITY);
+  assert_int_equal(all.count, 3);
+  assert_int_equal(all.symbols[0], e.x);
+  assert_int_equal(all.symbols[1], e.z);
+  assert_int_equal(all.symbols[2], speed);
+  assert_int_equal(all.values[0], multiply(e.graph, e.z, speed));
+  assert_int_equal(all.values[2], parse(&e, "x*z"));
+  struct Gradient none = gradient_by_kinds(e.graph, node, 1u << INPUT);
+  assert_int_equal(none.count, 0);
+  gradient_free(&none);
+  gradient_free(&all);
   expressions_free(&e);
 }
 
@@ -79,9 +99,8 @@ static void test_substitution(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_operation),
-      cmocka_unit_test(test_directions_and_weights),
-      cmocka_unit_test(test_no_expression_swell),
+      cmocka_unit_test(test_every_operation), cmocka_unit_test(test_directions_and_weights),
+      cmocka_unit_test(test_sparse_gradient), cmocka_unit_test(test_no_expression_swell),
       cmocka_unit_test(test_substitution),
   };
   return cmocka_run_group_tests_name("differentiate", tests, NULL, NULL);

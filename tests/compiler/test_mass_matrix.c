@@ -1,6 +1,7 @@
 /* The factorization of large blocks of the mass matrix. */
 #include "expressions.h"
 #include "ldlt.h"
+#include "mechanics/elimination.h"
 
 enum { SIZE = 30 };
 
@@ -27,8 +28,8 @@ static void test_solution(void **state) {
   random_matrix(m);
   memcpy(original, m, sizeof m);
   for (int i = 0; i < SIZE; i++) x[i] = i - 7.5;
-  assert_int_equal(ldlt_factor(SIZE, m), 0);
-  ldlt_solve(SIZE, m, x);
+  assert_int_equal(ldlt_factor(SIZE, NULL, NULL, m), 0);
+  ldlt_solve(SIZE, NULL, NULL, m, x);
   for (int i = 0; i < SIZE; i++) {
     double sum = 0.0;
     for (int j = 0; j < SIZE; j++) sum += original[i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i] * x[j];
@@ -39,16 +40,114 @@ static void test_solution(void **state) {
 static void test_matrices_that_are_not_definite(void **state) {
   (void)state;
   double singular[] = {4.0, 2.0, 1.0}, negative[] = {1.0, 0.0, -1.0}, zero[] = {0.0}, nan[] = {NAN};
-  assert_int_equal(ldlt_factor(2, singular), 2);
-  assert_int_equal(ldlt_factor(2, negative), 2);
-  assert_int_equal(ldlt_factor(1, zero), 1);
-  assert_int_equal(ldlt_factor(1, nan), 1);
+  assert_int_equal(ldlt_factor(2, NULL, NULL, singular), 2);
+  assert_int_equal(ldlt_factor(2, NULL, NULL, negative), 2);
+  assert_int_equal(ldlt_factor(1, NULL, NULL, zero), 1);
+  assert_int_equal(ldlt_factor(1, NULL, NULL, nan), 1);
+}
+
+enum { SPARSE = 40, POSITIONS = SPARSE * (SPARSE + 1) / 2 };
+
+static unsigned next(unsigned *seed) {
+  *seed = *seed * 1103515245u + 12345u;
+  return *seed >> 16;
+}
+
+/* Solves by Gauss's elimination of a full matrix, which is lost. */
+static void solve_by_gauss(size_t n, double m[SPARSE][SPARSE], double *x) {
+  for (size_t k = 0; k < n; k++)
+    for (size_t i = k + 1; i < n; i++) {
+      double factor = m[i][k] / m[k][k];
+      for (size_t j = k; j < n; j++) m[i][j] -= factor * m[k][j];
+      x[i] -= factor * x[k];
+    }
+  for (size_t i = n; i-- > 0;) {
+    for (size_t j = i + 1; j < n; j++) x[i] -= m[i][j] * x[j];
+    x[i] /= m[i][i];
+  }
+}
+
+/* Compares the sparse factorization with the elimination of the full matrix; returns the elements of L. */
+static size_t check_sparse(size_t n, const struct Position *positions, size_t count, unsigned seed) {
+  double full[SPARSE][SPARSE] = {{0}}, m[POSITIONS] = {0}, x[SPARSE], expected[SPARSE];
+  struct Elimination elimination = eliminate(n, positions, count);
+  size_t place[SPARSE], *start = elimination.start, *column = elimination.column;
+  for (size_t i = 0; i < n; i++) place[elimination.order[i]] = i;
+  for (size_t k = 0; k < count; k++) {
+    size_t i = positions[k].row, j = positions[k].column;
+    double value = i == j ? 2.0 * SPARSE : (double)next(&seed) / 32768.0 - 1.0;
+    full[i][j] = full[j][i] = value;
+    size_t row = place[i] > place[j] ? place[i] : place[j], found = start[row];
+    while (found < start[row + 1] && column[found] != (place[i] < place[j] ? place[i] : place[j])) found++;
+    assert_true(found < start[row + 1]);
+    m[found] = value;
+  }
+  for (size_t i = 0; i < n; i++) x[place[i]] = expected[i] = (double)i - 7.5;
+  solve_by_gauss(n, full, expected);
+  assert_int_equal(ldlt_factor(n, start, column, m), 0);
+  ldlt_solve(n, start, column, m, x);
+  for (size_t i = 0; i < n; i++) assert_true(fabs(x[place[i]] - expected[i]) < 1e-13);
+  size_t elements = start[n];
+  free(elimination.order);
+  free(start);
+  free(column);
+  return elements;
+}
+
+static void test_sparse_patterns(void **state) {
+  (void)state;
+  unsigned seed = 11;
+  for (size_t n = 1; n <= SPARSE; n++)
+    for (unsigned share = 0; share <= 100; share += 10) {
+      struct Position positions[POSITIONS];
+      size_t count = 0;
+      for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++)
+          if (i == j || next(&seed) % 100 < share) positions[count++] = (struct Position){i, j};
+      check_sparse(n, positions, count, seed);
+    }
+}
+
+/* A chain, a star and a tree fill nothing in; a full matrix stays in its order. */
+static void test_order_of_elimination(void **state) {
+  (void)state;
+  struct Position chain[2 * SPARSE], star[2 * SPARSE], tree[2 * SPARSE], full[POSITIONS];
+  size_t count = 0, all = 0;
+  for (size_t i = 0; i < SPARSE; i++) {
+    chain[count] = star[count] = tree[count] = (struct Position){i, i};
+    count++;
+    for (size_t j = 0; j <= i; j++) full[all++] = (struct Position){i, j};
+    if (i == 0) continue;
+    chain[count] = (struct Position){i, i - 1};
+    star[count] = (struct Position){i, 0};
+    tree[count++] = (struct Position){i, (i - 1) / 2};
+  }
+  assert_int_equal(check_sparse(SPARSE, chain, count, 1), count);
+  assert_int_equal(check_sparse(SPARSE, star, count, 2), count);
+  assert_int_equal(check_sparse(SPARSE, tree, count, 3), count);
+  struct Elimination elimination = eliminate(SPARSE, full, all);
+  for (size_t i = 0; i < SPARSE; i++) assert_int_equal(elimination.order[i], i);
+  free(elimination.order);
+  free(elimination.start);
+  free(elimination.column);
+}
+
+static void test_sparse_matrices_that_are_not_definite(void **state) {
+  (void)state;
+  const size_t start[] = {0, 1, 2, 5}, column[] = {0, 1, 0, 1, 2};
+  double singular[] = {1.0, 1.0, 1.0, 1.0, 2.0}, negative[] = {1.0, -1.0, 1.0, 1.0, 9.0}, nan[] = {1.0, 1.0, NAN, 0, 2};
+  assert_int_equal(ldlt_factor(3, start, column, singular), 3);
+  assert_int_equal(ldlt_factor(3, start, column, negative), 2);
+  assert_int_equal(ldlt_factor(3, start, column, nan), 3);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_solution),
       cmocka_unit_test(test_matrices_that_are_not_definite),
+      cmocka_unit_test(test_sparse_patterns),
+      cmocka_unit_test(test_order_of_elimination),
+      cmocka_unit_test(test_sparse_matrices_that_are_not_definite),
   };
   return cmocka_run_group_tests_name("mass matrix", tests, NULL, NULL);
 }

@@ -2,8 +2,9 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "algebra/cone.h"
 #include "algebra/simplify.h"
+#include "memory.h"
 
 static Node one_minus_square(struct Graph *graph, Node x, double sign) {
   return add(graph, ONE, scale(graph, sign, power_number(graph, x, 2.0)));
@@ -74,35 +75,29 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
   return multiply(graph, multiply(graph, function(graph, LOGARITHM, base, ZERO), node), seed);
 }
 
-static Node last_of(const Node *targets, size_t count) {
-  Node last = 0;
-  for (size_t i = 0; i < count; i++)
-    if (targets[i] > last) last = targets[i];
-  return last;
-}
-
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
-  bool *needed = allocate(graph->count, sizeof *needed);
-  graph_mark(graph, targets, count, needed);
-  Node last = last_of(targets, count);
-  Node *along = allocate((size_t)last + 1, sizeof *along);
-  for (Node node = 0; node <= last; node++) {
-    if (!needed[node]) continue;
+  struct Cone *cone = graph->cone;
+  cone_collect(cone, graph, targets, count, NULL);
+  Node *along = allocate(cone->count, sizeof *along);
+  for (size_t place = 0; place < cone->count; place++) {
+    Node node = cone->nodes[place];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
-    if (vertex.operation == SYMBOL) along[node] = seeds[vertex.left];
-    if (arity == 0 || (along[vertex.left] == ZERO && (arity == 1 || along[vertex.right] == ZERO))) continue;
+    if (vertex.operation == SYMBOL) along[place] = seeds[vertex.left];
+    if (arity == 0) continue;
+    Node along_left = along[cone_place(cone, vertex.left)];
+    Node along_right = arity == 2 ? along[cone_place(cone, vertex.right)] : ZERO;
+    if (along_left == ZERO && along_right == ZERO) continue;
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
-    along[node] = multiply(graph, by_left, along[vertex.left]);
+    along[place] = multiply(graph, by_left, along_left);
     if (arity == 1) continue;
-    Node along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along[vertex.right])
-                                                 : multiply(graph, by_right, along[vertex.right]);
-    along[node] = add(graph, along[node], along_right);
+    along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along_right)
+                                            : multiply(graph, by_right, along_right);
+    along[place] = add(graph, along[place], along_right);
   }
-  for (size_t i = 0; i < count; i++) derivatives[i] = along[targets[i]];
+  for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_place(cone, targets[i])];
   free(along);
-  free(needed);
 }
 
 Node derivative_by(struct Graph *graph, Node target, Node symbol) {
@@ -114,54 +109,90 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   return derivative;
 }
 
-void gradient_of(struct Graph *graph, Node target, const Node *symbols, size_t count, Node *gradient) {
+/* Adds weight to the adjoint of an operand, unless no symbol of the kinds is below it. */
+static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node operand, Node weight, Node by) {
+  if ((graph->vertices[operand].kinds & kinds) == 0) return;
+  Node *sum = &adjoint[cone_place(graph->cone, operand)];
+  *sum = add(graph, *sum, multiply(graph, weight, by));
+}
+
+/* Moves what symbols of the kinds have in adjoint, one element for each member of the cone. */
+static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, const Node *adjoint) {
+  const struct Cone *cone = graph->cone;
+  struct Gradient gradient = {allocate(cone->count, sizeof(Node)), allocate(cone->count, sizeof(Node)), 0};
+  for (size_t place = 0; place < cone->count; place++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+    if (vertex->operation != SYMBOL || (vertex->kinds & kinds) == 0 || adjoint[place] == ZERO) continue;
+    gradient.symbols[gradient.count] = cone->nodes[place];
+    gradient.values[gradient.count++] = adjoint[place];
+  }
+  return gradient;
+}
+
+struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
+                                  unsigned kinds) {
+  struct Cone *cone = graph->cone;
+  cone_collect(cone, graph, targets, count, NULL);
+  Node *adjoint = allocate(cone->count, sizeof *adjoint);
+  for (size_t k = 0; k < count; k++) add_adjoint(graph, kinds, adjoint, targets[k], weights[k], ONE);
+  for (size_t place = cone->count; place-- > 0;) {
+    Node node = cone->nodes[place];
+    const struct Vertex vertex = graph->vertices[node];
+    int arity = operation_arity(vertex.operation);
+    if (adjoint[place] == ZERO || arity == 0) continue;
+    Node by_left, by_right;
+    partial_derivatives(graph, node, &by_left, &by_right);
+    add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[place], by_left);
+    if (arity == 2) add_adjoint(graph, kinds, adjoint, vertex.right, adjoint[place], by_right);
+  }
+  struct Gradient gradient = take_symbols(graph, kinds, adjoint);
+  free(adjoint);
+  return gradient;
+}
+
+struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds) {
   const Node weight = ONE;
-  weighted_gradient_of(graph, &target, &weight, 1, symbols, count, gradient);
+  return weighted_gradient(graph, &target, &weight, 1, kinds);
+}
+
+void gradient_free(struct Gradient *gradient) {
+  free(gradient->symbols);
+  free(gradient->values);
 }
 
 void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
-                          const Node *symbols, size_t count, Node *gradient) {
-  bool *needed = allocate(graph->count, sizeof *needed);
-  graph_mark(graph, targets, target_count, needed);
-  Node last = last_of(targets, target_count);
-  Node *adjoint = allocate((size_t)last + 1, sizeof *adjoint);
-  for (size_t k = 0; k < target_count; k++) adjoint[targets[k]] = add(graph, adjoint[targets[k]], weights[k]);
-  for (Node node = last + 1; node-- > 0;) {
-    const struct Vertex vertex = graph->vertices[node];
-    int arity = operation_arity(vertex.operation);
-    if (!needed[node] || adjoint[node] == ZERO || arity == 0) continue;
-    Node by_left, by_right;
-    partial_derivatives(graph, node, &by_left, &by_right);
-    if (!graph_is_constant(graph, vertex.left))
-      adjoint[vertex.left] = add(graph, adjoint[vertex.left], multiply(graph, adjoint[node], by_left));
-    if (arity == 2 && !graph_is_constant(graph, vertex.right))
-      adjoint[vertex.right] = add(graph, adjoint[vertex.right], multiply(graph, adjoint[node], by_right));
-  }
-  for (size_t i = 0; i < count; i++) gradient[i] = symbols[i] <= last ? adjoint[symbols[i]] : ZERO;
-  free(adjoint);
-  free(needed);
+                          enum SymbolKind kind, size_t count, Node *gradient) {
+  struct Gradient sparse = weighted_gradient(graph, targets, weights, target_count, 1u << kind);
+  for (size_t i = 0; i < count; i++) gradient[i] = ZERO;
+  for (size_t i = 0; i < sparse.count; i++)
+    gradient[graph_symbol_of(graph, sparse.symbols[i])->index] = sparse.values[i];
+  gradient_free(&sparse);
+}
+
+void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t count, Node *gradient) {
+  const Node weight = ONE;
+  weighted_gradient_of(graph, &target, &weight, 1, kind, count, gradient);
 }
 
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
-  bool *needed = allocate(graph->count, sizeof *needed);
-  graph_mark(graph, targets, count, needed);
-  Node last = last_of(targets, count);
-  Node *mapped = allocate((size_t)last + 1, sizeof *mapped);
-  for (Node node = 0; node <= last; node++) {
-    if (!needed[node]) continue;
+  struct Cone *cone = graph->cone;
+  cone_collect(cone, graph, targets, count, NULL);
+  Node *mapped = allocate(cone->count, sizeof *mapped);
+  for (size_t place = 0; place < cone->count; place++) {
+    Node node = cone->nodes[place];
     const struct Vertex vertex = graph->vertices[node];
-    Node left = operation_arity(vertex.operation) > 0 ? mapped[vertex.left] : ZERO;
-    Node right = operation_arity(vertex.operation) > 1 ? mapped[vertex.right] : ZERO;
+    int arity = operation_arity(vertex.operation);
+    Node left = arity > 0 ? mapped[cone_place(cone, vertex.left)] : ZERO;
+    Node right = arity > 1 ? mapped[cone_place(cone, vertex.right)] : ZERO;
     switch (vertex.operation) {
-    case CONSTANT: mapped[node] = node; break;
-    case SYMBOL: mapped[node] = replacements[vertex.left]; break;
-    case ADD: mapped[node] = add(graph, left, right); break;
-    case MULTIPLY: mapped[node] = multiply(graph, left, right); break;
-    case POWER: mapped[node] = power(graph, left, right); break;
-    default: mapped[node] = function(graph, vertex.operation, left, right); break;
+    case CONSTANT: mapped[place] = node; break;
+    case SYMBOL: mapped[place] = replacements[vertex.left]; break;
+    case ADD: mapped[place] = add(graph, left, right); break;
+    case MULTIPLY: mapped[place] = multiply(graph, left, right); break;
+    case POWER: mapped[place] = power(graph, left, right); break;
+    default: mapped[place] = function(graph, vertex.operation, left, right); break;
     }
   }
-  for (size_t i = 0; i < count; i++) results[i] = mapped[targets[i]];
+  for (size_t i = 0; i < count; i++) results[i] = mapped[cone_place(cone, targets[i])];
   free(mapped);
-  free(needed);
 }

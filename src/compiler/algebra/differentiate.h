@@ -1,4 +1,7 @@
-/* Differentiation of the expression graph: forward sweeps for directions, one reverse sweep for a gradient. */
+/*
+ * Differentiation of the expression graph: forward sweeps for directions, one reverse sweep for a gradient. Each costs
+ * as much as the targets have nodes below them, however large the graph is.
+ */
 #ifndef DIFFERENTIATE_H
 #define DIFFERENTIATE_H
 
@@ -13,12 +16,27 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
 /* d target / d symbol; symbol is a SYMBOL node. */
 Node derivative_by(struct Graph *graph, Node target, Node symbol);
 
-/* The gradient of target with respect to count SYMBOL nodes, by reverse accumulation. */
-void gradient_of(struct Graph *graph, Node target, const Node *symbols, size_t count, Node *gradient);
+/* The elements of a gradient that are not ZERO. */
+struct Gradient {
+  Node *symbols; /* SYMBOL nodes, ascending */
+  Node *values;
+  size_t count;
+};
+
+/* With respect to all symbols of the kinds (bit k: SymbolKind k). Free with gradient_free(). */
+struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds);
+
+/* The same for sum over k of weights[k] * targets[k], with the weights held constant. */
+struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
+                                  unsigned kinds);
+void gradient_free(struct Gradient *gradient);
+
+/* The gradient of target with respect to all symbols of one kind: element i belongs to the symbol with index i. */
+void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t count, Node *gradient);
 
 /* The same for sum over k of weights[k] * targets[k], with the weights held constant. */
 void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
-                          const Node *symbols, size_t count, Node *gradient);
+                          enum SymbolKind kind, size_t count, Node *gradient);
 
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);

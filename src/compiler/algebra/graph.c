@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "algebra/cone.h"
 #include "memory.h"
 
 static const char *const names[OPERATION_COUNT] = {
@@ -71,6 +72,7 @@ struct Graph *graph_create(void) {
   graph->vertices = allocate(graph->capacity, sizeof *graph->vertices);
   graph->bucket_count = 4096;
   graph->buckets = allocate(graph->bucket_count, sizeof *graph->buckets);
+  graph->cone = cone_create();
   graph_constant(graph, 0.0);
   graph_constant(graph, 1.0);
   return graph;
@@ -82,6 +84,7 @@ void graph_free(struct Graph *graph) {
   free(graph->symbols);
   free(graph->vertices);
   free(graph->buckets);
+  cone_free(graph->cone);
   free(graph);
 }
 

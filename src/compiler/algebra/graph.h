@@ -72,6 +72,8 @@ struct Vertex {
   double value;     /* CONSTANT only */
 };
 
+struct Cone;
+
 struct Graph {
   struct Vertex *vertices;
   size_t count, capacity;
@@ -79,6 +81,7 @@ struct Graph {
   size_t bucket_count;
   struct Symbol *symbols;
   size_t symbol_count;
+  struct Cone *cone; /* workspace of the sweeps in algebra/, each of which collects anew */
   bool overflow;   /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
   bool not_finite; /* a constant that is no finite number was asked for, since this was last set to false */
 };

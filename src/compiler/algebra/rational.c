@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "algebra/cone.h"
 #include "algebra/polynomial.h"
 #include "algebra/simplify.h"
+#include "memory.h"
 
 struct Fraction {
   struct Polynomial above, below;
@@ -129,18 +130,21 @@ static struct Fraction fraction_power(const struct Fraction *x, int exponent) {
   return result;
 }
 
+/* known: the fractions of all nodes below, by their places in the graph's cone. */
 static struct Fraction convert(struct Converter *converter, Node node, const struct Fraction *known) {
   const struct Vertex *vertex = &converter->graph->vertices[node];
+  int arity = operation_arity(vertex->operation);
+  const struct Fraction *left = arity > 0 ? &known[cone_place(converter->graph->cone, vertex->left)] : NULL;
+  const struct Fraction *right = arity > 1 ? &known[cone_place(converter->graph->cone, vertex->right)] : NULL;
   switch (vertex->operation) {
   case CONSTANT: return (struct Fraction){polynomial_constant(vertex->value), polynomial_constant(1.0)};
-  case ADD: return fraction_add(&known[vertex->left], &known[vertex->right]);
-  case MULTIPLY: return fraction_multiply(&known[vertex->left], &known[vertex->right]);
+  case ADD: return fraction_add(left, right);
+  case MULTIPLY: return fraction_multiply(left, right);
   case POWER: {
     double exponent =
         graph_is_constant(converter->graph, vertex->right) ? graph_value(converter->graph, vertex->right) : NAN;
-    bool invertible = exponent > 0 || known[vertex->left].above.count > 0;
-    if (exponent == floor(exponent) && fabs(exponent) <= 20 && invertible)
-      return fraction_power(&known[vertex->left], (int)exponent);
+    bool invertible = exponent > 0 || left->above.count > 0;
+    if (exponent == floor(exponent) && fabs(exponent) <= 20 && invertible) return fraction_power(left, (int)exponent);
     return atom_fraction(converter, node);
   }
   default: return atom_fraction(converter, node);
@@ -172,23 +176,23 @@ static Node polynomial_node(const struct Converter *converter, struct Polynomial
   return multiply(converter->graph, monomial_node(converter, lead, content), sum);
 }
 
+static bool is_usable(const struct Fraction *fraction) {
+  return !fraction->above.overflow && !fraction->below.overflow && fraction->below.count > 0;
+}
+
 /* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
 static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
-  const struct Graph *graph = converter->graph;
-  size_t size = graph->count;
-  bool *needed = allocate(size, sizeof *needed);
-  struct Fraction *known = allocate(size, sizeof *known);
-  graph_mark(graph, nodes, count, needed);
-  for (Node i = 0; i < size && !converter->overflow; i++) {
-    if (!needed[i]) continue;
-    known[i] = convert(converter, i, known);
-    converter->overflow =
-        converter->overflow || known[i].above.overflow || known[i].below.overflow || known[i].below.count == 0;
+  struct Cone *cone = converter->graph->cone;
+  cone_collect(cone, converter->graph, nodes, count, NULL);
+  struct Fraction *known = allocate(cone->count, sizeof *known);
+  for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
+    known[place] = convert(converter, cone->nodes[place], known);
+    converter->overflow = converter->overflow || !is_usable(&known[place]);
   }
-  for (size_t i = 0; i < count; i++) fractions[i] = fraction_copy(&known[nodes[i]]);
-  for (Node i = 0; i < size; i++) fraction_free(&known[i]);
+  for (size_t i = 0; i < count && !converter->overflow; i++)
+    fractions[i] = fraction_copy(&known[cone_place(cone, nodes[i])]);
+  for (size_t place = 0; place < cone->count; place++) fraction_free(&known[place]);
   free(known);
-  free(needed);
   return !converter->overflow;
 }
 
@@ -199,7 +203,7 @@ static Node fraction_node(const struct Converter *converter, struct Fraction *fr
 
 Node simplify_fraction(struct Graph *graph, Node node) {
   struct Converter converter = {.graph = graph};
-  struct Fraction fraction;
+  struct Fraction fraction = {0};
   Node result = convert_all(&converter, &node, 1, &fraction) ? fraction_node(&converter, &fraction) : node;
   fraction_free(&fraction);
   return result;
@@ -213,10 +217,6 @@ static void fraction_subtract(struct Fraction *x, const struct Fraction *factor,
   fraction_free(&product);
   fraction_free(x);
   *x = difference;
-}
-
-static bool is_usable(const struct Fraction *fraction) {
-  return !fraction->above.overflow && !fraction->below.overflow && fraction->below.count > 0;
 }
 
 /* Gauss and Jordan's elimination of n rows of the matrix and its right sides, width fractions each. */

@@ -11,12 +11,11 @@
 Node stored_energy(struct Model *model, Node potential) {
   struct Graph *graph = model->graph;
   size_t n = model->velocities.count;
-  Node energy = potential, *velocities = allocate(n, sizeof *velocities), *slope = allocate(n, sizeof *slope);
-  for (size_t i = 0; i < n; i++) velocities[i] = model->velocities.items[i].node;
-  gradient_of(graph, energy, velocities, n, slope);
-  for (size_t i = 0; i < n; i++) energy = subtract(graph, energy, multiply(graph, slope[i], velocities[i]));
+  Node energy = potential, *slope = allocate(n, sizeof *slope);
+  gradient_of(graph, energy, VELOCITY, n, slope);
+  for (size_t i = 0; i < n; i++)
+    energy = subtract(graph, energy, multiply(graph, slope[i], model->velocities.items[i].node));
   free(slope);
-  free(velocities);
   return energy;
 }
 

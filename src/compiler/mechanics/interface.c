@@ -211,10 +211,10 @@ enum Dependency *dependencies_on(const struct Graph *graph, const struct Equatio
   enum Dependency *acceleration = allocate(n, sizeof *acceleration);
   for (size_t i = 0; i < n; i++) {
     acceleration[i] = of[equations->acceleration[i]];
-    if (equations->explicit_form || equations->unrolled[equations->block[i]]) continue;
-    for (size_t j = 0; j < n; j++)
-      if (equations->block[j] == equations->block[i] && of[equations->residual[j]] != INDEPENDENT)
-        acceleration[i] = DEPENDENT;
+    if (!is_looped(equations, i)) continue;
+    const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
+    for (size_t j = 0; j < block->count; j++)
+      if (of[equations->residual[block->coordinates[j]]] != INDEPENDENT) acceleration[i] = DEPENDENT;
   }
   for (size_t i = 0; i < graph->symbol_count; i++)
     if (graph->symbols[i].kind == ACCELERATION) of[graph->symbols[i].node] = acceleration[graph->symbols[i].index];

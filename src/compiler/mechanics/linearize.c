@@ -87,46 +87,37 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
   free(symbols);
 }
 
-/* M0 solution = right for several right sides by rows, in fractions where they are not too large. */
-static void solve_at_point(const struct Expansion *point, const struct Equations *equations, size_t columns,
-                           const Node *right, Node *solution) {
-  struct Graph *graph = point->graph;
-  size_t n = equations->count;
-  Node *mass = allocate(n * n, sizeof *mass);
-  substitute(graph, equations->mass, n * n, point->replacements, mass);
-  if (!solve_fractions(graph, n, mass, columns, right, solution)) {
-    struct Equations at = *equations;
-    Node *column = allocate(n, sizeof *column);
-    at.lower = allocate(n * n, sizeof(Node));
-    at.diagonal = allocate(n, sizeof(Node));
-    substitute(graph, equations->lower, n * n, point->replacements, at.lower);
-    substitute(graph, equations->diagonal, n, point->replacements, at.diagonal);
-    for (size_t j = 0; j < columns; j++) {
-      for (size_t i = 0; i < n; i++) column[i] = right[i * columns + j];
-      equations_solve(graph, &at, column, column);
-      for (size_t i = 0; i < n; i++) solution[i * columns + j] = column[i];
-    }
-    free(at.lower);
-    free(at.diagonal);
-    free(column);
+/* M solution = right for several right sides by rows, in fractions where they are not too large. */
+static void solve_columns(struct Graph *graph, const struct Inertia *inertia, size_t columns, const Node *right,
+                          Node *solution) {
+  size_t n = inertia->count;
+  Node *mass = allocate(n * n, sizeof *mass), *column = allocate(n, sizeof *column);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) mass[i * n + j] = inertia_element(inertia, i, j);
+  bool solved = solve_fractions(graph, n, mass, columns, right, solution);
+  for (size_t j = 0; j < columns && !solved; j++) {
+    for (size_t i = 0; i < n; i++) column[i] = right[i * columns + j];
+    inertia_solve(graph, inertia, column, column);
+    for (size_t i = 0; i < n; i++) solution[i * columns + j] = column[i];
   }
   free(mass);
+  free(column);
 }
 
-/* M0 da = -(d residual / d s) ds with the acceleration held at its value at the point. */
-static void linearize_accelerations(struct Model *model, struct Equations *equations) {
+/* M da = -(d residual / d s) ds with M and the acceleration held at their values at the point. */
+static void linearize_accelerations(struct Model *model, struct Equations *equations, const struct Inertia *inertia) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
   struct Expansion states = expansion_create(model, NULL);
   Node *value = allocate(n, sizeof *value), *slopes = allocate(n * states.count, sizeof *slopes);
   substitute(graph, equations->right_side, n, states.replacements, value);
-  solve_at_point(&states, equations, 1, value, value);
+  solve_columns(graph, inertia, 1, value, value);
   struct Expansion all = expansion_create(model, value);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < states.count; j++)
       slopes[i * states.count + j] =
           negate(graph, at_point(&all, derivative_by(graph, equations->residual[i], states.symbols[j])));
-  solve_at_point(&states, equations, states.count, slopes, slopes);
+  solve_columns(graph, inertia, states.count, slopes, slopes);
   for (size_t i = 0; i < n; i++) {
     equations->acceleration[i] = value[i];
     for (size_t j = 0; j < states.count; j++)
@@ -155,11 +146,10 @@ static bool depends_on_time(const struct Model *model, const struct Equations *e
   return false;
 }
 
-static bool is_singular_at(const struct Expansion *point, const struct Model *model, const struct Equations *equations,
-                           struct Diagnostics *diagnostics) {
+static bool is_singular(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
   bool singular = false;
-  for (size_t i = 0; i < equations->count; i++) {
-    if (at_point(point, equations->mass[i * equations->count + i]) != ZERO) continue;
+  for (size_t i = 0; i < inertia->count; i++) {
+    if (inertia_element(inertia, i, i) != ZERO) continue;
     report_error(diagnostics, 0,
                  "the mass matrix is singular in coordinate '%s' at this point; expected a point where it is not",
                  model->coordinates.items[i].name);
@@ -179,23 +169,22 @@ void linearize(struct Model *model, struct Equations *equations, struct Diagnost
     return;
   }
   struct Expansion expansion = expansion_create(model, NULL);
-  if (is_singular_at(&expansion, model, equations, diagnostics)) {
+  struct Inertia *inertia = inertia_substitute(graph, equations->inertia, expansion.replacements);
+  if (is_singular(model, inertia, diagnostics)) {
+    inertia_free(inertia);
     expansion_free(&expansion);
     return;
   }
   Node *values = allocate(equations->count, sizeof *values);
   substitute(graph, equations->acceleration, equations->count, expansion.replacements, values);
   warn_without_equilibrium(model, values, diagnostics);
-  linearize_accelerations(model, equations);
+  linearize_accelerations(model, equations, inertia);
   expand_positions(model, &expansion);
   equations->kinetic = expand(&expansion, equations->kinetic, 2);
   equations->potential = expand(&expansion, equations->potential, 2);
   equations->total = add(graph, equations->kinetic, equations->potential);
-  for (size_t i = 0; i < equations->pivot_count; i++) {
-    struct Pivot *pivot = &equations->pivots[i];
-    Node *parts[] = {&pivot->value, &pivot->diagonal, &pivot->scale};
-    for (int part = 0; part < 3; part++) *parts[part] = simplify_fraction(graph, at_point(&expansion, *parts[part]));
-  }
+  inertia_free(equations->inertia);
+  equations->inertia = inertia;
   equations->explicit_form = true;
   model->work_line = 0;
   free(values);

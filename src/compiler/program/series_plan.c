@@ -111,8 +111,9 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
       continue;
     }
     append(plan, equations->right_side[i]);
-    for (size_t j = 0; j <= i; j++)
-      if (equations->block[j] == equations->block[i]) append(plan, equations->mass[i * n + j]);
+    const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
+    size_t row = equations->inertia->place_of[i];
+    for (size_t k = block->start[row]; k < block->start[row + 1]; k++) append(plan, block->mass[k]);
   }
 }
 

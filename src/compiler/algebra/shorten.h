@@ -1,0 +1,13 @@
+/* Takes the shorter one of two forms of expressions, by the operations that they need together. */
+#ifndef SHORTEN_H
+#define SHORTEN_H
+
+#include "algebra/graph.h"
+
+/* Replaces the nodes by the others where these need fewer operations. */
+void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others);
+
+/* Takes the nodes multiplied out, as fractions in lowest terms, where that makes them shorter. */
+void shorten(struct Graph *graph, size_t count, Node *nodes);
+
+#endif

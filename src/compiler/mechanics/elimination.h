@@ -1,0 +1,28 @@
+/* In which order the rows of a sparse symmetric matrix are eliminated, and what L of M = L D L^T then holds. */
+#ifndef ELIMINATION_H
+#define ELIMINATION_H
+
+#include <stddef.h>
+
+/*
+ * The rows of the lower triangle of L: row i has its elements at start[i] .. start[i + 1] - 1, their columns ascending
+ * and the diagonal last. Rows and columns are places in order.
+ */
+struct Elimination {
+  size_t *order;
+  size_t *start, *column;
+};
+
+/* An element of the matrix: row and column. */
+struct Position {
+  size_t row, column;
+};
+
+/*
+ * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
+ * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree
+ * fills nothing in, and a full matrix stays as it is. The caller frees the three arrays.
+ */
+struct Elimination eliminate(size_t count, const struct Position *positions, size_t position_count);
+
+#endif

@@ -1,0 +1,298 @@
+#include "mechanics/inertia.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/rational.h"
+#include "algebra/shorten.h"
+#include "algebra/simplify.h"
+#include "mechanics/elimination.h"
+#include "mechanics/pivots.h"
+#include "memory.h"
+
+/* Elements of M on and below the diagonal, in no particular order. */
+struct Elements {
+  struct Position *positions; /* coordinates */
+  Node *nodes;
+  size_t count, capacity;
+};
+
+static void append(struct Elements *elements, size_t row, size_t column, Node node) {
+  if (elements->count == elements->capacity) {
+    elements->capacity = 2 * elements->capacity + 1;
+    elements->positions = reallocate(elements->positions, elements->capacity, sizeof *elements->positions);
+    elements->nodes = reallocate(elements->nodes, elements->capacity, sizeof *elements->nodes);
+  }
+  elements->positions[elements->count] = (struct Position){row, column};
+  elements->nodes[elements->count++] = node;
+}
+
+static void elements_free(struct Elements *elements) {
+  free(elements->positions);
+  free(elements->nodes);
+}
+
+/* M_ij = d p_i / d v_j, row by row. */
+static struct Elements differentiate_momenta(struct Graph *graph, const Node *momentum, size_t count) {
+  struct Elements elements = {0};
+  for (size_t i = 0; i < count && !graph->overflow; i++) {
+    struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
+    for (size_t k = 0; k < row.count; k++) {
+      size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
+      if (j <= i) append(&elements, i, j, row.values[k]);
+    }
+    gradient_free(&row);
+  }
+  return elements;
+}
+
+/* Coordinates that are coupled, directly or by way of others, are of one component, numbered by their first ones. */
+struct Components {
+  size_t *of; /* each coordinate */
+  size_t count;
+};
+
+static size_t root_of(size_t *parent, size_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static struct Components find_components(size_t count, const struct Elements *elements) {
+  struct Components components = {.of = allocate(count, sizeof(size_t))};
+  size_t *parent = allocate(count, sizeof *parent);
+  for (size_t i = 0; i < count; i++) parent[i] = i;
+  for (size_t k = 0; k < elements->count; k++) {
+    size_t a = root_of(parent, elements->positions[k].row), b = root_of(parent, elements->positions[k].column);
+    parent[a > b ? a : b] = a > b ? b : a;
+  }
+  for (size_t i = 0; i < count; i++)
+    components.of[i] = parent[i] == i ? components.count++ : components.of[root_of(parent, i)];
+  free(parent);
+  return components;
+}
+
+/* Sorts the elements by components. Returns where each component begins, and the end; free with free(). */
+static size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
+  struct Elements sorted = {0};
+  size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
+  size_t *first = allocate(components->count, sizeof *first);
+  for (size_t k = elements->count; k-- > 0;) {
+    size_t component = components->of[elements->positions[k].row];
+    next[k] = first[component];
+    first[component] = k + 1;
+  }
+  for (size_t component = 0; component < components->count; component++) {
+    for (size_t k = first[component]; k > 0; k = next[k - 1])
+      append(&sorted, elements->positions[k - 1].row, elements->positions[k - 1].column, elements->nodes[k - 1]);
+    start[component + 1] = sorted.count;
+  }
+  free(first);
+  free(next);
+  elements_free(elements);
+  *elements = sorted;
+  return start;
+}
+
+/* Multiplies the elements of each component out where that makes them shorter, and drops those that vanish so. */
+static void shorten_elements(struct Graph *graph, size_t count, struct Elements *elements) {
+  struct Components components = find_components(count, elements);
+  size_t *start = sort_by_components(elements, &components), kept = 0;
+  for (size_t component = 0; component < components.count; component++)
+    shorten(graph, start[component + 1] - start[component], elements->nodes + start[component]);
+  for (size_t k = 0; k < elements->count; k++) {
+    if (elements->nodes[k] == ZERO) continue;
+    elements->positions[kept] = elements->positions[k];
+    elements->nodes[kept++] = elements->nodes[k];
+  }
+  elements->count = kept;
+  free(components.of);
+  free(start);
+}
+
+/* Where the block keeps an element of the lower triangle, in places; start[count] where it is not in the pattern. */
+static size_t find(const struct InertiaBlock *block, size_t row, size_t column) {
+  size_t low = block->start[row], high = block->start[row + 1];
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (block->column[middle] == column) return middle;
+    if (block->column[middle] < column) low = middle + 1;
+    else high = middle;
+  }
+  return block->start[block->count];
+}
+
+static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j) {
+  size_t a = inertia->place_of[i], b = inertia->place_of[j];
+  return find(inertia_block_of(inertia, i), a > b ? a : b, a > b ? b : a);
+}
+
+/* The block of these elements; members: its coordinates, ascending. */
+static void create_block(struct Inertia *inertia, size_t number, size_t *members, struct Position *positions,
+                         const Node *nodes, size_t position_count) {
+  struct InertiaBlock *block = &inertia->blocks[number];
+  struct Position *local = allocate(position_count, sizeof *local);
+  for (size_t k = 0; k < position_count; k++)
+    local[k] = (struct Position){inertia->place_of[positions[k].row], inertia->place_of[positions[k].column]};
+  struct Elimination elimination = eliminate(block->count, local, position_count);
+  block->start = elimination.start;
+  block->column = elimination.column;
+  block->coordinates = elimination.order;
+  for (size_t place = 0; place < block->count; place++) {
+    block->coordinates[place] = members[elimination.order[place]];
+    inertia->place_of[block->coordinates[place]] = place;
+  }
+  block->mass = allocate(block->start[block->count], sizeof(Node));
+  for (size_t k = 0; k < position_count; k++)
+    block->mass[find_coordinates(inertia, positions[k].row, positions[k].column)] = nodes[k];
+  free(local);
+}
+
+static struct Inertia *create_blocks(size_t count, struct Elements *elements) {
+  struct Components components = find_components(count, elements);
+  size_t *start = sort_by_components(elements, &components);
+  struct Inertia *inertia = allocate(1, sizeof *inertia);
+  *inertia = (struct Inertia){.count = count, .block_of = components.of, .place_of = allocate(count, sizeof(size_t))};
+  inertia->block_count = components.count;
+  inertia->blocks = allocate(components.count, sizeof *inertia->blocks);
+  size_t **members = allocate(components.count, sizeof *members);
+  for (size_t i = 0; i < count; i++) inertia->place_of[i] = inertia->blocks[components.of[i]].count++;
+  for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
+  for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
+  for (size_t b = 0; b < components.count; b++) {
+    create_block(inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
+                 start[b + 1] - start[b]);
+    free(members[b]);
+  }
+  free(members);
+  free(start);
+  return inertia;
+}
+
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, struct Diagnostics *diagnostics) {
+  size_t count = model->coordinates.count;
+  struct Elements elements = differentiate_momenta(model->graph, momentum, count);
+  shorten_elements(model->graph, count, &elements);
+  struct Inertia *inertia = create_blocks(count, &elements);
+  elements_free(&elements);
+  if (model->graph->overflow) return inertia;
+  if (pivots_check(model, inertia, diagnostics)) {
+    bool unroll_all = model->linearized || model->method == SOLVER_EXACT;
+    for (size_t b = 0; b < inertia->block_count; b++)
+      inertia->blocks[b].is_unrolled = unroll_all || inertia->blocks[b].count <= UNROLL_LIMIT;
+    pivots_factor(model->graph, inertia);
+    return inertia;
+  }
+  inertia_free(inertia);
+  return NULL;
+}
+
+void inertia_free(struct Inertia *inertia) {
+  if (inertia == NULL) return;
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    free(block->coordinates);
+    free(block->start);
+    free(block->column);
+    free(block->mass);
+    free(block->factor);
+  }
+  free(inertia->blocks);
+  free(inertia->block_of);
+  free(inertia->place_of);
+  free(inertia->pivots);
+  free(inertia);
+}
+
+static size_t *copy_sizes(const size_t *sizes, size_t count) {
+  size_t *copy = allocate(count, sizeof *copy);
+  for (size_t i = 0; i < count; i++) copy[i] = sizes[i];
+  return copy;
+}
+
+static Node *substitute_all(struct Graph *graph, const Node *nodes, size_t count, const Node *replacements) {
+  if (nodes == NULL) return NULL;
+  Node *results = allocate(count, sizeof *results);
+  substitute(graph, nodes, count, replacements, results);
+  return results;
+}
+
+static void substitute_pivots(struct Graph *graph, const struct Inertia *from, struct Inertia *to,
+                              const Node *replacements) {
+  to->pivots = allocate(from->pivot_count, sizeof *to->pivots);
+  for (size_t i = 0; i < from->pivot_count; i++) {
+    const struct Pivot *pivot = &from->pivots[i];
+    Node parts[] = {pivot->value, pivot->diagonal, pivot->scale};
+    substitute(graph, parts, 3, replacements, parts);
+    for (int part = 0; part < 3; part++) parts[part] = simplify_fraction(graph, parts[part]);
+    to->pivots[i] = (struct Pivot){parts[0], parts[1], parts[2], pivot->coordinate};
+  }
+}
+
+struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements) {
+  struct Inertia *result = allocate(1, sizeof *result);
+  *result = *inertia;
+  result->block_of = copy_sizes(inertia->block_of, inertia->count);
+  result->place_of = copy_sizes(inertia->place_of, inertia->count);
+  result->blocks = allocate(inertia->block_count, sizeof *result->blocks);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *from = &inertia->blocks[b];
+    size_t count = from->count, elements = from->start[count];
+    result->blocks[b] = (struct InertiaBlock){.count = count,
+                                              .coordinates = copy_sizes(from->coordinates, count),
+                                              .is_unrolled = from->is_unrolled,
+                                              .start = copy_sizes(from->start, count + 1),
+                                              .column = copy_sizes(from->column, elements),
+                                              .mass = substitute_all(graph, from->mass, elements, replacements),
+                                              .factor = substitute_all(graph, from->factor, elements, replacements)};
+  }
+  substitute_pivots(graph, inertia, result, replacements);
+  return result;
+}
+
+void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    const size_t *coordinate = block->coordinates;
+    for (size_t i = 0; i < block->count; i++) {
+      Node sum = block->is_unrolled ? right_side[coordinate[i]] : ZERO;
+      for (size_t k = block->start[i]; k + 1 < block->start[i + 1] && block->is_unrolled; k++)
+        sum = subtract(graph, sum, multiply(graph, block->factor[k], solution[coordinate[block->column[k]]]));
+      solution[coordinate[i]] = sum;
+    }
+    if (!block->is_unrolled) continue;
+    for (size_t i = 0; i < block->count; i++)
+      solution[coordinate[i]] = divide(graph, solution[coordinate[i]], block->factor[block->start[i + 1] - 1]);
+    for (size_t i = block->count; i-- > 0;)
+      for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
+        Node *element = &solution[coordinate[block->column[k]]];
+        *element = subtract(graph, *element, multiply(graph, block->factor[k], solution[coordinate[i]]));
+      }
+  }
+}
+
+void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    for (size_t row = 0; row < block->count; row++)
+      for (size_t k = block->start[row]; k < block->start[row + 1]; k++) {
+        size_t i = block->coordinates[row], j = block->coordinates[block->column[k]];
+        sum[i] = add(graph, sum[i], multiply(graph, block->mass[k], vector[j]));
+        if (i != j) sum[j] = add(graph, sum[j], multiply(graph, block->mass[k], vector[i]));
+      }
+  }
+}
+
+Node inertia_element(const struct Inertia *inertia, size_t i, size_t j) {
+  if (inertia->block_of[i] != inertia->block_of[j]) return ZERO;
+  const struct InertiaBlock *block = inertia_block_of(inertia, i);
+  size_t found = find_coordinates(inertia, i, j);
+  return found < block->start[block->count] ? block->mass[found] : ZERO;
+}
+
+const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate) {
+  return &inertia->blocks[inertia->block_of[coordinate]];
+}
+
+bool block_is_full(const struct InertiaBlock *block) {
+  return block->start[block->count] == block->count * (block->count + 1) / 2;
+}

@@ -1,0 +1,72 @@
+/*
+ * The mass matrix M = d2L/dv dv: sparse, in blocks that are independent of each other, each with its factors
+ * M = L D L^T or the pattern of them.
+ */
+#ifndef INERTIA_H
+#define INERTIA_H
+
+#include "mechanics/model.h"
+
+/* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
+struct Pivot {
+  Node value;    /* D_i of M = L D L^T */
+  Node diagonal; /* M_ii */
+  Node scale;    /* the magnitude of the terms of M_ii, with |sin| and |cos| taken as 1 */
+  size_t coordinate;
+};
+
+/*
+ * Coordinates that M couples, directly or by way of others. Elements are kept in the pattern of L, by rows of its lower
+ * triangle, columns ascending and the diagonal last: row i has elements start[i] .. start[i + 1] - 1. Rows and columns
+ * are places in coordinates.
+ */
+struct InertiaBlock {
+  size_t count;
+  size_t *coordinates; /* in the order of elimination */
+  bool is_unrolled;    /* solved symbolically, as straight-line code; others by ldlt.h at run time */
+  size_t *start, *column;
+  Node *mass;   /* the elements of M; ZERO where L fills in */
+  Node *factor; /* of unrolled blocks: the elements of L, and those of D on the diagonal; NULL in others */
+};
+
+struct Inertia {
+  size_t count; /* coordinates */
+  struct InertiaBlock *blocks;
+  size_t block_count;
+  size_t *block_of, *place_of; /* of each coordinate */
+  struct Pivot *pivots;        /* of the unrolled blocks */
+  size_t pivot_count;
+};
+
+/*
+ * Blocks of M up to this size become straight-line code. Larger ones take fewer operations where their numbers are
+ * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
+ */
+enum { UNROLL_LIMIT = 2 };
+
+/*
+ * M from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and a matrix that is singular
+ * everywhere; NULL then. Free with inertia_free().
+ */
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, struct Diagnostics *diagnostics);
+void inertia_free(struct Inertia *inertia);
+
+/* The same matrix with each symbol s replaced by replacements[s], its factors and pivots too. */
+struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements);
+
+/* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
+void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution);
+
+/* sum += M vector */
+void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);
+
+/* M_ij */
+Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);
+
+/* The block that a coordinate belongs to. */
+const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate);
+
+/* Whether the pattern of the block is the whole triangle. */
+bool block_is_full(const struct InertiaBlock *block);
+
+#endif

@@ -1,0 +1,13 @@
+/* The factors M = L D L^T of the mass matrix: whether there are any, and the symbolic ones of small blocks. */
+#ifndef PIVOTS_H
+#define PIVOTS_H
+
+#include "mechanics/inertia.h"
+
+/* Reports a coordinate without inertia and a matrix that is singular everywhere. True where it is regular. */
+bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics);
+
+/* Factors the blocks that are unrolled, and appends their pivots. */
+void pivots_factor(struct Graph *graph, struct Inertia *inertia);
+
+#endif
