@@ -105,7 +105,7 @@ enum Opcode {
 /* A block of M that is factored at run time: its part of the spaces, the pattern of its factor, see ldlt.h. */
 struct BlockTable {
   size_t count, first_mass, first_side;
-  const int *start, *column; /* NULL where the pattern is full */
+  const size_t *start, *column; /* NULL where the pattern is full */
   const int *coordinate;     /* of each row */
 };
 

@@ -21,6 +21,13 @@ struct Point {
   const double *input;
   const double *parameter;
   const double *prepared; /* what prepare() made of the parameters */
+  double *work;           /* lagrangian.work_count elements of workspace, for one thread at a time */
+};
+
+/* A sparse matrix by columns: column j has elements start[j] .. start[j + 1] - 1, with their rows ascending. */
+struct Sparsity {
+  size_t count; /* of elements */
+  const int *start, *row;
 };
 
 /* A direction of a directional derivative. */
@@ -52,15 +59,6 @@ struct ScalarVariable {
   double start, minimum, maximum;
 };
 
-/* A computed variable; acceleration holds dv/dt at the point, where it is used. */
-struct Result {
-  double (*value)(const struct Point *point, const double *acceleration);
-  /* Its derivative along seed, with the accelerations changing by acceleration_along; NULL unless an output. */
-  double (*along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
-                  const double *acceleration_along);
-  bool uses_acceleration;
-};
-
 struct Solver;
 
 struct Lagrangian {
@@ -70,7 +68,8 @@ struct Lagrangian {
   size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
   int output_derivative_order;            /* the highest that fmi2GetRealOutputDerivatives knows */
   const struct ScalarVariable *variables;
-  const struct Result *results;
+  const bool *result_uses_acceleration; /* for each result */
+  size_t work_count;                    /* of struct Point */
   const double *nominal; /* state_count: scales of the absolute tolerance */
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */
   const char *const *inertia_depends_on;
@@ -90,8 +89,16 @@ struct Lagrangian {
   int (*derivatives)(const struct Point *point, double *derivative);
   /* The derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
-  /* d derivatives / d state, element (i, j) at jacobian[j * state_count + i] */
-  int (*jacobian)(const struct Point *point, double *jacobian);
+  /* d derivatives / d state: the elements of jacobian_pattern, in its order */
+  int (*jacobian)(const struct Point *point, double *values);
+  struct Sparsity jacobian_pattern;
+  /*
+   * A computed variable; acceleration holds dv/dt at the point, where it is used. result_along: its derivative along
+   * seed, with the accelerations changing by acceleration_along; of outputs alone.
+   */
+  double (*result)(const struct Point *point, const double *acceleration, size_t result);
+  double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
+                         const double *acceleration_along, size_t result);
   /* The same as derivatives(); also fills the first coefficients in the workspace w[series_rows] of series(). */
   int (*start)(const struct Point *point, double *derivative, Series *w);
   /*

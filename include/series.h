@@ -240,6 +240,11 @@ static inline double series_sign(int k, const double *a) {
   return (double)((a[j] > 0.0) - (a[j] < 0.0));
 }
 
+/* |a|_k, of the piece that is there first */
+static inline double series_absolute(int k, const double *a) {
+  return series_sign(k, a) * a[k];
+}
+
 /* The coefficient k - 1 of y' x - x' y, divided by k */
 static inline double series_area(int k, const double *y, const double *x) {
   double sum = 0.0;

@@ -249,24 +249,29 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
   return result;
 }
 
+void inertia_solve_block(struct Graph *graph, const struct InertiaBlock *block, const Node *right_side, Node *solution) {
+  for (size_t i = 0; i < block->count; i++) {
+    solution[i] = right_side[i];
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
+      solution[i] = subtract(graph, solution[i], multiply(graph, block->factor[k], solution[block->column[k]]));
+  }
+  for (size_t i = 0; i < block->count; i++)
+    solution[i] = divide(graph, solution[i], block->factor[block->start[i + 1] - 1]);
+  for (size_t i = block->count; i-- > 0;)
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
+      Node *element = &solution[block->column[k]];
+      *element = subtract(graph, *element, multiply(graph, block->factor[k], solution[i]));
+    }
+}
+
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
-    const size_t *coordinate = block->coordinates;
-    for (size_t i = 0; i < block->count; i++) {
-      Node sum = block->is_unrolled ? right_side[coordinate[i]] : ZERO;
-      for (size_t k = block->start[i]; k + 1 < block->start[i + 1] && block->is_unrolled; k++)
-        sum = subtract(graph, sum, multiply(graph, block->factor[k], solution[coordinate[block->column[k]]]));
-      solution[coordinate[i]] = sum;
-    }
-    if (!block->is_unrolled) continue;
-    for (size_t i = 0; i < block->count; i++)
-      solution[coordinate[i]] = divide(graph, solution[coordinate[i]], block->factor[block->start[i + 1] - 1]);
-    for (size_t i = block->count; i-- > 0;)
-      for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
-        Node *element = &solution[coordinate[block->column[k]]];
-        *element = subtract(graph, *element, multiply(graph, block->factor[k], solution[coordinate[i]]));
-      }
+    Node *part = allocate(block->count, sizeof *part);
+    for (size_t i = 0; i < block->count && block->is_unrolled; i++) part[i] = right_side[block->coordinates[i]];
+    if (block->is_unrolled) inertia_solve_block(graph, block, part, part);
+    for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = part[i];
+    free(part);
   }
 }
 

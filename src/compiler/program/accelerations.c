@@ -58,6 +58,16 @@ void append_solution(struct Values *values, const struct LoopedBlocks *blocks, s
   routine_append(values->routine, SOLVE, (Place)block, 0, 0, 0);
 }
 
+/* Multiplications, divisions and additions of factoring a block and solving it once. */
+static size_t factor_operations(const struct InertiaBlock *block) {
+  size_t elements = block->start[block->count], operations = block->count + 4 * (elements - block->count);
+  size_t *below = allocate(block->count, sizeof *below); /* the diagonal of each column */
+  for (size_t i = 0; i < elements; i++) below[block->column[i]]++;
+  for (size_t j = 0; j < block->count; j++) operations += (below[j] - 1) * below[j] + 2 * (below[j] - 1);
+  free(below);
+  return operations;
+}
+
 /* Factors a large block and solves it for its accelerations. */
 static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                          size_t number) {
@@ -72,6 +82,7 @@ static void append_block(struct Values *values, const struct Equations *equation
   for (size_t i = 0; i < block->count; i++)
     routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  values->routine->operation_count += factor_operations(block);
   free(right_side);
 }
 

@@ -5,6 +5,25 @@
 
 #include "memory.h"
 
+static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
+    [LIMIT_EXPONENTIAL] = {.name = "exponential", .has_function = true},
+    [LIMIT_HYPERBOLIC] = {.name = "hyperbolic", .has_function = true},
+    [LIMIT_TANH] = {.name = "tanh"},
+    [LIMIT_TANGENT] = {.name = "tangent"},
+    [LIMIT_POSITIVE] = {.name = "positive", .has_function = true},
+    [LIMIT_QUOTIENT] = {.name = "quotient", .has_share = true},
+    [LIMIT_ROOT] = {.name = "root", .has_share = true},
+    [LIMIT_WHOLE_POWER] = {.name = "whole_power", .has_share = true},
+    [LIMIT_DIVISION] = {.name = "division", .has_two_rows = true, .has_share = true},
+    [LIMIT_POWER] = {.name = "power", .has_exponent = true},
+    [LIMIT_SIGN] = {.name = "sign", .has_function = true},
+    [LIMIT_ANGLE] = {.name = "angle", .has_two_rows = true},
+};
+
+const struct LimitFacts *limit_facts(enum LimitRule rule) {
+  return &facts[rule];
+}
+
 /* A check whose rows are still nodes; ZERO for none. */
 struct Check {
   enum LimitRule rule;

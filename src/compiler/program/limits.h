@@ -10,6 +10,14 @@ struct LimitChecks {
   size_t count;
 };
 
+/* The function series_limit_NAME() of a rule, and what it is called with after the first row. */
+struct LimitFacts {
+  const char *name;
+  bool has_two_rows, has_function, has_exponent, has_share;
+};
+
+const struct LimitFacts *limit_facts(enum LimitRule rule);
+
 /* The checks for all nodes of the series, whose operands have rows from now on. Free items with free(). */
 struct LimitChecks limits_of(struct SeriesBuilder *builder);
 

@@ -1,0 +1,12 @@
+/* Writes the C file of a system: its program as functions, and the description that names them. */
+#ifndef CODE_H
+#define CODE_H
+
+#include <stdio.h>
+
+#include "program/program.h"
+
+/* The file refers to GUID, which the caller defines before it. */
+void code_write(FILE *file, const struct Program *program);
+
+#endif

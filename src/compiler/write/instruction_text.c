@@ -1,0 +1,113 @@
+#include "write/instruction_text.h"
+
+#include "write/c_text.h"
+
+/* The names of arrays; the other spaces are no arrays, or two. */
+static const char *const arrays[SPACE_COUNT] = {
+    [SPACE_PARAMETER] = "p",     [SPACE_PREPARED] = "c",          [SPACE_INPUT] = "u",
+    [SPACE_ACCELERATION] = "a",  [SPACE_SEED_PARAMETER] = "dp",   [SPACE_SEED_INPUT] = "du",
+    [SPACE_MASS] = "mass",       [SPACE_SEED_ACCELERATION] = "da", [SPACE_SIDE] = "side",
+    [SPACE_ROW] = "w",           [SPACE_STATE_ROW] = "x",         [SPACE_INPUT_ROW] = "input",
+    [SPACE_TARGET_ROW] = "y",
+};
+
+static void write_state(FILE *file, const struct Program *program, const char *direction, size_t index) {
+  size_t n = program->equations->count;
+  if (index < n) fprintf(file, "%sq[%zu]", direction, index);
+  else fprintf(file, "%sv[%zu]", direction, index - n);
+}
+
+void write_place(FILE *file, const struct Program *program, Place place, enum Role role, const char *target) {
+  static const char *const elements[] = {[VALUE] = "[0]",
+                                         [COEFFICIENT] = "[k]",
+                                         [ROW] = "",
+                                         [ROW_OF_PAST] = "",
+                                         [NEXT_COEFFICIENT] = "[k + 1]",
+                                         [PAST_COEFFICIENT] = "[k - 1]"};
+  enum Space space = space_of(place);
+  size_t index = index_in(place);
+  switch (space) {
+  case SPACE_NUMBER: write_c_number(file, graph_value(program->model->graph, (Node)index)); return;
+  case SPACE_STATE: write_state(file, program, "", index); return;
+  case SPACE_SEED_STATE: write_state(file, program, "d", index); return;
+  case SPACE_TIME: fputs("point->time", file); return;
+  case SPACE_SEED_TIME: fputs("seed->time", file); return;
+  case SPACE_LOCAL: fprintf(file, "t%zu", index); return;
+  case SPACE_TARGET: fprintf(file, "%s[%zu]", target, index); return;
+  case SPACE_TIME_ROW: fputs("time", file); break;
+  default: fprintf(file, "%s[%zu]", arrays[space], index); break;
+  }
+  if (space >= SPACE_ROW) fputs(elements[role], file);
+}
+
+const char *c_function_name(enum Operation function) {
+  switch (function) {
+  case ABSOLUTE: return "fabs";
+  case MINIMUM: return "fmin";
+  case MAXIMUM: return "fmax";
+  default: return operation_name(function);
+  }
+}
+
+/* The statement of opcode_facts() with its operands. */
+static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
+                             const char *target) {
+  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
+  for (const char *text = facts->statement; *text != '\0'; text++) {
+    if (*text != '$') {
+      fputc(*text, file);
+      continue;
+    }
+    text++;
+    if (*text == 'f') fputs(c_function_name(instruction->function), file);
+    else if (*text == '0' && facts->result == NUMBER) fprintf(file, "%u", instruction->result);
+    else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
+    else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);
+  }
+}
+
+/* ldlt_...(size, pattern of the block, its elements */
+static void write_block_call(FILE *file, const struct Program *program, const char *function, size_t number) {
+  const struct LoopedBlock *looped = &program->blocks.items[number];
+  fprintf(file, "ldlt_%s(%zu, ", function, looped->block->count);
+  if (block_is_full(looped->block)) fputs("NULL, NULL", file);
+  else fprintf(file, "start%zu, column%zu", number, number);
+  fprintf(file, ", mass + %zu", looped->first_mass);
+}
+
+static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {
+  unsigned number = instruction->result;
+  if (instruction->opcode == FACTOR) {
+    fprintf(file, "const size_t singular%u = ", number);
+    write_block_call(file, program, "factor", number);
+    fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
+  } else {
+    write_block_call(file, program, "solve", number);
+    fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
+  }
+}
+
+static void write_statement(FILE *file, const struct Program *program, const struct Instruction *instruction,
+                            const char *target) {
+  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
+  if (facts->result == BLOCK) {
+    write_block_statement(file, program, instruction);
+    return;
+  }
+  if (facts->result != NUMBER && space_of(instruction->result) == SPACE_TARGET && target == NULL)
+    fputs("return ", file);
+  else if (facts->result != NUMBER) {
+    if (space_of(instruction->result) == SPACE_LOCAL) fputs("const double ", file);
+    write_place(file, program, instruction->result, facts->result == ROW ? COEFFICIENT : facts->result, target);
+    fputs(" = ", file);
+  }
+  write_expression(file, program, instruction, target);
+}
+
+void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target) {
+  for (size_t i = 0; i < routine->count; i++) {
+    fputs("  ", file);
+    write_statement(file, program, &routine->instructions[i], target);
+    fputs(";\n", file);
+  }
+}

@@ -1,0 +1,144 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+#include "write/c_text.h"
+#include "write/instruction_text.h"
+#include "write/statements.h"
+
+/*
+ * Systems up to this many recurrences an order get code of their own for the first orders, as many as have together so
+ * many products that their code stays in the processor's instruction cache.
+ */
+enum { UNROLLED_RECURRENCES = 40, UNROLLED_PRODUCTS = 1300 };
+
+bool series_is_unrolled(const struct Program *program) {
+  return program->series != NULL && program->interface->method == SOLVER_TAYLOR && program->blocks.count == 0 &&
+         program->series->recurrences <= UNROLLED_RECURRENCES;
+}
+
+/* What an order may need beside k, x and w: its declaration, and what series() passes for it. */
+static const struct {
+  enum Space space;
+  const char *declaration, *argument;
+} further_arguments[] = {
+    {SPACE_PARAMETER, "const double *p", "point->parameter"},
+    {SPACE_PREPARED, "const double *c", "point->prepared"},
+    {SPACE_TIME_ROW, "const double *time", "time"},
+    {SPACE_INPUT_ROW, "const Series *restrict input", "input"},
+};
+
+enum { FURTHER_COUNT = sizeof further_arguments / sizeof *further_arguments };
+
+static void write_next_function(FILE *file, const struct Program *program) {
+  const struct Routine *order = program->series->order;
+  fprintf(file, "/* Coefficient k of all series, k + 1 of the state; %zu recurrences */\n",
+          program->series->recurrences);
+  fputs("static SERIES_INLINE void series_next(int k, ", file);
+  for (int i = 0; i < FURTHER_COUNT; i++)
+    if (routine_uses(order, further_arguments[i].space)) fprintf(file, "%s, ", further_arguments[i].declaration);
+  fputs("Series *restrict x, Series *restrict w) {\n", file);
+  write_statements(file, program, order, NULL);
+  fputs("}\n\n", file);
+}
+
+static void write_next_call(FILE *file, const struct Routine *order, const char *k) {
+  fprintf(file, "series_next(%s, ", k);
+  for (int i = 0; i < FURTHER_COUNT; i++)
+    if (routine_uses(order, further_arguments[i].space)) fprintf(file, "%s, ", further_arguments[i].argument);
+  fputs("x, w); break;\n", file);
+}
+
+/* The first orders are calls with a constant order, which the compiler unrolls. */
+static void write_unrolled_orders(FILE *file, const struct Program *program) {
+  fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n    switch (k) {\n", file);
+  size_t products = 0;
+  for (size_t k = 1; k + 1 < SERIES_LENGTH; k++) {
+    products += k * program->series->recurrences;
+    if (products > UNROLLED_PRODUCTS) break;
+    char *order = format_text("%zu", k);
+    fprintf(file, "    case %zu: ", k);
+    write_next_call(file, program->series->order, order);
+    free(order);
+  }
+  fputs("    default: ", file);
+  write_next_call(file, program->series->order, "k");
+  fputs("    }\n  }\n", file);
+}
+
+static void declare_time(FILE *file, bool is_used) {
+  if (is_used) fputs("  const Series time = {point->time, 1.0};\n", file);
+}
+
+static void write_series(FILE *file, const struct Program *program) {
+  const struct Routine *order = program->series->order;
+  write_head(file, &series_text, "", order->operation_count);
+  declare_time(file, routine_uses(order, SPACE_TIME_ROW));
+  if (series_is_unrolled(program)) write_unrolled_orders(file, program);
+  else {
+    statements_declare_point(file, program, order);
+    if (program->blocks.count > 0)
+      fprintf(file, "  const double *mass = w[%zu];\n  double side[%zu];\n", program->series->mass_row,
+              program->blocks.side_count);
+    fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n", file);
+    write_statements(file, program, order, NULL);
+    fputs("  }\n", file);
+  }
+  fputs("}\n\n", file);
+}
+
+static void write_check(FILE *file, const struct Program *program, const struct LimitCheck *check) {
+  const struct LimitFacts *facts = limit_facts(check->rule);
+  fprintf(file, "  series_limit_%s(limit, ", facts->name);
+  write_place(file, program, check->row, ROW, NULL);
+  if (facts->has_two_rows) {
+    fputs(", ", file);
+    write_place(file, program, check->other_row, ROW, NULL);
+  }
+  if (facts->has_function) fprintf(file, ", \"%s\"", check->function);
+  if (facts->has_exponent) {
+    fputs(", ", file);
+    write_place(file, program, check->exponent, VALUE, NULL);
+  }
+  if (facts->has_share) {
+    fputs(", ", file);
+    write_c_number(file, check->share);
+  }
+  fputs(");\n", file);
+}
+
+static void write_limit(FILE *file, const struct Program *program) {
+  const struct LimitChecks *checks = &program->series->limit;
+  struct Routine spaces = {0}; /* none but for its spaces */
+  for (size_t i = 0; i < checks->count; i++) {
+    const struct LimitCheck *check = &checks->items[i];
+    spaces.spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
+    if (limit_facts(check->rule)->has_exponent) spaces.spaces |= 1u << space_of(check->exponent);
+  }
+  write_head(file, &limit_text, "", checks->count);
+  declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));
+  statements_declare_point(file, program, &spaces);
+  for (size_t i = 0; i < checks->count; i++) write_check(file, program, &checks->items[i]);
+  fputs("}\n\n", file);
+}
+
+void statements_series(FILE *file, const struct Program *program) {
+  if (series_is_unrolled(program)) write_next_function(file, program);
+  statements_function(file, program, &start_text, "", program->series->start);
+  write_series(file, program);
+  if (program->series->limit.count > 0) write_limit(file, program);
+}
+
+void statements_output_series(FILE *file, const struct Program *program) {
+  const struct SeriesProgram *series = program->output_series;
+  struct Routine both = *series->start; /* with the spaces of both, for the declarations */
+  both.spaces |= series->order->spaces;
+  write_head(file, &output_series_text, "", series->start->operation_count);
+  declare_time(file, routine_uses(&both, SPACE_TIME_ROW));
+  statements_declare_point(file, program, &both);
+  if (routine_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  double a[%zu];\n", program->equations->count);
+  write_statements(file, program, series->start, "y");
+  fputs("  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n", file);
+  write_statements(file, program, series->order, NULL);
+  fputs("  }\n}\n\n", file);
+}

@@ -1,0 +1,88 @@
+#include "write/statements.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+#include "write/instruction_text.h"
+
+/* Whether the routine reads elements from .. to - 1 of the space. */
+static bool reads(const struct Routine *routine, enum Space space, size_t from, size_t to) {
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
+      Place place = instruction->operands[j];
+      if (space_of(place) == space && index_in(place) >= from && index_in(place) < to) return true;
+    }
+  }
+  return false;
+}
+
+static void declare(FILE *file, bool is_used, const char *name, const char *source) {
+  if (is_used) fprintf(file, "  const double *%s = %s;\n", name, source);
+}
+
+void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine) {
+  size_t n = program->equations->count;
+  char *velocity = format_text("point->state + %zu", n), *seed_velocity = format_text("seed->state + %zu", n);
+  declare(file, reads(routine, SPACE_STATE, 0, n), "q", "point->state");
+  declare(file, reads(routine, SPACE_STATE, n, 2 * n), "v", velocity);
+  declare(file, routine_uses(routine, SPACE_INPUT), "u", "point->input");
+  declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
+  declare(file, routine_uses(routine, SPACE_PREPARED), "c", "point->prepared");
+  declare(file, reads(routine, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
+  declare(file, reads(routine, SPACE_SEED_STATE, n, 2 * n), "dv", seed_velocity);
+  declare(file, routine_uses(routine, SPACE_SEED_INPUT), "du", "seed->input");
+  declare(file, routine_uses(routine, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
+  free(velocity);
+  free(seed_velocity);
+}
+
+/* Where series follow, the factors of large blocks are kept for them. */
+static void declare_block_spaces(FILE *file, const struct Program *program, const struct Routine *routine) {
+  if (routine_uses(routine, SPACE_SIDE)) fprintf(file, "  double side[%zu];\n", program->blocks.side_count);
+  if (!routine_uses(routine, SPACE_MASS)) return;
+  if (routine_uses(routine, SPACE_ROW)) fprintf(file, "  double *mass = w[%zu];\n", program->series->mass_row);
+  else fprintf(file, "  double mass[%zu];\n", program->blocks.mass_count);
+}
+
+void statements_function(FILE *file, const struct Program *program, const struct FunctionText *text, const char *suffix,
+                         const struct Routine *routine) {
+  size_t n = program->equations->count;
+  bool has_point = text != &prepare_text && text != &linear_text;
+  write_head(file, text, suffix, routine->operation_count);
+  if (has_point) statements_declare_point(file, program, routine);
+  declare_block_spaces(file, program, routine);
+  if (text->accelerations == IN_TARGET) fprintf(file, "  double *a = %s + %zu;\n", text->target, n);
+  else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))
+    fprintf(file, "  double a[%zu];\n", n);
+  write_statements(file, program, routine, text->target);
+  fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
+}
+
+/* One function that chooses among those of the results. */
+static void write_choice(FILE *file, const struct FunctionText *text, const char *passed,
+                         struct Routine *const *routines, size_t count) {
+  fprintf(file, "static double %s(%s, size_t result) {\n  switch (result) {\n", text->name, text->arguments);
+  for (size_t i = 0; i < count; i++)
+    if (routines[i] != NULL) fprintf(file, "  case %zu: return %s%zu(%s);\n", i, text->name, i, passed);
+  fputs("  default: return NAN;\n  }\n}\n\n", file);
+}
+
+void statements_results(FILE *file, const struct Program *program) {
+  size_t count = program->interface->result_count;
+  const struct {
+    const struct FunctionText *text;
+    struct Routine *const *routines;
+    const char *passed;
+  } kinds[] = {{&result_text, program->result, "point, a"},
+               {&result_along_text, program->result_along, "point, seed, a, da"}};
+  for (int kind = 0; kind < 2 && count > 0; kind++) {
+    for (size_t i = 0; i < count; i++) {
+      if (kinds[kind].routines[i] == NULL) continue;
+      char *suffix = format_text("%zu", i);
+      statements_function(file, program, kinds[kind].text, suffix, kinds[kind].routines[i]);
+      free(suffix);
+    }
+    write_choice(file, kinds[kind].text, kinds[kind].passed, kinds[kind].routines, count);
+  }
+}

@@ -1,0 +1,26 @@
+/* Routines as functions of C statements, one for each instruction. */
+#ifndef STATEMENTS_H
+#define STATEMENTS_H
+
+#include "write/functions.h"
+
+/* Names for what the routine reads of the point and the direction. */
+void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);
+
+/* A function of one routine; suffix belongs to its name. */
+void statements_function(FILE *file, const struct Program *program, const struct FunctionText *text, const char *suffix,
+                         const struct Routine *routine);
+
+/* result() and result_along(), which choose among a function for each result. */
+void statements_results(FILE *file, const struct Program *program);
+
+/* start(), series() and limit(). */
+void statements_series(FILE *file, const struct Program *program);
+
+/* output_series() */
+void statements_output_series(FILE *file, const struct Program *program);
+
+/* Whether the orders of series() get code of their own. */
+bool series_is_unrolled(const struct Program *program);
+
+#endif
