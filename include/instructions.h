@@ -49,34 +49,34 @@ typedef uint32_t Place;
  */
 enum Opcode {
   END,
-  COPY,            /* r = a */
-  FIRST_SLOPE,     /* the coefficient 1 of the row a */
-  SUM,             /* a + b */
-  DIFFERENCE,      /* a - b */
-  PRODUCT,         /* a b */
-  QUOTIENT,        /* a / b */
-  NEGATION,        /* -a */
-  SQUARE,          /* a^2 */
-  CUBE,            /* a^3 */
-  FOURTH,          /* a^4 */
-  RECIPROCAL,      /* 1 / a */
-  INVERSE_SQUARE,  /* a^-2 */
-  INVERSE_CUBE,    /* a^-3 */
-  INVERSE_FOURTH,  /* a^-4 */
-  SQUARE_ROOT,     /* sqrt(a) */
-  INVERSE_ROOT,    /* 1 / sqrt(a) */
-  LESS_THAN,       /* 1 where a < b, else 0 */
-  SIGN_OF,         /* -1, 0 or 1 */
-  CALL,            /* a function of a */
-  CALL_OF_TWO,     /* a function of a and b */
-  CHECK_POSITIVE,  /* return the number r unless a > 0 */
-  CHECK_PIVOT,     /* return the number r unless a > 1e-14 b */
-  CHECK_DIAGONAL,  /* return the number r unless a > 1e-28 b */
-  FACTOR,          /* the block r; return the coordinate's number where it is singular */
-  SOLVE,           /* the block r */
-  SERIES_COPY,     /* a_k */
-  SERIES_ZERO,     /* 0 */
-  SERIES_SUM,      /* a_k + b_k */
+  COPY,           /* r = a */
+  FIRST_SLOPE,    /* the coefficient 1 of the row a */
+  SUM,            /* a + b */
+  DIFFERENCE,     /* a - b */
+  PRODUCT,        /* a b */
+  QUOTIENT,       /* a / b */
+  NEGATION,       /* -a */
+  SQUARE,         /* a^2 */
+  CUBE,           /* a^3 */
+  FOURTH,         /* a^4 */
+  RECIPROCAL,     /* 1 / a */
+  INVERSE_SQUARE, /* a^-2 */
+  INVERSE_CUBE,   /* a^-3 */
+  INVERSE_FOURTH, /* a^-4 */
+  SQUARE_ROOT,    /* sqrt(a) */
+  INVERSE_ROOT,   /* 1 / sqrt(a) */
+  LESS_THAN,      /* 1 where a < b, else 0 */
+  SIGN_OF,        /* -1, 0 or 1 */
+  CALL,           /* a function of a */
+  CALL_OF_TWO,    /* a function of a and b */
+  CHECK_POSITIVE, /* return the number r unless a > 0 */
+  CHECK_PIVOT,    /* return the number r unless a > 1e-14 b */
+  CHECK_DIAGONAL, /* return the number r unless a > 1e-28 b */
+  FACTOR,         /* the block r; return the coordinate's number where it is singular */
+  SOLVE,          /* the block r */
+  SERIES_COPY,    /* a_k */
+  SERIES_ZERO,    /* 0 */
+  SERIES_SUM,     /* a_k + b_k */
   SERIES_DIFFERENCE,
   SERIES_NEGATION,
   SERIES_MULTIPLE,          /* the value a times b_k */
@@ -106,7 +106,7 @@ enum Opcode {
 struct BlockTable {
   size_t count, first_mass, first_side;
   const size_t *start, *column; /* NULL where the pattern is full */
-  const int *coordinate;     /* of each row */
+  const int *coordinate;        /* of each row */
 };
 
 /* What all tables of a system share. */

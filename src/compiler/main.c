@@ -82,9 +82,11 @@ static void override_solver(struct Model *model, const char *solver, struct Diag
 static void compile(struct Model *model, struct Equations *equations, const char *directory,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
-  struct Program *program = program_create(model, equations, interface, diagnostics);
+  struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
+  struct Program *program = expressions != NULL ? program_create(expressions) : NULL;
   if (program != NULL) output_write(program, directory, diagnostics);
   program_free(program);
+  expressions_free(expressions);
   interface_free(interface);
 }
 

@@ -8,17 +8,17 @@
 
 #include "documentation.h"
 #include "model_description.h"
-#include "write/emit.h"
+#include "write/code.h"
 #include "guid.h"
 #include "memory.h"
 
 enum { FILE_COUNT = 3 };
 
-static char *code_text(const struct Program *program, const char *guid) {
+static char *code_text(const struct Program *program) {
   char *text = NULL;
   size_t length = 0;
   FILE *file = open_text(&text, &length);
-  emit_system(file, program, guid);
+  code_write(file, program);
   fclose(file);
   return text;
 }
@@ -71,20 +71,20 @@ void output_write(const struct Program *program, const char *directory, struct D
   xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), documentation = xmlBufferCreate();
   const struct Model *model = program->model;
   char guid[GUID_LENGTH];
-  char *code = code_text(program, "");
+  char *code = code_text(program);
   bool written = model_description_write(anonymous, model, program->equations, program->interface, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
-  free(code);
-  code = code_text(program, guid);
+  char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
   written = written && model_description_write(description, model, program->equations, program->interface, guid) &&
             documentation_write(documentation, program);
   if (written)
     write_all(directory,
-              (const char *const[]){code, (const char *)xmlBufferContent(description),
+              (const char *const[]){file, (const char *)xmlBufferContent(description),
                                     (const char *)xmlBufferContent(documentation)},
               diagnostics);
   else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
   free(code);
+  free(file);
   xmlBufferFree(anonymous);
   xmlBufferFree(description);
   xmlBufferFree(documentation);

@@ -71,12 +71,11 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
 
 static fmi2Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   struct Point point = evaluate_point(instance);
-  const struct Result *result = &lagrangian.results[variable->index];
-  if (result->uses_acceleration && !evaluate_derivatives(instance, &point, instance->work)) {
+  if (lagrangian.result_uses_acceleration[variable->index] && !evaluate_derivatives(instance, &point, instance->work)) {
     log_singularity(instance, fmi2Discard, point.time);
     return fmi2Discard;
   }
-  *value = result->value(&point, instance->work + lagrangian.coordinate_count);
+  *value = lagrangian.result(&point, instance->work + lagrangian.coordinate_count, variable->index);
   return fmi2OK;
 }
 
@@ -124,8 +123,8 @@ double evaluate_along(const struct ScalarVariable *variable, const struct Point 
   case VARIABLE_STATE: return seed->state[variable->index];
   case VARIABLE_DERIVATIVE: return derivative_along[variable->index];
   case VARIABLE_RESULT:
-    return lagrangian.results[variable->index].along(point, seed, derivative + lagrangian.coordinate_count,
-                                                     derivative_along + lagrangian.coordinate_count);
+    return lagrangian.result_along(point, seed, derivative + lagrangian.coordinate_count,
+                                   derivative_along + lagrangian.coordinate_count, variable->index);
   default: return NAN;
   }
 }

@@ -23,13 +23,13 @@ struct Expressions {
   const struct Model *model;
   const struct Equations *equations;
   const struct Interface *interface;
-  struct LinearSystem *linear;         /* NULL unless the solver is exact */
-  struct SeriesPlan *series;           /* of the motion; NULL for exact and without coordinates */
-  struct SeriesPlan *output_series;    /* NULL where outputs have no derivatives above the first, or are variables */
-  Node *along;                         /* derivative of the accelerations, or right sides for it, as above */
-  Node power_along;                    /* of the power of the forces */
+  struct LinearSystem *linear;          /* NULL unless the solver is exact */
+  struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
+  struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
+  Node *along;                          /* derivative of the accelerations, or right sides for it, as above */
+  Node power_along;                     /* of the power of the forces */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
-  Node *result, *result_along;         /* one for each result; along is ZERO unless it is an output */
+  Node *result, *result_along;          /* one for each result; along is ZERO unless it is an output */
 };
 
 /* Reports errors where the chosen solver does not fit the system; NULL then. Free with expressions_free(). */

@@ -37,7 +37,8 @@ static size_t column_of(const struct Graph *graph, size_t coordinates, Node symb
   return what->kind == COORDINATE ? (size_t)what->index : coordinates + (size_t)what->index;
 }
 
-static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target, size_t row) {
+static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,
+                            size_t row) {
   struct Gradient gradient = gradient_by_kinds(graph, target, STATE_KINDS);
   for (size_t i = 0; i < gradient.count; i++)
     append(list, row, column_of(graph, coordinates, gradient.symbols[i]), gradient.values[i]);

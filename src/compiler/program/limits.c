@@ -111,8 +111,7 @@ static void check_power(struct CheckList *list, Node node) {
   if (graph_is_constant(graph, vertex->right))
     check_number_power(list, vertex->left, graph_value(graph, vertex->right));
   else if (is_constant_series(list->builder, vertex->right))
-    append(list,
-           (struct Check){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
+    append(list, (struct Check){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
   else if (can_have_row(list->builder, auxiliary))
     append(list, (struct Check){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
 }

@@ -177,8 +177,7 @@ static void create_results(struct Program *program, struct Values *values) {
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
   if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
-  if (program->series != NULL && program->interface->method != SOLVER_TAYLOR &&
-      program->series->limit.count == 0) {
+  if (program->series != NULL && program->interface->method != SOLVER_TAYLOR && program->series->limit.count == 0) {
     series_program_free(program->series);
     program->series = NULL;
   }
@@ -210,8 +209,7 @@ struct Program *program_create(const struct Expressions *expressions) {
   program->prepared = prepared_create(expressions->model->graph, targets);
   free(targets.nodes);
   program->blocks = looped_blocks_of(expressions->equations);
-  struct Values *values =
-      values_create(expressions->model->graph, program->prepared, expressions->equations->count);
+  struct Values *values = values_create(expressions->model->graph, program->prepared, expressions->equations->count);
   program->prepare = prepare_routine(values, expressions->equations);
   if (expressions->equations->count > 0) {
     program->derivatives = derivatives_routine(program, values);

@@ -48,8 +48,7 @@ static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
 /* The row of the time derivative of an operand: that of a velocity, or a further one, filled once for all functions. */
 static Place rate_row(struct SeriesBuilder *builder, Node operand) {
   if (is_coordinate(builder, operand))
-    return place_in(SPACE_STATE_ROW,
-                    builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
+    return place_in(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
   if (builder->rate[operand] == 0) {
     builder->rate[operand] = ++builder->further_rows;
     append(builder, SERIES_RATE, place_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1),
@@ -100,8 +99,7 @@ static void append_ratio_integral(struct SeriesBuilder *builder, Node node, doub
   Place coefficient = scaled(builder, sign, factor, top);
   if (is_constant_series(builder, below))
     append(builder, SERIES_SHARE, series_coefficient(builder, node), coefficient, value_of(builder, below), 0);
-  else
-    append(builder, SERIES_RATIO_INTEGRAL, series_row(builder, node), coefficient, series_row(builder, below), 0);
+  else append(builder, SERIES_RATIO_INTEGRAL, series_row(builder, node), coefficient, series_row(builder, below), 0);
 }
 
 /* y' = sign operand' factor */
@@ -112,8 +110,8 @@ static void append_integral(struct SeriesBuilder *builder, Node node, double sig
     append(builder, SERIES_COPY, result, scaled(builder, sign, factor, operand), 0, 0);
   else {
     Place rate = rate_row(builder, operand);
-    append(builder, sign < 0.0 ? SERIES_NEGATIVE_INTEGRAL : SERIES_INTEGRAL, result, rate,
-           series_row(builder, factor), 0);
+    append(builder, sign < 0.0 ? SERIES_NEGATIVE_INTEGRAL : SERIES_INTEGRAL, result, rate, series_row(builder, factor),
+           0);
   }
 }
 
@@ -219,9 +217,7 @@ void append_recurrence(struct SeriesBuilder *builder, Node node) {
   struct Form form = form_of(builder->needs, node);
   Place result = series_coefficient(builder, node);
   switch (form.kind) {
-  case FORM_NEGATION:
-    append(builder, SERIES_NEGATION, result, series_coefficient(builder, form.left), 0, 0);
-    return;
+  case FORM_NEGATION: append(builder, SERIES_NEGATION, result, series_coefficient(builder, form.left), 0, 0); return;
   case FORM_SUM:
   case FORM_DIFFERENCE: append_sum(builder, node, form); return;
   case FORM_PRODUCT: append_product(builder, result, form.left, form.right); return;

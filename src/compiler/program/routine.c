@@ -41,7 +41,8 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_SHARE] = {"SERIES_SHARE", "$1 / $2", COEFFICIENT, {COEFFICIENT, VALUE}, 1, false},
     [SERIES_PRODUCT] = {"SERIES_PRODUCT", "series_product(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},
     [SERIES_SQUARE] = {"SERIES_SQUARE", "series_square(k, $1)", COEFFICIENT, {ROW}, 1, true},
-    [SERIES_QUOTIENT] = {"SERIES_QUOTIENT", "series_quotient(k, $1, $3, $2, $0)", ROW, {COEFFICIENT, ROW, VALUE}, 1, true},
+    [SERIES_QUOTIENT] =
+        {"SERIES_QUOTIENT", "series_quotient(k, $1, $3, $2, $0)", ROW, {COEFFICIENT, ROW, VALUE}, 1, true},
     [SERIES_ROOT] = {"SERIES_ROOT", "series_root(k, $1, $0)", ROW, {ROW}, 1, true},
     [SERIES_POWER] = {"SERIES_POWER", "series_power(k, $2, $1, $0)", ROW, {ROW, VALUE}, 1, true},
     [SERIES_RATE] = {"SERIES_RATE", "k * $1", PAST_COEFFICIENT, {COEFFICIENT}, 1, false},
@@ -57,7 +58,8 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
         {"SERIES_LARGER", "series_sign(k, $1) > 0.0 ? $2 : $3", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
     [SERIES_SMALLER] =
         {"SERIES_SMALLER", "series_sign(k, $1) < 0.0 ? $2 : $3", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
-    [SERIES_REST] = {"SERIES_REST", "$1 - series_rest(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
+    [SERIES_REST] =
+        {"SERIES_REST", "$1 - series_rest(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
     [SERIES_SOLVE] = {"SERIES_SOLVE", NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SERIES_STATE] = {"SERIES_STATE", "$1 * (1.0 / (k + 1))", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
     [SERIES_SLOPE] = {"SERIES_SLOPE", "(k + 1) * $1", COEFFICIENT, {NEXT_COEFFICIENT}, 1, false},
@@ -92,8 +94,7 @@ static void append(struct Routine *routine, struct Instruction instruction) {
   routine->instructions[routine->count++] = instruction;
   routine->operation_count += fact->operations;
   if (fact->result != NUMBER && fact->result != BLOCK) routine->spaces |= 1u << space_of(instruction.result);
-  for (int i = 0; i < opcode_arity(instruction.opcode); i++)
-    routine->spaces |= 1u << space_of(instruction.operands[i]);
+  for (int i = 0; i < opcode_arity(instruction.opcode); i++) routine->spaces |= 1u << space_of(instruction.operands[i]);
 }
 
 void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c) {

@@ -43,9 +43,9 @@ static inline size_t index_in(Place place) {
 enum Role {
   NO_OPERAND,
   VALUE,
-  COEFFICIENT,     /* the coefficient k */
-  ROW,             /* all coefficients up to k */
-  ROW_OF_PAST,     /* all coefficients below k */
+  COEFFICIENT,      /* the coefficient k */
+  ROW,              /* all coefficients up to k */
+  ROW_OF_PAST,      /* all coefficients below k */
   NEXT_COEFFICIENT, /* the coefficient k + 1 */
   PAST_COEFFICIENT, /* the coefficient k - 1 */
   BLOCK,

@@ -208,7 +208,8 @@ static void complete(struct SeriesProgram *program, struct Rows *rows) {
 }
 
 /* Computes what has a row, and further nodes. */
-static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further, size_t count) {
+static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further,
+                          size_t count) {
   struct NodeList targets = {0};
   append_nodes(&targets, further, count);
   for (size_t i = 0; i < builder->nodes.count; i++)

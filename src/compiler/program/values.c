@@ -122,7 +122,6 @@ void values_compute(struct Values *values, const Node *targets, size_t count, bo
     if (form.arity == 2) needed[cone_place(cone, form.right)] = true;
   }
   for (size_t i = 0; i < cone->count; i++)
-    if (needed[i] && is_missing(values, cone->nodes[i]))
-      append(values, cone->nodes[i], form_of(needs, cone->nodes[i]));
+    if (needed[i] && is_missing(values, cone->nodes[i])) append(values, cone->nodes[i], form_of(needs, cone->nodes[i]));
   free(needed);
 }

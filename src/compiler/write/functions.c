@@ -1,45 +1,66 @@
 #include "write/functions.h"
 
-const struct FunctionText prepare_text = {
-    "What depends on parameters alone", "prepare", "const double *p, double *prepared", "prepared", RETURNS_STATUS,
-    IN_WORKSPACE};
+const struct FunctionText prepare_text = {"What depends on parameters alone",
+                                          "prepare",
+                                          "const double *p, double *prepared",
+                                          "prepared",
+                                          RETURNS_STATUS,
+                                          IN_WORKSPACE};
 const struct FunctionText derivatives_text = {
-    "d state / dt", "derivatives", "const struct Point *point, double *derivative", "derivative", RETURNS_STATUS,
-    IN_TARGET};
-const struct FunctionText directional_text = {
-    "d state / dt along a direction", "directional",
-    "const struct Point *point, const struct Seed *seed, double *derivative", "derivative", RETURNS_STATUS, IN_WORKSPACE};
+    "d state / dt", "derivatives",  "const struct Point *point, double *derivative",
+    "derivative",   RETURNS_STATUS, IN_TARGET};
+const struct FunctionText directional_text = {"d state / dt along a direction",
+                                              "directional",
+                                              "const struct Point *point, const struct Seed *seed, double *derivative",
+                                              "derivative",
+                                              RETURNS_STATUS,
+                                              IN_WORKSPACE};
 const struct FunctionText jacobian_text = {
     "Jacobian matrix", "jacobian", "const struct Point *point, double *values", "values", RETURNS_STATUS, IN_WORKSPACE};
 const struct FunctionText linear_text = {
-    "A, B and c", "linear", "const double *p, const double *c, double *matrix", "matrix", RETURNS_NOTHING, IN_WORKSPACE};
-const struct FunctionText start_text = {
-    "d state / dt, and the first coefficients of all series", "start",
-    "const struct Point *point, double *derivative, Series *restrict w", "derivative", RETURNS_STATUS, IN_TARGET};
+    "A, B and c", "linear",        "const double *p, const double *c, double *matrix",
+    "matrix",     RETURNS_NOTHING, IN_WORKSPACE};
+const struct FunctionText start_text = {"d state / dt, and the first coefficients of all series",
+                                        "start",
+                                        "const struct Point *point, double *derivative, Series *restrict w",
+                                        "derivative",
+                                        RETURNS_STATUS,
+                                        IN_TARGET};
 const struct FunctionText result_text = {
     "A computed variable", "result", "const struct Point *point, const double *a", NULL, RETURNS_VALUE, IN_ARGUMENT};
 const struct FunctionText result_along_text = {
-    "An output along a direction", "result_along",
-    "const struct Point *point, const struct Seed *seed, const double *a, const double *da", NULL, RETURNS_VALUE,
+    "An output along a direction",
+    "result_along",
+    "const struct Point *point, const struct Seed *seed, const double *a, const double *da",
+    NULL,
+    RETURNS_VALUE,
     IN_ARGUMENT};
 const struct FunctionText series_text = {
-    "Taylor coefficients of the state up to the order", "series",
-    "const struct Point *point, int order, const Series *restrict input, Series *restrict x, Series *restrict w", NULL,
-    RETURNS_NOTHING, IN_WORKSPACE};
+    "Taylor coefficients of the state up to the order",
+    "series",
+    "const struct Point *point, int order, const Series *restrict input, Series *restrict x, Series *restrict w",
+    NULL,
+    RETURNS_NOTHING,
+    IN_WORKSPACE};
 const struct FunctionText output_series_text = {
-    "Taylor coefficients of the outputs up to the order", "output_series",
+    "Taylor coefficients of the outputs up to the order",
+    "output_series",
     "const struct Point *point, int order, const Series *restrict input, const Series *restrict x, Series *restrict w, "
     "Series *restrict y",
-    NULL, RETURNS_NOTHING, IN_WORKSPACE};
+    NULL,
+    RETURNS_NOTHING,
+    IN_WORKSPACE};
 const struct FunctionText limit_text = {
-    "Shortens a step to where the series hide nothing", "limit",
+    "Shortens a step to where the series hide nothing",
+    "limit",
     "const struct Point *point, const Series *restrict input, const Series *restrict x, const Series *restrict w, "
     "struct SeriesLimit *limit",
-    NULL, RETURNS_NOTHING, IN_WORKSPACE};
+    NULL,
+    RETURNS_NOTHING,
+    IN_WORKSPACE};
 
 void write_head(FILE *file, const struct FunctionText *text, const char *suffix, size_t operations) {
-  static const char *const types[] = {
-      [RETURNS_NOTHING] = "void", [RETURNS_STATUS] = "int", [RETURNS_VALUE] = "double"};
+  static const char *const types[] = {[RETURNS_NOTHING] = "void", [RETURNS_STATUS] = "int", [RETURNS_VALUE] = "double"};
   fprintf(file, "/* %s; %zu operations */\nstatic %s %s%s(%s) {\n", text->comment, operations, types[text->returned],
           text->name, suffix, text->arguments);
 }

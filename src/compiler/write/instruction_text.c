@@ -4,10 +4,9 @@
 
 /* The names of arrays; the other spaces are no arrays, or two. */
 static const char *const arrays[SPACE_COUNT] = {
-    [SPACE_PARAMETER] = "p",     [SPACE_PREPARED] = "c",          [SPACE_INPUT] = "u",
-    [SPACE_ACCELERATION] = "a",  [SPACE_SEED_PARAMETER] = "dp",   [SPACE_SEED_INPUT] = "du",
-    [SPACE_MASS] = "mass",       [SPACE_SEED_ACCELERATION] = "da", [SPACE_SIDE] = "side",
-    [SPACE_ROW] = "w",           [SPACE_STATE_ROW] = "x",         [SPACE_INPUT_ROW] = "input",
+    [SPACE_PARAMETER] = "p",       [SPACE_PREPARED] = "c",    [SPACE_INPUT] = "u",     [SPACE_ACCELERATION] = "a",
+    [SPACE_SEED_PARAMETER] = "dp", [SPACE_SEED_INPUT] = "du", [SPACE_MASS] = "mass",   [SPACE_SEED_ACCELERATION] = "da",
+    [SPACE_SIDE] = "side",         [SPACE_ROW] = "w",         [SPACE_STATE_ROW] = "x", [SPACE_INPUT_ROW] = "input",
     [SPACE_TARGET_ROW] = "y",
 };
 
@@ -18,12 +17,9 @@ static void write_state(FILE *file, const struct Program *program, const char *d
 }
 
 void write_place(FILE *file, const struct Program *program, Place place, enum Role role, const char *target) {
-  static const char *const elements[] = {[VALUE] = "[0]",
-                                         [COEFFICIENT] = "[k]",
-                                         [ROW] = "",
-                                         [ROW_OF_PAST] = "",
-                                         [NEXT_COEFFICIENT] = "[k + 1]",
-                                         [PAST_COEFFICIENT] = "[k - 1]"};
+  static const char *const elements[] = {
+      [VALUE] = "[0]",    [COEFFICIENT] = "[k]",          [ROW] = "",
+      [ROW_OF_PAST] = "", [NEXT_COEFFICIENT] = "[k + 1]", [PAST_COEFFICIENT] = "[k - 1]"};
   enum Space space = space_of(place);
   size_t index = index_in(place);
   switch (space) {

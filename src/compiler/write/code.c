@@ -1,0 +1,83 @@
+#include "write/code.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+#include "write/c_text.h"
+#include "write/description.h"
+#include "write/statements.h"
+#include "write/tables.h"
+
+static void write_includes(FILE *file, const struct Program *program) {
+  fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
+  if (program->series != NULL && !program->is_table && !series_is_unrolled(program))
+    fputs("#define SERIES_ROLLED 1\n", file);
+  fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
+  if (program->is_table) fputs("#include \"instructions.h\"\n", file);
+  else if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
+  fputs(program->equations->count > 0 ? "#include \"solver.h\"\n\n" : "\n", file);
+}
+
+/* The pattern of each large block's factors, and the numbers of its coordinates, from 1 on. */
+static void write_blocks(FILE *file, const struct Program *program) {
+  for (size_t i = 0; i < program->blocks.count; i++) {
+    const struct InertiaBlock *block = program->blocks.items[i].block;
+    char *start = format_text("start%zu", i), *column = format_text("column%zu", i);
+    char *coordinate = format_text("coordinate%zu", i);
+    size_t *numbers = allocate(block->count, sizeof *numbers);
+    for (size_t j = 0; j < block->count; j++) numbers[j] = block->coordinates[j] + 1;
+    if (!block_is_full(block)) {
+      write_sizes(file, "size_t", start, block->start, block->count + 1);
+      write_sizes(file, "size_t", column, block->column, block->start[block->count]);
+    }
+    write_sizes(file, "int", coordinate, numbers, block->count);
+    fputs("\n", file);
+    free(numbers);
+    free(start);
+    free(column);
+    free(coordinate);
+  }
+}
+
+/* Each function of one routine, as far as the system has it. */
+static void write_routines(FILE *file, const struct Program *program, const struct TableContext *tables) {
+  const struct {
+    const struct FunctionText *text;
+    const struct Routine *routine;
+  } functions[] = {{&prepare_text, program->prepare},
+                   {&derivatives_text, program->derivatives},
+                   {&directional_text, program->directional},
+                   {&jacobian_text, program->jacobian},
+                   {&linear_text, program->linear}};
+  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
+    if (functions[i].routine == NULL) continue;
+    if (tables != NULL) tables_function(file, tables, functions[i].text, functions[i].routine);
+    else statements_function(file, program, functions[i].text, "", functions[i].routine);
+  }
+}
+
+static void write_as_statements(FILE *file, const struct Program *program) {
+  write_routines(file, program, NULL);
+  if (program->series != NULL) statements_series(file, program);
+  if (program->output_series != NULL) statements_output_series(file, program);
+  statements_results(file, program);
+  description_write(file, program, 0);
+}
+
+static void write_as_tables(FILE *file, const struct Program *program) {
+  struct TableContext *tables = table_context_create(program);
+  tables_shared(file, tables);
+  write_routines(file, program, tables);
+  if (program->series != NULL) tables_series(file, tables);
+  if (program->output_series != NULL) tables_output_series(file, tables);
+  tables_results(file, tables);
+  description_write(file, program, tables_work_count(tables));
+  table_context_free(tables);
+}
+
+void code_write(FILE *file, const struct Program *program) {
+  write_includes(file, program);
+  write_blocks(file, program);
+  if (program->is_table) write_as_tables(file, program);
+  else write_as_statements(file, program);
+}

@@ -1,0 +1,130 @@
+#include "write/description.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "memory.h"
+#include "write/c_text.h"
+#include "write/inertia_names.h"
+
+static void write_variables(FILE *file, const struct Interface *interface) {
+  static const char *const kinds[] = {
+      [VARIABLE_TIME] = "VARIABLE_TIME",
+      [VARIABLE_STATE] = "VARIABLE_STATE",
+      [VARIABLE_DERIVATIVE] = "VARIABLE_DERIVATIVE",
+      [VARIABLE_INPUT] = "VARIABLE_INPUT",
+      [VARIABLE_PARAMETER] = "VARIABLE_PARAMETER",
+      [VARIABLE_RESULT] = "VARIABLE_RESULT",
+      [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
+  };
+  fputs("static const struct ScalarVariable variables[] = {\n", file);
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    fputs("    {", file);
+    write_c_string(file, entry->name);
+    fprintf(file, ", %s, %zu, %s, ", kinds[entry->kind], entry->index, entry->is_output ? "true" : "false");
+    write_c_number(file, isnan(entry->start) ? 0.0 : entry->start);
+    fputs(", ", file);
+    write_c_number(file, isnan(entry->minimum) ? -INFINITY : entry->minimum);
+    fputs(", ", file);
+    write_c_number(file, isnan(entry->maximum) ? INFINITY : entry->maximum);
+    fputs("},\n", file);
+  }
+  fputs("};\n\n", file);
+}
+
+static void write_results(FILE *file, const struct Program *program) {
+  size_t count = program->interface->result_count;
+  if (count == 0) return;
+  fputs("static const bool result_uses_acceleration[] = {", file);
+  for (size_t i = 0; i < count; i++)
+    fprintf(file, "%s%s", i > 0 ? ", " : "",
+            graph_depends_on(program->model->graph, program->expressions->result[i], ACCELERATION) ? "true" : "false");
+  fputs("};\n\n", file);
+}
+
+static void write_nominals(FILE *file, const struct Interface *interface) {
+  if (interface->state_count == 0) return;
+  double *nominal = allocate(interface->state_count, sizeof *nominal);
+  for (size_t i = 0; i < interface->count; i++)
+    if (interface->variables[i].entry.kind == VARIABLE_STATE)
+      nominal[interface->variables[i].entry.index] = interface->variables[i].nominal;
+  fputs("static const double nominal[] = {", file);
+  for (size_t i = 0; i < interface->state_count; i++) {
+    if (i > 0) fputs(", ", file);
+    write_c_number(file, isnan(nominal[i]) ? 1.0 : nominal[i]);
+  }
+  fputs("};\n\n", file);
+  free(nominal);
+}
+
+static void write_pattern(FILE *file, const struct Program *program) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  if (jacobian == NULL) return;
+  write_sizes(file, "int", "jacobian_start", jacobian->start, program->interface->state_count + 1);
+  write_sizes(file, "int", "jacobian_row", jacobian->row, jacobian->count);
+  fputs("\n", file);
+}
+
+static void write_counts(FILE *file, const struct Program *program, size_t work_count) {
+  const struct Interface *interface = program->interface;
+  size_t scratch = program->is_table ? program->prepare->local_count : 0;
+  fprintf(file, "    .coordinate_count = %zu,\n    .state_count = %zu,\n    .input_count = %zu,\n",
+          program->equations->count, interface->state_count, program->model->inputs.count);
+  fprintf(file, "    .parameter_count = %zu,\n    .prepared_count = %zu,\n    .variable_count = %zu,\n",
+          program->model->parameters.count, program->prepared->count + scratch, interface->count);
+  fprintf(file, "    .result_count = %zu,\n    .work_count = %zu,\n", interface->result_count, work_count);
+}
+
+static void write_functions(FILE *file, const struct Program *program) {
+  bool moves = program->equations->count > 0;
+  const struct SeriesProgram *series = program->series, *output_series = program->output_series;
+  fputs("    .prepare = prepare,\n", file);
+  if (moves) fputs("    .derivatives = derivatives,\n    .directional = directional,\n", file);
+  if (program->interface->result_count > 0)
+    fputs("    .result_uses_acceleration = result_uses_acceleration,\n    .result = result,\n"
+          "    .result_along = result_along,\n",
+          file);
+  if (series != NULL)
+    fprintf(file, "    .series_rows = %zu,\n    .start = start,\n    .series = series,\n", series->row_count);
+  if (series != NULL && series->limit.count > 0) fputs("    .limit = limit,\n", file);
+  if (output_series != NULL)
+    fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", output_series->row_count);
+  if (program->jacobian != NULL)
+    fprintf(file, "    .jacobian = jacobian,\n    .jacobian_pattern = {%zu, jacobian_start, jacobian_row},\n",
+            program->expressions->jacobian->count);
+  if (program->linear != NULL) fputs("    .linear = linear,\n", file);
+}
+
+static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
+  static const char *const solvers[] = {[SOLVER_ERK] = "&solver_erk",
+                                        [SOLVER_BDF] = "&solver_bdf",
+                                        [SOLVER_EXACT] = "&solver_exact",
+                                        [SOLVER_TAYLOR] = "&solver_taylor",
+                                        [SOLVER_NONE] = "NULL"};
+  const struct Interface *interface = program->interface;
+  fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n",
+          program->model->name);
+  write_counts(file, program, work_count);
+  fputs("    .variables = variables,\n", file);
+  if (program->equations->count > 0)
+    fputs("    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n", file);
+  fputs("    .tolerance = ", file);
+  write_c_number(file, interface_tolerance(program->model));
+  fputs(",\n    .max_step = ", file);
+  write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
+  fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s,\n    .output_derivative_order = %d,\n",
+          interface->depends_on_time ? "true" : "false", solvers[interface->method],
+          interface->output_derivative_order);
+  write_functions(file, program);
+  fputs("};\n", file);
+}
+
+void description_write(FILE *file, const struct Program *program, size_t work_count) {
+  write_variables(file, program->interface);
+  write_results(file, program);
+  inertia_names_write(file, program);
+  write_nominals(file, program->interface);
+  write_pattern(file, program);
+  write_lagrangian(file, program, work_count);
+}

@@ -1,0 +1,12 @@
+/* The tables of variables and the struct Lagrangian at the end of a generated file. */
+#ifndef DESCRIPTION_H
+#define DESCRIPTION_H
+
+#include <stdio.h>
+
+#include "program/program.h"
+
+/* work_count: as in struct Lagrangian. */
+void description_write(FILE *file, const struct Program *program, size_t work_count);
+
+#endif

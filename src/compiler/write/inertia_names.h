@@ -1,0 +1,12 @@
+/* What the inertia of coordinates depends on, for messages. */
+#ifndef INERTIA_NAMES_H
+#define INERTIA_NAMES_H
+
+#include <stdio.h>
+
+#include "program/program.h"
+
+/* The array inertia_depends_on of the generated file. */
+void inertia_names_write(FILE *file, const struct Program *program);
+
+#endif

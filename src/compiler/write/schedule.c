@@ -1,0 +1,120 @@
+#include "write/schedule.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+/* When a place was written and read last; levels count from 1, and 0 is before all. */
+struct Access {
+  size_t written, read;
+};
+
+/* The accesses of each space, as many as the routine has places there. */
+struct Accesses {
+  struct Access *of[SPACE_COUNT];
+  size_t count[SPACE_COUNT];
+};
+
+static void extend(struct Accesses *accesses, Place place) {
+  if (index_in(place) >= accesses->count[space_of(place)]) accesses->count[space_of(place)] = index_in(place) + 1;
+}
+
+static bool has_result(const struct OpcodeFacts *facts) {
+  return facts->result != NUMBER && facts->result != BLOCK;
+}
+
+static struct Accesses accesses_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
+  struct Accesses accesses = {0};
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (has_result(opcode_facts(instruction->opcode))) extend(&accesses, instruction->result);
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(&accesses, instruction->operands[j]);
+  }
+  if (blocks->mass_count > accesses.count[SPACE_MASS]) accesses.count[SPACE_MASS] = blocks->mass_count;
+  if (blocks->side_count > accesses.count[SPACE_SIDE]) accesses.count[SPACE_SIDE] = blocks->side_count;
+  for (int space = 0; space < SPACE_COUNT; space++)
+    accesses.of[space] = allocate(accesses.count[space], sizeof(struct Access));
+  return accesses;
+}
+
+static struct Access *access_of(const struct Accesses *accesses, Place place) {
+  return &accesses->of[space_of(place)][index_in(place)];
+}
+
+static size_t later(size_t first, size_t second) {
+  return first > second ? first : second;
+}
+
+/* A block's instruction reads and writes its whole part of the spaces. */
+static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors) {
+  size_t level = 0;
+  struct Access *mass = accesses->of[SPACE_MASS] + looped->first_mass;
+  struct Access *side = accesses->of[SPACE_SIDE] + looped->first_side;
+  size_t elements = looped->block->start[looped->block->count];
+  for (size_t i = 0; i < elements; i++)
+    level = later(level, factors ? later(mass[i].written, mass[i].read) : mass[i].written);
+  for (size_t i = 0; i < looped->block->count && !factors; i++)
+    level = later(level, later(side[i].written, side[i].read));
+  level++;
+  for (size_t i = 0; i < elements; i++) {
+    if (factors) mass[i].written = level;
+    else mass[i].read = later(mass[i].read, level);
+  }
+  for (size_t i = 0; i < looped->block->count && !factors; i++) side[i].written = level;
+  return level;
+}
+
+/* One after the last writing of all operands, and after all uses of what the result replaces. */
+static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
+                       const struct LoopedBlocks *blocks) {
+  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
+  if (facts->result == BLOCK)
+    return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR);
+  size_t level = 0;
+  for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+    if (facts->operands[j] != ROW_OF_PAST) level = later(level, access_of(accesses, instruction->operands[j])->written);
+  if (has_result(facts)) {
+    const struct Access *result = access_of(accesses, instruction->result);
+    level = later(level, later(result->written, result->read));
+  }
+  level++;
+  for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
+    struct Access *operand = access_of(accesses, instruction->operands[j]);
+    if (facts->operands[j] != ROW_OF_PAST) operand->read = later(operand->read, level);
+  }
+  if (has_result(facts)) access_of(accesses, instruction->result)->written = level;
+  return level;
+}
+
+struct Turn {
+  size_t level, number;
+  const struct Instruction *instruction;
+};
+
+static int compare(const void *first, const void *second) {
+  const struct Turn *a = first, *b = second;
+  if (a->level != b->level) return a->level < b->level ? -1 : 1;
+  if (a->instruction->opcode != b->instruction->opcode) return a->instruction->opcode < b->instruction->opcode ? -1 : 1;
+  if (a->instruction->function != b->instruction->function)
+    return a->instruction->function < b->instruction->function ? -1 : 1;
+  return (a->number > b->number) - (a->number < b->number);
+}
+
+size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
+  struct Accesses accesses = accesses_create(routine, blocks);
+  struct Turn *turns = allocate(routine->count, sizeof *turns);
+  size_t *order = allocate(routine->count, sizeof *order);
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    turns[i] = (struct Turn){level_of(&accesses, instruction, blocks), i, instruction};
+  }
+  if (routine->count > 0) qsort(turns, routine->count, sizeof *turns, compare);
+  for (size_t i = 0; i < routine->count; i++) order[i] = turns[i].number;
+  for (int space = 0; space < SPACE_COUNT; space++) free(accesses.of[space]);
+  free(turns);
+  return order;
+}
+
+bool same_run(const struct Instruction *first, const struct Instruction *second) {
+  return first->opcode == second->opcode && first->function == second->function;
+}

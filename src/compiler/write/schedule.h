@@ -1,0 +1,13 @@
+/* The order of a routine's instructions in a table: those of one opcode side by side, as far as their operands allow. */
+#ifndef SCHEDULE_H
+#define SCHEDULE_H
+
+#include "program/accelerations.h"
+
+/* The numbers of the routine's instructions in the order of execution, to be freed with free(). */
+size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks);
+
+/* Whether two instructions may stand in one run. */
+bool same_run(const struct Instruction *first, const struct Instruction *second);
+
+#endif

@@ -1,0 +1,300 @@
+#include "write/tables.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+#include "write/c_text.h"
+#include "write/instruction_text.h"
+#include "write/schedule.h"
+
+static void add_number(struct TableContext *context, Node node) {
+  if (context->number[node] > 0) return;
+  append_node(&context->numbers, node);
+  context->number[node] = context->numbers.count;
+}
+
+/* Notes the numbers and functions that a routine uses. */
+static void note(struct TableContext *context, const struct Routine *routine) {
+  for (size_t i = 0; routine != NULL && i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (instruction->opcode == CALL || instruction->opcode == CALL_OF_TWO) context->function[instruction->function] = 1;
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+      if (space_of(instruction->operands[j]) == SPACE_NUMBER) add_number(context, index_in(instruction->operands[j]));
+  }
+}
+
+static void note_series(struct TableContext *context, const struct SeriesProgram *series) {
+  if (series == NULL) return;
+  note(context, series->start);
+  note(context, series->order);
+  for (size_t i = 0; i < series->limit.count; i++) {
+    const struct LimitCheck *check = &series->limit.items[i];
+    if (limit_facts(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
+      add_number(context, index_in(check->exponent));
+  }
+}
+
+struct TableContext *table_context_create(const struct Program *program) {
+  struct TableContext *context = allocate(1, sizeof *context);
+  *context =
+      (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
+  const struct Routine *const routines[] = {program->prepare, program->derivatives, program->directional,
+                                            program->jacobian, program->linear};
+  for (size_t i = 0; i < sizeof routines / sizeof *routines; i++) note(context, routines[i]);
+  for (size_t i = 0; i < program->interface->result_count; i++) {
+    note(context, program->result[i]);
+    note(context, program->result_along[i]);
+  }
+  note_series(context, program->series);
+  note_series(context, program->output_series);
+  size_t count[3] = {0};
+  for (enum Operation function = 0; function < OPERATION_COUNT; function++)
+    if (context->function[function] > 0) context->function[function] = ++count[operation_arity(function)];
+  return context;
+}
+
+void table_context_free(struct TableContext *context) {
+  free(context->number);
+  free(context->numbers.nodes);
+  free(context);
+}
+
+static void write_functions(FILE *file, const struct TableContext *context, int arity, const char *type,
+                            const char *name) {
+  fprintf(file, "static double (*const %s[])(%s) = {", name, type);
+  for (enum Operation function = 0; function < OPERATION_COUNT; function++)
+    if (context->function[function] > 0 && operation_arity(function) == arity)
+      fprintf(file, "%s, ", c_function_name(function));
+  fputs("NULL};\n", file);
+}
+
+static size_t longest(size_t length, const struct Routine *routine) {
+  return routine != NULL && routine->local_count > length ? routine->local_count : length;
+}
+
+/* The local variables of the routine that has most. */
+static size_t local_count(const struct Program *program) {
+  size_t count = longest(longest(longest(0, program->derivatives), program->directional), program->jacobian);
+  for (size_t i = 0; i < program->interface->result_count; i++)
+    count = longest(longest(count, program->result[i]), program->result_along[i]);
+  const struct SeriesProgram *const series[] = {program->series, program->output_series};
+  for (int i = 0; i < 2; i++)
+    if (series[i] != NULL) count = longest(longest(count, series[i]->start), series[i]->order);
+  return count;
+}
+
+size_t tables_work_count(const struct TableContext *context) {
+  const struct Program *program = context->program;
+  return local_count(program) + program->blocks.mass_count + program->blocks.side_count + program->equations->count;
+}
+
+static void write_blocks(FILE *file, const struct Program *program) {
+  fputs("static const struct BlockTable blocks[] = {\n", file);
+  for (size_t i = 0; i < program->blocks.count; i++) {
+    const struct LoopedBlock *looped = &program->blocks.items[i];
+    fprintf(file, "    {%zu, %zu, %zu, ", looped->block->count, looped->first_mass, looped->first_side);
+    if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
+    else fprintf(file, "start%zu, column%zu, ", i, i);
+    fprintf(file, "coordinate%zu},\n", i);
+  }
+  fputs(program->blocks.count == 0 ? "    {0}};\n" : "};\n", file);
+}
+
+void tables_shared(FILE *file, const struct TableContext *context) {
+  const struct Program *program = context->program;
+  fputs("static const double numbers[] = {", file);
+  for (size_t i = 0; i < context->numbers.count; i++) {
+    write_c_number(file, graph_value(program->model->graph, context->numbers.nodes[i]));
+    fputs(i % 8 == 7 ? ",\n    " : ", ", file);
+  }
+  fputs("0.0};\n", file);
+  write_functions(file, context, 1, "double", "functions");
+  write_functions(file, context, 2, "double, double", "functions_of_two");
+  write_blocks(file, program);
+  fprintf(file,
+          "static const struct InstructionTables tables = {numbers, functions, functions_of_two, blocks, %zu, %zu, "
+          "%zu};\n\n",
+          local_count(program), program->blocks.mass_count, program->blocks.side_count);
+}
+
+static uint32_t encoded(const struct TableContext *context, Place place) {
+  enum Space space = space_of(place);
+  size_t index = index_in(place);
+  if (space == SPACE_NUMBER) index = context->number[index] - 1;
+  else if (space >= SPACE_ROW && space != SPACE_TIME_ROW) index *= SERIES_LENGTH;
+  return place_in(space, index);
+}
+
+/* Writes numbers in lines. */
+struct CodeLine {
+  FILE *file;
+  size_t count;
+};
+
+static void write_word(struct CodeLine *line, uint32_t word) {
+  fprintf(line->file, line->count++ % 16 == 15 ? "%u,\n" : "%u,", word);
+}
+
+/* The instructions first .. end - 1 of the schedule, which are one run. */
+static void write_run(struct CodeLine *line, const struct TableContext *context, const struct Routine *routine,
+                      const size_t *schedule, size_t first, size_t end) {
+  const struct Instruction *instructions = routine->instructions;
+  enum Opcode opcode = instructions[schedule[first]].opcode;
+  const struct OpcodeFacts *facts = opcode_facts(opcode);
+  write_word(line, opcode);
+  write_word(line, (uint32_t)(end - first));
+  if (opcode == CALL || opcode == CALL_OF_TWO)
+    write_word(line, (uint32_t)context->function[instructions[schedule[first]].function] - 1);
+  for (size_t i = first; i < end; i++) {
+    const struct Instruction *instruction = &instructions[schedule[i]];
+    bool is_place = facts->result != NUMBER && facts->result != BLOCK;
+    write_word(line, is_place ? encoded(context, instruction->result) : instruction->result);
+    for (int j = 0; j < opcode_arity(opcode); j++) write_word(line, encoded(context, instruction->operands[j]));
+  }
+}
+
+/* The table of a routine, with its END. */
+static void write_code(struct CodeLine *line, const struct TableContext *context, const struct Routine *routine) {
+  size_t *schedule = schedule_create(routine, &context->program->blocks);
+  for (size_t first = 0, end = 0; first < routine->count; first = end) {
+    const struct Instruction *instruction = &routine->instructions[schedule[first]];
+    while (end < routine->count && same_run(instruction, &routine->instructions[schedule[end]])) end++;
+    write_run(line, context, routine, schedule, first, end);
+  }
+  write_word(line, END);
+  free(schedule);
+}
+
+static void write_table(FILE *file, const struct TableContext *context, const char *name,
+                        const struct Routine *routine) {
+  struct CodeLine line = {.file = file};
+  fprintf(file, "static const uint32_t %s_code[] = {\n", name);
+  write_code(&line, context, routine);
+  fputs("};\n\n", file);
+}
+
+static void begin_frame(FILE *file, bool has_seed) {
+  fputs("  struct Frame frame = instructions_frame(&tables, point);\n", file);
+  if (has_seed) fputs("  instructions_seed(&frame, seed);\n", file);
+}
+
+static void set_base(FILE *file, const char *space, const char *source) {
+  fprintf(file, "  frame.base[SPACE_%s] = %s;\n", space, source);
+}
+
+void tables_function(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+                     const struct Routine *routine) {
+  const struct Program *program = context->program;
+  write_table(file, context, text->name, routine);
+  write_head(file, text, "", routine->operation_count);
+  if (text == &prepare_text) {
+    fputs("  const struct Point values = {.parameter = p};\n  const struct Point *point = &values;\n", file);
+  } else if (text == &linear_text) {
+    fputs("  const struct Point values = {.parameter = p, .prepared = c};\n  const struct Point *point = &values;\n",
+          file);
+  }
+  begin_frame(file, text == &directional_text);
+  set_base(file, "TARGET", text->target);
+  if (text == &prepare_text) fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
+  if (text->accelerations == IN_TARGET)
+    fprintf(file, "  frame.base[SPACE_ACCELERATION] = %s + %zu;\n", text->target, program->equations->count);
+  if (text == &start_text) {
+    set_base(file, "ROW", "*w");
+    fprintf(file, "  frame.base[SPACE_MASS] = w[%zu];\n", program->series->mass_row);
+  }
+  fprintf(file, "  %sinstructions_run(&frame, %s_code);\n}\n\n", text->returned == RETURNS_STATUS ? "return " : "",
+          text->name);
+}
+
+static void write_results(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+                          struct Routine *const *routines, size_t count) {
+  struct CodeLine line = {.file = file};
+  size_t *start = allocate(count, sizeof *start), operations = 0;
+  fprintf(file, "static const uint32_t %s_code[] = {\n", text->name);
+  for (size_t i = 0; i < count; i++) {
+    start[i] = line.count;
+    if (routines[i] == NULL) continue;
+    write_code(&line, context, routines[i]);
+    operations += routines[i]->operation_count;
+  }
+  write_word(&line, END);
+  fputs("};\n", file);
+  char *name = format_text("%s_start", text->name);
+  write_sizes(file, "uint32_t", name, start, count);
+  free(name);
+  fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
+          operations, text->name, text->arguments);
+  begin_frame(file, text == &result_along_text);
+  fputs("  double value = NAN;\n", file);
+  set_base(file, "TARGET", "&value");
+  set_base(file, "ACCELERATION", "(double *)a");
+  if (text == &result_along_text) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value;\n}\n\n", text->name,
+          text->name);
+  free(start);
+}
+
+void tables_results(FILE *file, const struct TableContext *context) {
+  size_t count = context->program->interface->result_count;
+  if (count == 0) return;
+  write_results(file, context, &result_text, context->program->result, count);
+  write_results(file, context, &result_along_text, context->program->result_along, count);
+}
+
+static void set_rows(FILE *file) {
+  fputs("  Series time = {point->time, 1.0};\n", file);
+  set_base(file, "TIME_ROW", "time");
+  set_base(file, "ROW", "(double *)w");
+  set_base(file, "STATE_ROW", "(double *)x");
+  set_base(file, "INPUT_ROW", "(double *)input");
+}
+
+static void write_limit(FILE *file, const struct TableContext *context) {
+  const struct LimitChecks *checks = &context->program->series->limit;
+  fputs("static const struct LimitCheck limit_checks[] = {\n", file);
+  for (size_t i = 0; i < checks->count; i++) {
+    const struct LimitCheck *check = &checks->items[i];
+    const struct LimitFacts *facts = limit_facts(check->rule);
+    fprintf(file, "    {%d, %u, %u, ", check->rule, encoded(context, check->row),
+            facts->has_two_rows ? encoded(context, check->other_row) : 0u);
+    if (facts->has_function) write_c_string(file, check->function);
+    else fputs("NULL", file);
+    fputs(", ", file);
+    write_c_number(file, check->share);
+    fprintf(file, ", %u},\n", facts->has_exponent ? encoded(context, check->exponent) : 0u);
+  }
+  fputs("};\n\n", file);
+  write_head(file, &limit_text, "", checks->count);
+  begin_frame(file, false);
+  set_rows(file);
+  fprintf(file, "  instructions_limit(&frame, limit_checks, %zu, limit);\n}\n\n", checks->count);
+}
+
+void tables_series(FILE *file, const struct TableContext *context) {
+  const struct SeriesProgram *series = context->program->series;
+  tables_function(file, context, &start_text, series->start);
+  write_table(file, context, series_text.name, series->order);
+  write_head(file, &series_text, "", series->order->operation_count);
+  begin_frame(file, false);
+  set_rows(file);
+  fprintf(file,
+          "  frame.base[SPACE_MASS] = w[%zu];\n"
+          "  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) instructions_run_order(&frame, series_code, "
+          "k);\n}\n\n",
+          series->mass_row);
+  if (series->limit.count > 0) write_limit(file, context);
+}
+
+void tables_output_series(FILE *file, const struct TableContext *context) {
+  const struct SeriesProgram *series = context->program->output_series;
+  write_table(file, context, "output_start", series->start);
+  write_table(file, context, output_series_text.name, series->order);
+  write_head(file, &output_series_text, "", series->start->operation_count);
+  begin_frame(file, false);
+  set_rows(file);
+  set_base(file, "TARGET_ROW", "*y");
+  fputs("  instructions_run(&frame, output_start_code);\n"
+        "  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) instructions_run_order(&frame, "
+        "output_series_code, k);\n}\n\n",
+        file);
+}

@@ -1,0 +1,37 @@
+/* Routines as tables of numbers, which instructions.h describes, and the functions that have them carried out. */
+#ifndef TABLES_H
+#define TABLES_H
+
+#include "write/functions.h"
+
+/* What the tables of a program refer to. */
+struct TableContext {
+  const struct Program *program;
+  size_t *number; /* for each node: 1 + the place of a constant among the numbers, 0 for none */
+  struct NodeList numbers;
+  size_t function[OPERATION_COUNT]; /* 1 + the function's place among those with as many operands, 0 for none */
+};
+
+struct TableContext *table_context_create(const struct Program *program);
+void table_context_free(struct TableContext *context);
+
+/* The numbers, functions and blocks that all tables share. */
+void tables_shared(FILE *file, const struct TableContext *context);
+
+/* The workspace that the tables need, as in struct Lagrangian. */
+size_t tables_work_count(const struct TableContext *context);
+
+/* A function of one routine. */
+void tables_function(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+                     const struct Routine *routine);
+
+/* result() and result_along() */
+void tables_results(FILE *file, const struct TableContext *context);
+
+/* start(), series() and limit(). */
+void tables_series(FILE *file, const struct TableContext *context);
+
+/* output_series() */
+void tables_output_series(FILE *file, const struct TableContext *context);
+
+#endif
