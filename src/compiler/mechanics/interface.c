@@ -9,6 +9,7 @@
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {
   interface->variables = reallocate(interface->variables, interface->count + 1, sizeof *interface->variables);
+  if (index == 0) interface->first[kind] = interface->count;
   struct InterfaceVariable *variable = &interface->variables[interface->count++];
   *variable = (struct InterfaceVariable){
       .entry = {.name = copy_text(name), .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
@@ -106,9 +107,10 @@ static enum SolverMethod method_of(const struct Model *model, const struct Equat
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
 static int output_derivative_order(const struct Interface *interface, const struct Model *model) {
   if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return 1;
-  const char *kink = NULL;
-  for (size_t i = 0; i < model->outputs.count && kink == NULL; i++)
-    kink = kink_of(model->graph, &model->outputs.items[i].node, 1);
+  Node *outputs = allocate(model->outputs.count, sizeof *outputs);
+  for (size_t i = 0; i < model->outputs.count; i++) outputs[i] = model->outputs.items[i].node;
+  const char *kink = kink_of(model->graph, outputs, model->outputs.count);
+  free(outputs);
   return kink == NULL ? OUTPUT_ORDER : 1;
 }
 
@@ -168,57 +170,9 @@ void interface_free(struct Interface *interface) {
 }
 
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index) {
-  size_t place = 0;
-  while (place < interface->count &&
-         (interface->variables[place].entry.kind != kind || interface->variables[place].entry.index != index))
-    place++;
-  return place;
+  return interface->first[kind] + index;
 }
 
 double interface_tolerance(const struct Model *model) {
   return isnan(model->tolerance) ? 1e-8 : model->tolerance;
-}
-
-static enum Dependency larger(enum Dependency a, enum Dependency b) {
-  return a > b ? a : b;
-}
-
-/* The factor of a product that does not depend on the symbol decides how constant the product's factor is. */
-static enum Dependency through_factor(const struct Graph *graph, enum Dependency dependency, Node factor) {
-  if (graph_is_constant(graph, factor)) return dependency;
-  bool of_parameters = (graph->vertices[factor].kinds & ~(1u << PARAMETER)) == 0;
-  return larger(dependency, of_parameters ? TUNABLE_FACTOR : DEPENDENT);
-}
-
-static void sweep_dependencies(const struct Graph *graph, enum Dependency *of) {
-  for (Node node = 0; node < graph->count; node++) {
-    const struct Vertex *vertex = &graph->vertices[node];
-    int arity = operation_arity(vertex->operation);
-    if (arity == 0) continue;
-    enum Dependency left = of[vertex->left], right = arity == 2 ? of[vertex->right] : INDEPENDENT;
-    if (left == INDEPENDENT && right == INDEPENDENT) of[node] = INDEPENDENT;
-    else if (vertex->operation == ADD) of[node] = larger(left, right);
-    else if (vertex->operation != MULTIPLY || (left != INDEPENDENT && right != INDEPENDENT)) of[node] = DEPENDENT;
-    else of[node] = through_factor(graph, larger(left, right), left == INDEPENDENT ? vertex->left : vertex->right);
-  }
-}
-
-enum Dependency *dependencies_on(const struct Graph *graph, const struct Equations *equations, Node symbol) {
-  enum Dependency *of = allocate(graph->count, sizeof *of);
-  of[symbol] = CONSTANT_FACTOR;
-  sweep_dependencies(graph, of);
-  size_t n = equations->count;
-  enum Dependency *acceleration = allocate(n, sizeof *acceleration);
-  for (size_t i = 0; i < n; i++) {
-    acceleration[i] = of[equations->acceleration[i]];
-    if (!is_looped(equations, i)) continue;
-    const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-    for (size_t j = 0; j < block->count; j++)
-      if (of[equations->residual[block->coordinates[j]]] != INDEPENDENT) acceleration[i] = DEPENDENT;
-  }
-  for (size_t i = 0; i < graph->symbol_count; i++)
-    if (graph->symbols[i].kind == ACCELERATION) of[graph->symbols[i].node] = acceleration[graph->symbols[i].index];
-  sweep_dependencies(graph, of);
-  free(acceleration);
-  return of;
 }
