@@ -249,25 +249,27 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
   return result;
 }
 
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
+  for (size_t i = 0; i < block->count; i++)
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
+      x[i] = subtract(graph, x[i], multiply(graph, block->factor[k], x[block->column[k]]));
+  for (size_t i = 0; i < block->count; i++) x[i] = divide(graph, x[i], block->factor[block->start[i + 1] - 1]);
+  for (size_t i = block->count; i-- > 0;)
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
+      size_t j = block->column[k];
+      x[j] = subtract(graph, x[j], multiply(graph, block->factor[k], x[i]));
+    }
+}
+
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
+  Node *x = allocate(inertia->count, sizeof *x);
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
-    const size_t *coordinate = block->coordinates;
-    for (size_t i = 0; i < block->count; i++) {
-      Node sum = block->is_unrolled ? right_side[coordinate[i]] : ZERO;
-      for (size_t k = block->start[i]; k + 1 < block->start[i + 1] && block->is_unrolled; k++)
-        sum = subtract(graph, sum, multiply(graph, block->factor[k], solution[coordinate[block->column[k]]]));
-      solution[coordinate[i]] = sum;
-    }
-    if (!block->is_unrolled) continue;
-    for (size_t i = 0; i < block->count; i++)
-      solution[coordinate[i]] = divide(graph, solution[coordinate[i]], block->factor[block->start[i + 1] - 1]);
-    for (size_t i = block->count; i-- > 0;)
-      for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
-        Node *element = &solution[coordinate[block->column[k]]];
-        *element = subtract(graph, *element, multiply(graph, block->factor[k], solution[coordinate[i]]));
-      }
+    for (size_t i = 0; i < block->count; i++) x[i] = block->is_unrolled ? right_side[block->coordinates[i]] : ZERO;
+    if (block->is_unrolled) block_solve(graph, block, x);
+    for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = x[i];
   }
+  free(x);
 }
 
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {

@@ -58,7 +58,7 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
     accelerations_along(graph, program->equations, seeds, column);
     for (size_t i = 0; i < n; i++) program->jacobian[i * states + j] = column[i];
     free(seeds);
-    if (model->work_line > 0) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
+    if (program->equations->has_work) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
   }
   free(column);
 }
@@ -69,7 +69,7 @@ static void create_series(struct Program *program, const struct Model *model, st
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
   bool is_taylor = program->interface->method == SOLVER_TAYLOR;
   if (kink == NULL || !is_taylor)
-    program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
+    program->series = series_plan_of_motion(model->graph, equations, program->equations->has_work);
   else
     report_error(diagnostics, model->solver_line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
@@ -78,10 +78,7 @@ static void create_series(struct Program *program, const struct Model *model, st
 static void create_output_series(struct Program *program, const struct Model *model) {
   size_t count = model->outputs.count;
   if (count == 0 || program->interface->output_derivative_order == 1) return;
-  Node *outputs = allocate(count, sizeof *outputs);
-  for (size_t i = 0; i < count; i++) outputs[i] = model->outputs.items[i].node;
-  program->output_series = series_plan_of_outputs(model->graph, outputs, count);
-  free(outputs);
+  program->output_series = series_plan_of_outputs(model->graph, program->equations->outputs, count);
 }
 
 struct Program *program_create(struct Model *model, const struct Equations *equations,
@@ -96,7 +93,7 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
       report_error(diagnostics, model->solver_line,
                    "the method 'exact' takes a communication step as a whole; expected no maxStep");
     program->linear = linear_system_of(model, equations, diagnostics);
-    if (model->work_line > 0)
+    if (program->equations->has_work)
       report_error(diagnostics, model->solver_line,
                    "<work/> is not linear in the state; expected another method than 'exact'");
   }

@@ -176,5 +176,8 @@ struct Model *model_read(const char *path, const struct ReaderOptions *options, 
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
   scope_free(scope);
-  return model;
+  if (model == NULL || options->solver == NULL || solver_method(options->solver, &model->method)) return model;
+  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", options->solver);
+  model_free(model);
+  return NULL;
 }

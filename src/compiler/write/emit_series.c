@@ -356,10 +356,9 @@ static void write_output_order(struct SeriesWriter *writer) {
   for (size_t i = 0; writer->has_acceleration_rows && i < n; i++)
     fprintf(emitter->file, "    w[%zu][k] = (k + 1) * x[%zu][k + 1];\n", writer->acceleration_row + i, n + i);
   for (size_t i = 0; i < writer->node_count; i++) write_next(writer, writer->nodes[i]);
-  const struct VariableList *outputs = &emitter->program->model->outputs;
-  for (size_t i = 0; i < outputs->count; i++) {
+  for (size_t i = 0; i < emitter->program->model->outputs.count; i++) {
     fprintf(emitter->file, "    y[%zu][k] = ", i);
-    write_coefficient(writer, outputs->items[i].node);
+    write_coefficient(writer, emitter->equations->outputs[i]);
     fputs(";\n", emitter->file);
   }
 }
@@ -375,13 +374,13 @@ static void output_series_body(struct Emitter *emitter, size_t unused) {
   }
   struct NodeList outputs = {0};
   for (size_t i = 0; i < emitter->program->model->outputs.count; i++)
-    append_nodes(&outputs, &emitter->program->model->outputs.items[i].node, 1);
+    append_nodes(&outputs, &emitter->equations->outputs[i], 1);
   write_values(writer, outputs);
   free(outputs.nodes);
   write_first(writer);
   for (size_t i = 0; i < emitter->program->model->outputs.count; i++) {
     fprintf(emitter->file, "  y[%zu][0] = ", i);
-    statements_operand(emitter->statements, emitter->program->model->outputs.items[i].node);
+    statements_operand(emitter->statements, emitter->equations->outputs[i]);
     fputs(";\n", emitter->file);
   }
   fprintf(emitter->file, "  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n%s  }\n", writer->order_text);
