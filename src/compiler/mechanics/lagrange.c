@@ -56,7 +56,8 @@ static Node *time_seeds(const struct Model *model, bool with_accelerations) {
 }
 
 /* sum m (d2r/dt2) . dr/dq_i, with the accelerations or with 0 for them. */
-static void inertial_forces(const struct Model *model, const struct Motions *motions, bool with_accelerations, Node *force) {
+static void inertial_forces(const struct Model *model, const struct Motions *motions, bool with_accelerations,
+                            Node *force) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, with_accelerations), *weight = allocate(motions->count, sizeof *weight);
   derivative_along(graph, motions->position, motions->count, seeds, weight);

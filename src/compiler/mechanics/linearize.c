@@ -224,8 +224,7 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
   for (size_t i = 0; i < model->outputs.count; i++) linear->outputs[i] = expand(expansion, equations->outputs[i]);
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Placement *from = &equations->placements[i];
-    for (int axis = 0; axis < 3; axis++)
-      linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
+    for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
     linear->placements[i].angle = expand(expansion, from->angle);
   }
   linear->power = equations->power;

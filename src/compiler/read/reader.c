@@ -159,9 +159,11 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     model = model_create();
     *scope = language_of(model, &local);
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
+    reader.bodies = names_create();
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     read_system(&reader, root);
     free(reader.definition_used);
+    names_free(reader.bodies);
   }
   if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
     apply_point(model, *scope, options->point, options->point_count, &local);
