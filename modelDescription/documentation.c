@@ -115,11 +115,11 @@ static void write_mechanics(xmlTextWriterPtr writer, const struct Program *progr
           "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on.");
 }
 
-static void write_outputs(xmlTextWriterPtr writer, const struct Model *model) {
+static void write_outputs(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations) {
   if (model->outputs.count == 0) return;
   element(writer, "h2", "Outputs");
   for (size_t i = 0; i < model->outputs.count; i++)
-    write_equation(writer, model->graph, model->outputs.items[i].name, model->outputs.items[i].node);
+    write_equation(writer, model->graph, model->outputs.items[i].name, equations->outputs[i]);
 }
 
 static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
@@ -198,7 +198,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
   if (program->equations->count > 0) write_mechanics(writer, program);
-  write_outputs(writer, model);
+  write_outputs(writer, model, program->equations);
   write_solver(writer, program);
   write_variables(writer, program->interface);
   xmlTextWriterEndElement(writer);

@@ -75,23 +75,25 @@ static void write_unit(xmlTextWriterPtr writer, const char *name) {
   xmlTextWriterEndElement(writer);
 }
 
-static bool is_first_with_unit(const struct Interface *interface, size_t place) {
-  for (size_t i = 0; i < place; i++)
-    if (interface->variables[i].unit != NULL &&
-        strcmp(interface->variables[i].unit, interface->variables[place].unit) == 0)
-      return false;
-  return true;
+static bool contains(const char *const *names, size_t count, const char *name) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(names[i], name) == 0) return true;
+  return false;
 }
 
+/* Each unit once, in the order of the variables. A system has few of them, however many variables. */
 static void write_units(xmlTextWriterPtr writer, const struct Interface *interface) {
-  bool open = false;
+  const char **written = allocate(interface->count, sizeof *written);
+  size_t count = 0;
   for (size_t i = 0; i < interface->count; i++) {
-    if (interface->variables[i].unit == NULL || !is_first_with_unit(interface, i)) continue;
-    if (!open) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");
-    open = true;
-    write_unit(writer, interface->variables[i].unit);
+    const char *unit = interface->variables[i].unit;
+    if (unit == NULL || contains(written, count, unit)) continue;
+    if (count == 0) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");
+    written[count++] = unit;
+    write_unit(writer, unit);
   }
-  if (open) xmlTextWriterEndElement(writer);
+  if (count > 0) xmlTextWriterEndElement(writer);
+  free(written);
 }
 
 static void write_log_categories(xmlTextWriterPtr writer) {

@@ -1,16 +1,21 @@
 #include "model_structure.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
+#include "mechanics/dependencies.h"
 #include "memory.h"
 #include "xml_output.h"
 
 struct Structure {
   xmlTextWriterPtr writer;
   const struct Interface *interface;
-  enum Dependency **of; /* for each variable: the dependency of every node on it, NULL where it is no known */
+  struct Dependencies *dependencies;
+  size_t *place_of; /* of the variable of each symbol: 1 + its place among the variables; 0 where it is no known */
+  size_t *places;   /* workspace: of what one unknown depends on */
 };
 
+/* Symbols that an unknown may depend on. Among initial unknowns, parameters are knowns too. */
 static bool is_known(const struct ScalarVariable *entry, bool initial) {
   return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT ||
          (initial && entry->kind == VARIABLE_PARAMETER);
@@ -21,29 +26,46 @@ static const char *kind_name(enum Dependency dependency, bool initial) {
   return dependency == TUNABLE_FACTOR && !initial ? "tunable" : "dependent";
 }
 
-/* The element for one unknown. Among initial unknowns, parameters are knowns too. */
+static int compare(const void *first, const void *second) {
+  size_t a = *(const size_t *)first, b = *(const size_t *)second;
+  return (a > b) - (a < b);
+}
+
+/* The places of the knowns that the unknown depends on, ascending; returns their number. */
+static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
+  const struct Dependencies *dependencies = structure->dependencies;
+  size_t count = 0;
+  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node);
+  for (size_t i = 0; i < dependencies->count; i++) {
+    size_t place = structure->place_of[dependencies->symbols[i]];
+    if (place > 0 && is_known(&structure->interface->variables[place - 1].entry, initial))
+      structure->places[count++] = place - 1;
+  }
+  qsort(structure->places, count, sizeof *structure->places, compare);
+  return count;
+}
+
+/* The element for one unknown. */
 static void write_unknown(const struct Structure *structure, size_t unknown, bool initial) {
   const struct Interface *interface = structure->interface;
-  xmlBufferPtr places = xmlBufferCreate(), kinds = xmlBufferCreate();
-  const char *separator = "";
-  for (size_t i = 0; i < interface->count; i++) {
-    if (!is_known(&interface->variables[i].entry, initial)) continue;
-    enum Dependency dependency = structure->of[i][interface->variables[unknown].node];
-    if (dependency == INDEPENDENT) continue;
-    char *place = format_text("%s%zu", separator, i + 1);
-    xmlBufferCCat(places, place);
-    free(place);
-    xmlBufferCCat(kinds, separator);
-    xmlBufferCCat(kinds, kind_name(dependency, initial));
-    separator = " ";
+  const struct Graph *graph = structure->dependencies->graph;
+  char *places = NULL, *kinds = NULL;
+  size_t places_length = 0, kinds_length = 0, count = find_places(structure, unknown, initial);
+  FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
+  for (size_t i = 0; i < count; i++) {
+    size_t symbol = graph->vertices[interface->variables[structure->places[i]].node].left;
+    fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
+    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->dependencies->of[symbol], initial));
   }
+  fclose(places_file);
+  fclose(kinds_file);
   xmlTextWriterStartElement(structure->writer, BAD_CAST "Unknown");
   xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST "index", "%zu", unknown + 1);
-  write_attribute(structure->writer, "dependencies", (const char *)xmlBufferContent(places));
-  write_attribute(structure->writer, "dependenciesKind", (const char *)xmlBufferContent(kinds));
+  write_attribute(structure->writer, "dependencies", places);
+  write_attribute(structure->writer, "dependenciesKind", kinds);
   xmlTextWriterEndElement(structure->writer);
-  xmlBufferFree(places);
-  xmlBufferFree(kinds);
+  free(places);
+  free(kinds);
 }
 
 static bool is_output(const struct ScalarVariable *entry) {
@@ -73,16 +95,22 @@ static void write_unknowns(const struct Structure *structure, const char *elemen
 
 void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
                            const struct Interface *interface) {
-  struct Structure structure = {writer, interface, allocate(interface->count, sizeof *structure.of)};
-  for (size_t i = 0; i < interface->count; i++)
-    if (is_known(&interface->variables[i].entry, true) && interface->variables[i].node != ZERO)
-      structure.of[i] = dependencies_on(model->graph, equations, interface->variables[i].node);
-    else structure.of[i] = allocate(model->graph->count, sizeof **structure.of);
+  const struct Graph *graph = model->graph;
+  struct Structure structure = {.writer = writer, .interface = interface};
+  structure.dependencies = dependencies_create(graph, equations);
+  structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
+  structure.places = allocate(interface->count, sizeof *structure.places);
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
+    if (vertex->operation == SYMBOL && is_known(&interface->variables[i].entry, true))
+      structure.place_of[vertex->left] = i + 1;
+  }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");
   write_unknowns(&structure, "Outputs", is_output, false);
   write_unknowns(&structure, "Derivatives", is_derivative, false);
   write_unknowns(&structure, "InitialUnknowns", is_initial_unknown, true);
   xmlTextWriterEndElement(writer);
-  for (size_t i = 0; i < interface->count; i++) free(structure.of[i]);
-  free(structure.of);
+  dependencies_free(structure.dependencies);
+  free(structure.place_of);
+  free(structure.places);
 }

@@ -65,21 +65,19 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   return arguments->system != NULL && consistent;
 }
 
-/* A system without coordinates has no solver to replace. */
-static void override_solver(struct Model *model, const char *solver, struct Diagnostics *diagnostics) {
-  static const struct {
-    const char *name;
-    enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    if (strcmp(solver, methods[i].name) != 0) continue;
-    model->method = methods[i].method;
-    return;
+/* The equations of motion as they are, or linearised where the model asks for it; NULL after reporting errors. */
+static struct Equations *derive(const struct Model *model, struct Diagnostics *diagnostics) {
+  struct Equations *equations = equations_derive(model, diagnostics);
+  if (equations != NULL && model->linearized) {
+    struct Equations *linear = linearize(model, equations, diagnostics);
+    equations_free(equations);
+    equations = linear;
   }
-  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", solver);
+  if (equations != NULL) equations_check_finite(model, equations, diagnostics);
+  return equations;
 }
 
-static void compile(struct Model *model, struct Equations *equations, const char *directory,
+static void compile(struct Model *model, const struct Equations *equations, const char *directory,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
   struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
@@ -90,7 +88,7 @@ static void compile(struct Model *model, struct Equations *equations, const char
   interface_free(interface);
 }
 
-static void print_linearization(struct Model *model, const struct Equations *equations,
+static void print_linearization(const struct Model *model, const struct Equations *equations,
                                 struct Diagnostics *diagnostics) {
   struct LinearSystem *system = linear_system_of(model, equations, diagnostics);
   if (system != NULL) linear_system_print(model, system);
@@ -101,18 +99,14 @@ static int run(const struct Arguments *arguments) {
   struct Diagnostics diagnostics = {.file = arguments->system};
   struct ReaderOptions options = {.definitions = arguments->definitions,
                                   .definition_count = arguments->definition_count,
+                                  .solver = arguments->solver,
                                   .point = (const char *const *)arguments->point,
                                   .point_count = arguments->point_count,
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
-  if (model != NULL && arguments->solver != NULL) override_solver(model, arguments->solver, &diagnostics);
-  struct Equations *equations = model != NULL && diagnostics.errors == 0 ? equations_derive(model, &diagnostics) : NULL;
-  if (equations != NULL && diagnostics.errors == 0 && model->linearized) linearize(model, equations, &diagnostics);
-  if (equations != NULL && diagnostics.errors == 0) equations_check_finite(model, equations, &diagnostics);
-  if (equations != NULL && diagnostics.errors == 0) {
-    if (arguments->linearize) print_linearization(model, equations, &diagnostics);
-    else compile(model, equations, arguments->directory, &diagnostics);
-  }
+  struct Equations *equations = model != NULL ? derive(model, &diagnostics) : NULL;
+  if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
+  else if (diagnostics.errors == 0) compile(model, equations, arguments->directory, &diagnostics);
   equations_free(equations);
   model_free(model);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);

@@ -8,7 +8,7 @@
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
 
-Node stored_energy(struct Model *model, Node potential) {
+Node stored_energy(const struct Model *model, Node potential) {
   struct Graph *graph = model->graph;
   size_t n = model->velocities.count;
   Node energy = potential, *slope = allocate(n, sizeof *slope);
@@ -53,7 +53,7 @@ static struct Degrees degrees_of(const struct Graph *graph, Node target) {
   return result;
 }
 
-Node energy_of_kinetic_term(struct Model *model, Node term, bool *driven) {
+Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {
   struct Degrees degrees = degrees_of(model->graph, term);
   /* Degrees below and above may cancel each other once multiplied out. */
   if (degrees.lowest != 2 || degrees.highest != 2)

@@ -8,13 +8,13 @@
 #include "mechanics/model.h"
 
 /* U - sum v dU/dv: what a potential stores. Terms linear in the velocities (magnetic forces) store nothing. */
-Node stored_energy(struct Model *model, Node potential);
+Node stored_energy(const struct Model *model, Node potential);
 
 /*
  * The energy of a <kinetic> term T. A quadratic polynomial of the velocities is the energy of masses as it stands, as
  * for bodies, also where they have velocities without the coordinates' (T = J (v + W)^2 / 2); *driven says whether
  * that is so. Any other T contributes sum v dT/dv - T, as for a relativistic particle.
  */
-Node energy_of_kinetic_term(struct Model *model, Node term, bool *driven);
+Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven);
 
 #endif

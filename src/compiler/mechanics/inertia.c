@@ -249,30 +249,27 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
   return result;
 }
 
-void inertia_solve_block(struct Graph *graph, const struct InertiaBlock *block, const Node *right_side, Node *solution) {
-  for (size_t i = 0; i < block->count; i++) {
-    solution[i] = right_side[i];
-    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
-      solution[i] = subtract(graph, solution[i], multiply(graph, block->factor[k], solution[block->column[k]]));
-  }
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
   for (size_t i = 0; i < block->count; i++)
-    solution[i] = divide(graph, solution[i], block->factor[block->start[i + 1] - 1]);
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
+      x[i] = subtract(graph, x[i], multiply(graph, block->factor[k], x[block->column[k]]));
+  for (size_t i = 0; i < block->count; i++) x[i] = divide(graph, x[i], block->factor[block->start[i + 1] - 1]);
   for (size_t i = block->count; i-- > 0;)
     for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
-      Node *element = &solution[block->column[k]];
-      *element = subtract(graph, *element, multiply(graph, block->factor[k], solution[i]));
+      size_t j = block->column[k];
+      x[j] = subtract(graph, x[j], multiply(graph, block->factor[k], x[i]));
     }
 }
 
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
+  Node *x = allocate(inertia->count, sizeof *x);
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
-    Node *part = allocate(block->count, sizeof *part);
-    for (size_t i = 0; i < block->count && block->is_unrolled; i++) part[i] = right_side[block->coordinates[i]];
-    if (block->is_unrolled) inertia_solve_block(graph, block, part, part);
-    for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = part[i];
-    free(part);
+    for (size_t i = 0; i < block->count; i++) x[i] = block->is_unrolled ? right_side[block->coordinates[i]] : ZERO;
+    if (block->is_unrolled) block_solve(graph, block, x);
+    for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = x[i];
   }
+  free(x);
 }
 
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {

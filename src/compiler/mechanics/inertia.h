@@ -57,8 +57,8 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
 /* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution);
 
-/* The same for one unrolled block; elements in the order of its rows. */
-void inertia_solve_block(struct Graph *graph, const struct InertiaBlock *block, const Node *right_side, Node *solution);
+/* Solves for the coordinates of one unrolled block, in their order of elimination, in place. */
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x);
 
 /* sum += M vector */
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);

@@ -9,6 +9,7 @@
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {
   interface->variables = reallocate(interface->variables, interface->count + 1, sizeof *interface->variables);
+  if (index == 0) interface->first[kind] = interface->count;
   struct InterfaceVariable *variable = &interface->variables[interface->count++];
   *variable = (struct InterfaceVariable){
       .entry = {.name = copy_text(name), .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
@@ -52,21 +53,22 @@ static void append_result(struct Interface *interface, const char *name, const c
   variable->node = node;
 }
 
-static void append_bodies(struct Interface *interface, const struct Model *model) {
+static void append_bodies(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   static const char *const axes[] = {"x", "y", "z"};
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Body *body = &model->bodies[i];
+    const struct Placement *placement = &equations->placements[i];
     for (int axis = 0; axis < 3; axis++) {
       if (!body->has_position[axis]) continue;
       char *name = format_text("%s.%s", body->name, axes[axis]);
       char *text = format_text("%s position of %s", axes[axis], body->name);
-      append_result(interface, name, "m", body->position[axis].node, text);
+      append_result(interface, name, "m", placement->position[axis], text);
       free(name);
       free(text);
     }
     if (!body->has_angle) continue;
     char *name = format_text("%s.angle", body->name), *text = format_text("angle of %s", body->name);
-    append_result(interface, name, "rad", body->angle.node, text);
+    append_result(interface, name, "rad", placement->angle, text);
     free(name);
     free(text);
   }
@@ -87,10 +89,10 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
   for (size_t i = 0; i < equations->count; i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
-  for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, model->outputs.items[i].node, TIME);
+  for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
   for (size_t i = 0; i < model->body_count; i++) {
-    for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, model->bodies[i].position[axis].node, TIME);
-    uses |= graph_depends_on(graph, model->bodies[i].angle.node, TIME);
+    for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, equations->placements[i].position[axis], TIME);
+    uses |= graph_depends_on(graph, equations->placements[i].angle, TIME);
   }
   return uses;
 }
@@ -104,21 +106,19 @@ static enum SolverMethod method_of(const struct Model *model, const struct Equat
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
-static int output_derivative_order(const struct Interface *interface, const struct Model *model) {
+static int output_derivative_order(const struct Interface *interface, const struct Model *model,
+                                   const struct Equations *equations) {
   if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return 1;
-  const char *kink = NULL;
-  for (size_t i = 0; i < model->outputs.count && kink == NULL; i++)
-    kink = kink_of(model->graph, &model->outputs.items[i].node, 1);
-  return kink == NULL ? OUTPUT_ORDER : 1;
+  return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
   interface->method = method_of(model, equations);
-  interface->output_derivative_order = output_derivative_order(interface, model);
+  interface->output_derivative_order = output_derivative_order(interface, model, equations);
   interface->depends_on_time = uses_time(model, equations);
-  interface->state_count = 2 * n + (model->work_line > 0 ? 1 : 0);
+  interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
   if (interface->depends_on_time) {
     struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
     time->unit = copy_text("s");
@@ -134,7 +134,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
                           .description = (char *)"work of the non-conservative forces"};
   const char *problem;
   unit_parse("J", &work.dimension, &problem);
-  if (model->work_line > 0) {
+  if (equations->has_work) {
     append_list(interface, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
     interface->variables[interface->count - 1].entry.is_output = false;
   }
@@ -142,13 +142,15 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
-  if (model->work_line > 0) append_derivative(interface, &work, 2 * n, equations->power);
+  if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
   append_list(interface, &model->inputs, VARIABLE_INPUT, 0);
   append_list(interface, &model->parameters, VARIABLE_PARAMETER, 0);
   append_list(interface, &model->outputs, VARIABLE_RESULT, 0);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;
   if (n == 0) return interface;
-  append_bodies(interface, model);
+  append_bodies(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, "kinetic and potential energy");
@@ -168,57 +170,9 @@ void interface_free(struct Interface *interface) {
 }
 
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index) {
-  size_t place = 0;
-  while (place < interface->count &&
-         (interface->variables[place].entry.kind != kind || interface->variables[place].entry.index != index))
-    place++;
-  return place;
+  return interface->first[kind] + index;
 }
 
 double interface_tolerance(const struct Model *model) {
   return isnan(model->tolerance) ? 1e-8 : model->tolerance;
-}
-
-static enum Dependency larger(enum Dependency a, enum Dependency b) {
-  return a > b ? a : b;
-}
-
-/* The factor of a product that does not depend on the symbol decides how constant the product's factor is. */
-static enum Dependency through_factor(const struct Graph *graph, enum Dependency dependency, Node factor) {
-  if (graph_is_constant(graph, factor)) return dependency;
-  bool of_parameters = (graph->vertices[factor].kinds & ~(1u << PARAMETER)) == 0;
-  return larger(dependency, of_parameters ? TUNABLE_FACTOR : DEPENDENT);
-}
-
-static void sweep_dependencies(const struct Graph *graph, enum Dependency *of) {
-  for (Node node = 0; node < graph->count; node++) {
-    const struct Vertex *vertex = &graph->vertices[node];
-    int arity = operation_arity(vertex->operation);
-    if (arity == 0) continue;
-    enum Dependency left = of[vertex->left], right = arity == 2 ? of[vertex->right] : INDEPENDENT;
-    if (left == INDEPENDENT && right == INDEPENDENT) of[node] = INDEPENDENT;
-    else if (vertex->operation == ADD) of[node] = larger(left, right);
-    else if (vertex->operation != MULTIPLY || (left != INDEPENDENT && right != INDEPENDENT)) of[node] = DEPENDENT;
-    else of[node] = through_factor(graph, larger(left, right), left == INDEPENDENT ? vertex->left : vertex->right);
-  }
-}
-
-enum Dependency *dependencies_on(const struct Graph *graph, const struct Equations *equations, Node symbol) {
-  enum Dependency *of = allocate(graph->count, sizeof *of);
-  of[symbol] = CONSTANT_FACTOR;
-  sweep_dependencies(graph, of);
-  size_t n = equations->count;
-  enum Dependency *acceleration = allocate(n, sizeof *acceleration);
-  for (size_t i = 0; i < n; i++) {
-    acceleration[i] = of[equations->acceleration[i]];
-    if (!is_looped(equations, i)) continue;
-    const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-    for (size_t j = 0; j < block->count; j++)
-      if (of[equations->residual[block->coordinates[j]]] != INDEPENDENT) acceleration[i] = DEPENDENT;
-  }
-  for (size_t i = 0; i < graph->symbol_count; i++)
-    if (graph->symbols[i].kind == ACCELERATION) of[graph->symbols[i].node] = acceleration[graph->symbols[i].index];
-  sweep_dependencies(graph, of);
-  free(acceleration);
-  return of;
 }

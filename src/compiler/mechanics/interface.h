@@ -1,4 +1,7 @@
-/* The variables of the FMU in the order of their value references. */
+/*
+ * The variables of the FMU in the order of their value references. Those of one kind stand together, in the order of their
+ * indices.
+ */
 #ifndef INTERFACE_H
 #define INTERFACE_H
 
@@ -17,6 +20,7 @@ enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylo
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
+  size_t first[VARIABLE_STATISTIC + 1]; /* the place of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
   enum SolverMethod method; /* the one that is used */
@@ -26,22 +30,10 @@ struct Interface {
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations);
 void interface_free(struct Interface *interface);
 
-/* The place in the table of the variable of this kind and index. */
+/* The place in the table of the variable of this kind and index, which there is. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);
 
-/* The relative tolerance of the solver, and the experiment with its defaults filled in. */
+/* The relative tolerance of the solver. */
 double interface_tolerance(const struct Model *model);
-
-/*
- * How the value of a node depends on a symbol (FMI 2.0.4, section 2.2.8): not at all, with a constant factor, with a
- * factor of parameters, or otherwise.
- */
-enum Dependency { INDEPENDENT, CONSTANT_FACTOR, TUNABLE_FACTOR, DEPENDENT };
-
-/*
- * The dependency of every node on symbol, accelerations included by way of the equations of motion. Nodes that stand
- * for accelerations of large blocks depend on what their block depends on. Free with free().
- */
-enum Dependency *dependencies_on(const struct Graph *graph, const struct Equations *equations, Node symbol);
 
 #endif

@@ -11,7 +11,7 @@
 #include "memory.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
-static Node *generalized_forces(struct Model *model) {
+static Node *generalized_forces(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   Node *force = allocate(n, sizeof *force);
@@ -56,7 +56,8 @@ static Node *time_seeds(const struct Model *model, bool with_accelerations) {
 }
 
 /* sum m (d2r/dt2) . dr/dq_i, with the accelerations or with 0 for them. */
-static void inertial_forces(struct Model *model, const struct Motions *motions, bool with_accelerations, Node *force) {
+static void inertial_forces(const struct Model *model, const struct Motions *motions, bool with_accelerations,
+                            Node *force) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, with_accelerations), *weight = allocate(motions->count, sizeof *weight);
   derivative_along(graph, motions->position, motions->count, seeds, weight);
@@ -103,7 +104,7 @@ static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *i
 }
 
 /* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
-static void derive_motion(struct Model *model, struct Equations *equations, const Node *force) {
+static void derive_motion(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
   struct Motions motions = motions_of(model);
@@ -143,7 +144,7 @@ static void solve_for_accelerations(const struct Model *model, struct Equations 
     if (is_looped(equations, i)) equations->acceleration[i] = model->accelerations[i];
 }
 
-static void derive_energies(struct Model *model, struct Equations *equations, const Node *force) {
+static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   for (size_t i = 0; i < equations->count; i++)
     equations->power = add(graph, equations->power, multiply(graph, force[i], model->velocities.items[i].node));
@@ -153,28 +154,50 @@ static void derive_energies(struct Model *model, struct Equations *equations, co
   equations->total = add(graph, equations->kinetic, equations->potential);
 }
 
-struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics) {
-  struct Graph *graph = model->graph;
+struct Equations *equations_create(const struct Model *model) {
   size_t n = model->coordinates.count;
   struct Equations *equations = allocate(1, sizeof *equations);
-  equations->count = n;
-  equations->right_side = allocate(n, sizeof(Node));
-  equations->residual = allocate(n, sizeof(Node));
-  equations->acceleration = allocate(n, sizeof(Node));
+  *equations = (struct Equations){.count = n,
+                                  .right_side = allocate(n, sizeof(Node)),
+                                  .residual = allocate(n, sizeof(Node)),
+                                  .acceleration = allocate(n, sizeof(Node)),
+                                  .outputs = allocate(model->outputs.count, sizeof(Node)),
+                                  .placements = allocate(model->body_count, sizeof(struct Placement))};
+  return equations;
+}
+
+static void copy_outputs(const struct Model *model, struct Equations *equations) {
+  for (size_t i = 0; i < model->outputs.count; i++) equations->outputs[i] = model->outputs.items[i].node;
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    for (int axis = 0; axis < 3; axis++) equations->placements[i].position[axis] = body->position[axis].node;
+    equations->placements[i].angle = body->angle.node;
+  }
+}
+
+struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics) {
+  struct Graph *graph = model->graph;
+  size_t n = model->coordinates.count;
+  int errors = diagnostics->errors;
+  struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
   gradient_of(graph, subtract(graph, model->kinetic.node, model->potential.node), VELOCITY, n, momentum);
+  equations->has_work = model->work_line > 0;
   equations->inertia = inertia_derive(model, momentum, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     derive_energies(model, equations, force);
     solve_for_accelerations(model, equations);
+    copy_outputs(model, equations);
   }
   if (graph->overflow)
     report_error(diagnostics, 0, "the equations of motion need more than %d operations; expected a smaller system",
                  NODE_LIMIT);
   free(momentum);
   free(force);
-  return equations;
+  if (diagnostics->errors == errors) return equations;
+  equations_free(equations);
+  return NULL;
 }
 
 /* Whether the nodes are made of finite numbers. */
@@ -189,10 +212,9 @@ static bool are_finite(const struct Graph *graph, const Node *nodes, size_t coun
 
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics) {
-  const Node *nodes = equations->explicit_form ? equations->acceleration : equations->residual;
   size_t wrong = 0;
-  if (are_finite(model->graph, nodes, equations->count)) return;
-  while (are_finite(model->graph, nodes + wrong, 1)) wrong++;
+  if (are_finite(model->graph, equations->residual, equations->count)) return;
+  while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;
   report_error(diagnostics, model->velocities.items[wrong].line,
                "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
                "point at a pole",
@@ -205,6 +227,8 @@ void equations_free(struct Equations *equations) {
   free(equations->right_side);
   free(equations->residual);
   free(equations->acceleration);
+  free(equations->outputs);
+  free(equations->placements);
   free(equations);
 }
 

@@ -11,24 +11,37 @@
 
 #include "mechanics/inertia.h"
 
-struct Equations {
-  size_t count;       /* coordinates */
-  bool explicit_form; /* accelerations are given as such (linearised systems), there is no mass matrix */
-  struct Inertia *inertia;
-  Node *right_side;               /* M a = right_side */
-  Node *residual;                 /* M a - right_side with the acceleration symbols for a */
-  Node *acceleration;             /* expressions in unrolled blocks, the acceleration symbols in others */
-  Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
-  Node kinetic, potential, total; /* energies, see energies.h */
+/* Where a body is, as functions of coordinates and time. */
+struct Placement {
+  Node position[3], angle;
 };
 
-/* Derives the equations of motion; reports errors (a coordinate without inertia, ...) to diagnostics. */
-struct Equations *equations_derive(struct Model *model, struct Diagnostics *diagnostics);
+/* What follows from a model. Its stages make new ones; they do not change the model. */
+struct Equations {
+  size_t count; /* coordinates */
+  struct Inertia *inertia;
+  Node *right_side;   /* M a = right_side */
+  Node *residual;     /* M a - right_side with the acceleration symbols for a */
+  Node *acceleration; /* expressions in unrolled blocks, the acceleration symbols in others */
+  /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
+  bool explicit_form;
+  bool has_work;                  /* the work of the non-conservative forces is a state */
+  Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
+  Node kinetic, potential, total; /* energies, see energies.h */
+  Node *outputs;                  /* of the model */
+  struct Placement *placements;   /* of its bodies */
+};
+
+/* Derives the equations of motion; NULL after reporting errors (a coordinate without inertia, ...). */
+struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics);
+
+/* Equations of a model without anything derived yet. */
+struct Equations *equations_create(const struct Model *model);
+void equations_free(struct Equations *equations);
+
 /* Reports coefficients that are not finite: of sums and products too large for numbers, and of a point at a pole. */
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
-
-void equations_free(struct Equations *equations);
 
 /* Whether the coordinate belongs to a block of M that is solved at run time, by ldlt.h. */
 bool is_looped(const struct Equations *equations, size_t coordinate);

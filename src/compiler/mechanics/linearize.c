@@ -10,67 +10,85 @@
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
 
-/* States, inputs and accelerations with their values at the point, and their deviations from it. */
+/* States, inputs and accelerations, which change in motion, with their values at the point and deviations from them. */
 struct Expansion {
   struct Graph *graph;
-  Node *replacements; /* one node a symbol: its value at the point */
-  Node *symbols, *deviations;
-  size_t count;
+  Node *values;     /* one node a symbol: its value at the point; of parameters: themselves */
+  Node *deviations; /* one node a symbol; ZERO for parameters */
+};
+
+enum {
+  STATES_AND_INPUTS = 1u << COORDINATE | 1u << VELOCITY | 1u << INPUT,
+  EXPANDED = STATES_AND_INPUTS | 1u << ACCELERATION,
 };
 
 static Node at_point(const struct Expansion *expansion, Node node) {
   Node value;
-  substitute(expansion->graph, &node, 1, expansion->replacements, &value);
+  substitute(expansion->graph, &node, 1, expansion->values, &value);
   return value;
 }
 
-static void add_symbol(struct Expansion *expansion, Node symbol, Node value) {
-  expansion->replacements[expansion->graph->vertices[symbol].left] = value;
-  expansion->symbols[expansion->count] = symbol;
-  expansion->deviations[expansion->count++] = subtract(expansion->graph, symbol, value);
+static Node deviation_of(const struct Expansion *expansion, Node symbol) {
+  return expansion->deviations[expansion->graph->vertices[symbol].left];
 }
 
-/* Taylor's polynomial of the first or second order at the point. */
-static Node expand(const struct Expansion *expansion, Node node, int order) {
-  struct Graph *graph = expansion->graph;
-  Node result = at_point(expansion, node);
-  for (size_t i = 0; i < expansion->count; i++) {
-    Node slope = derivative_by(graph, node, expansion->symbols[i]);
-    Node term = at_point(expansion, slope);
-    for (size_t j = 0; order == 2 && j < expansion->count && slope != ZERO; j++) {
-      Node curvature = at_point(expansion, derivative_by(graph, slope, expansion->symbols[j]));
-      term = add(graph, term, scale(graph, 0.5, multiply(graph, curvature, expansion->deviations[j])));
-    }
-    result = add(graph, result, multiply(graph, term, expansion->deviations[i]));
-  }
-  return result;
+static void set_value(struct Expansion *expansion, Node symbol, Node value) {
+  Node number = expansion->graph->vertices[symbol].left;
+  expansion->values[number] = value;
+  expansion->deviations[number] = subtract(expansion->graph, symbol, value);
 }
 
 static Node point_of(const struct Model *model, Node symbol) {
   return model->point.values[model->graph->vertices[symbol].left];
 }
 
-static struct Expansion expansion_create(struct Model *model, const Node *accelerations) {
+static struct Expansion expansion_create(const struct Model *model) {
   struct Graph *graph = model->graph;
-  size_t n = model->coordinates.count, m = model->inputs.count;
   struct Expansion expansion = {.graph = graph};
-  expansion.replacements = allocate(graph->symbol_count, sizeof(Node));
-  expansion.symbols = allocate(3 * n + m, sizeof(Node));
-  expansion.deviations = allocate(3 * n + m, sizeof(Node));
-  for (size_t i = 0; i < graph->symbol_count; i++) expansion.replacements[i] = graph->symbols[i].node;
+  expansion.values = allocate(graph->symbol_count, sizeof(Node));
+  expansion.deviations = allocate(graph->symbol_count, sizeof(Node));
+  for (size_t i = 0; i < graph->symbol_count; i++) expansion.values[i] = graph->symbols[i].node;
   const struct VariableList *lists[] = {&model->coordinates, &model->velocities, &model->inputs};
   for (size_t list = 0; list < 3; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
-      add_symbol(&expansion, lists[list]->items[i].node, point_of(model, lists[list]->items[i].node));
-  for (size_t i = 0; i < n && accelerations != NULL; i++)
-    add_symbol(&expansion, model->accelerations[i], accelerations[i]);
+      set_value(&expansion, lists[list]->items[i].node, point_of(model, lists[list]->items[i].node));
   return expansion;
 }
 
 static void expansion_free(struct Expansion *expansion) {
-  free(expansion->replacements);
-  free(expansion->symbols);
+  free(expansion->values);
   free(expansion->deviations);
+}
+
+/* factor * sum of d node / d s, at the point, times the deviation of s */
+static Node change_of(const struct Expansion *expansion, Node node, double factor) {
+  struct Graph *graph = expansion->graph;
+  struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
+  Node change = ZERO;
+  for (size_t i = 0; i < slopes.count; i++) {
+    Node slope = scale(graph, factor, at_point(expansion, slopes.values[i]));
+    change = add(graph, change, multiply(graph, slope, deviation_of(expansion, slopes.symbols[i])));
+  }
+  gradient_free(&slopes);
+  return change;
+}
+
+/* Taylor's polynomial of the first order at the point. */
+static Node expand(const struct Expansion *expansion, Node node) {
+  return add(expansion->graph, at_point(expansion, node), change_of(expansion, node, 1.0));
+}
+
+/* The same of the second order. */
+static Node expand_twice(const struct Expansion *expansion, Node node) {
+  struct Graph *graph = expansion->graph;
+  struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
+  Node result = at_point(expansion, node);
+  for (size_t i = 0; i < slopes.count; i++) {
+    Node mean = add(graph, at_point(expansion, slopes.values[i]), change_of(expansion, slopes.values[i], 0.5));
+    result = add(graph, result, multiply(graph, mean, deviation_of(expansion, slopes.symbols[i])));
+  }
+  gradient_free(&slopes);
+  return result;
 }
 
 static void warn_without_equilibrium(const struct Model *model, const Node *accelerations,
@@ -87,63 +105,98 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
   free(symbols);
 }
 
-/* M solution = right for several right sides by rows, in fractions where they are not too large. */
-static void solve_columns(struct Graph *graph, const struct Inertia *inertia, size_t columns, const Node *right,
-                          Node *solution) {
-  size_t n = inertia->count;
+/*
+ * M solution = right for one block and several right sides by rows, in fractions where they are not too large. Rows are
+ * in the block's order of elimination.
+ */
+static void solve_block(struct Graph *graph, const struct InertiaBlock *block, size_t columns, const Node *right,
+                        Node *solution) {
+  size_t n = block->count;
   Node *mass = allocate(n * n, sizeof *mass), *column = allocate(n, sizeof *column);
   for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++) mass[i * n + j] = inertia_element(inertia, i, j);
+    for (size_t k = block->start[i]; k < block->start[i + 1]; k++)
+      mass[i * n + block->column[k]] = mass[block->column[k] * n + i] = block->mass[k];
   bool solved = solve_fractions(graph, n, mass, columns, right, solution);
   for (size_t j = 0; j < columns && !solved; j++) {
     for (size_t i = 0; i < n; i++) column[i] = right[i * columns + j];
-    inertia_solve(graph, inertia, column, column);
+    block_solve(graph, block, column);
     for (size_t i = 0; i < n; i++) solution[i * columns + j] = column[i];
   }
   free(mass);
   free(column);
 }
 
-/* M da = -(d residual / d s) ds with M and the acceleration held at their values at the point. */
-static void linearize_accelerations(struct Model *model, struct Equations *equations, const struct Inertia *inertia) {
-  struct Graph *graph = model->graph;
-  size_t n = equations->count;
-  struct Expansion states = expansion_create(model, NULL);
-  Node *value = allocate(n, sizeof *value), *slopes = allocate(n * states.count, sizeof *slopes);
-  substitute(graph, equations->right_side, n, states.replacements, value);
-  solve_columns(graph, inertia, 1, value, value);
-  struct Expansion all = expansion_create(model, value);
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < states.count; j++)
-      slopes[i * states.count + j] =
-          negate(graph, at_point(&all, derivative_by(graph, equations->residual[i], states.symbols[j])));
-  solve_columns(graph, inertia, states.count, slopes, slopes);
-  for (size_t i = 0; i < n; i++) {
-    equations->acceleration[i] = value[i];
-    for (size_t j = 0; j < states.count; j++)
-      equations->acceleration[i] =
-          add(graph, equations->acceleration[i], multiply(graph, slopes[i * states.count + j], states.deviations[j]));
+/* The accelerations at the point. */
+static void find_values(struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
+                        const struct Inertia *inertia, Node *value) {
+  Node *right = allocate(inertia->count, sizeof *right);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    for (size_t i = 0; i < block->count; i++)
+      right[i] = at_point(expansion, equations->right_side[block->coordinates[i]]);
+    solve_block(expansion->graph, block, 1, right, right);
+    for (size_t i = 0; i < block->count; i++) value[block->coordinates[i]] = right[i];
   }
-  for (size_t i = 0; i < model->outputs.count; i++)
-    model->outputs.items[i].node = expand(&all, model->outputs.items[i].node, 1);
-  free(value);
+  for (size_t i = 0; i < inertia->count; i++) set_value(expansion, model->accelerations[i], value[i]);
+  free(right);
+}
+
+static int compare(const void *first, const void *second) {
+  Node a = *(const Node *)first, b = *(const Node *)second;
+  return (a > b) - (a < b);
+}
+
+/* The symbols of the gradients, ascending, each once; returns their number. */
+static size_t join_symbols(const struct Gradient *gradients, size_t count, Node **symbols) {
+  size_t all = 0, kept = 0;
+  for (size_t i = 0; i < count; i++) all += gradients[i].count;
+  *symbols = allocate(all, sizeof **symbols);
+  all = 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < gradients[i].count; k++) (*symbols)[all++] = gradients[i].symbols[k];
+  qsort(*symbols, all, sizeof **symbols, compare);
+  for (size_t k = 0; k < all; k++)
+    if (kept == 0 || (*symbols)[kept - 1] != (*symbols)[k]) (*symbols)[kept++] = (*symbols)[k];
+  return kept;
+}
+
+/* M da = -(d residual / d s) ds with M and the acceleration held at their values at the point, for one block. */
+static void linearize_block(const struct Expansion *expansion, const struct Equations *equations,
+                            const struct InertiaBlock *block, Node *acceleration) {
+  struct Graph *graph = expansion->graph;
+  struct Gradient *gradients = allocate(block->count, sizeof *gradients);
+  for (size_t i = 0; i < block->count; i++)
+    gradients[i] = gradient_by_kinds(graph, equations->residual[block->coordinates[i]], STATES_AND_INPUTS);
+  Node *symbols;
+  size_t columns = join_symbols(gradients, block->count, &symbols);
+  Node *slopes = allocate(block->count * columns, sizeof *slopes);
+  for (size_t i = 0; i < block->count; i++)
+    for (size_t k = 0, j = 0; k < gradients[i].count; k++) {
+      while (symbols[j] != gradients[i].symbols[k]) j++;
+      slopes[i * columns + j] = negate(graph, at_point(expansion, gradients[i].values[k]));
+    }
+  solve_block(graph, block, columns, slopes, slopes);
+  for (size_t i = 0; i < block->count; i++) {
+    Node *sum = &acceleration[block->coordinates[i]];
+    for (size_t j = 0; j < columns; j++)
+      *sum = add(graph, *sum, multiply(graph, slopes[i * columns + j], deviation_of(expansion, symbols[j])));
+    gradient_free(&gradients[i]);
+  }
+  free(gradients);
+  free(symbols);
   free(slopes);
-  expansion_free(&states);
-  expansion_free(&all);
 }
 
-static void expand_positions(struct Model *model, const struct Expansion *expansion) {
-  for (size_t i = 0; i < model->body_count; i++) {
-    struct Body *body = &model->bodies[i];
-    for (int axis = 0; axis < 3; axis++) body->position[axis].node = expand(expansion, body->position[axis].node, 1);
-    body->angle.node = expand(expansion, body->angle.node, 1);
-  }
-}
-
-static bool depends_on_time(const struct Model *model, const struct Equations *equations) {
+static bool can_be_linearized(const struct Model *model, const struct Equations *equations,
+                              struct Diagnostics *diagnostics) {
+  bool depends_on_time = false;
   for (size_t i = 0; i < equations->count; i++)
-    if (graph_depends_on(model->graph, equations->residual[i], TIME)) return true;
-  return false;
+    depends_on_time |= graph_depends_on(model->graph, equations->residual[i], TIME);
+  if (depends_on_time)
+    report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
+  else if (equations->count == 0)
+    report_error(diagnostics, 0, "the system has no coordinates; expected some to linearise");
+  return !depends_on_time && equations->count > 0;
 }
 
 static bool is_singular(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
@@ -158,57 +211,69 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
   return singular;
 }
 
-void linearize(struct Model *model, struct Equations *equations, struct Diagnostics *diagnostics) {
-  struct Graph *graph = model->graph;
-  if (depends_on_time(model, equations)) {
-    report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
-    return;
+/* What is affine in states and inputs, and the energies, of the second degree. */
+static void expand_all(const struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
+                       struct Equations *linear) {
+  struct Graph *graph = expansion->graph;
+  for (size_t b = 0; b < linear->inertia->block_count; b++)
+    linearize_block(expansion, equations, &linear->inertia->blocks[b], linear->acceleration);
+  for (size_t i = 0; i < linear->count; i++) {
+    linear->right_side[i] = linear->acceleration[i];
+    linear->residual[i] = subtract(graph, model->accelerations[i], linear->acceleration[i]);
   }
-  if (equations->count == 0) {
-    report_error(diagnostics, 0, "the system has no coordinates; expected some to linearise");
-    return;
+  for (size_t i = 0; i < model->outputs.count; i++) linear->outputs[i] = expand(expansion, equations->outputs[i]);
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Placement *from = &equations->placements[i];
+    for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
+    linear->placements[i].angle = expand(expansion, from->angle);
   }
-  struct Expansion expansion = expansion_create(model, NULL);
-  struct Inertia *inertia = inertia_substitute(graph, equations->inertia, expansion.replacements);
-  if (is_singular(model, inertia, diagnostics)) {
-    inertia_free(inertia);
-    expansion_free(&expansion);
-    return;
+  linear->power = equations->power;
+  linear->kinetic = expand_twice(expansion, equations->kinetic);
+  linear->potential = expand_twice(expansion, equations->potential);
+  linear->total = add(graph, linear->kinetic, linear->potential);
+}
+
+struct Equations *linearize(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics) {
+  if (!can_be_linearized(model, equations, diagnostics)) return NULL;
+  struct Expansion expansion = expansion_create(model);
+  struct Equations *linear = equations_create(model);
+  linear->explicit_form = true;
+  linear->inertia = inertia_substitute(model->graph, equations->inertia, expansion.values);
+  bool singular = is_singular(model, linear->inertia, diagnostics);
+  if (!singular) {
+    find_values(&expansion, model, equations, linear->inertia, linear->acceleration);
+    warn_without_equilibrium(model, linear->acceleration, diagnostics);
+    expand_all(&expansion, model, equations, linear);
   }
-  Node *values = allocate(equations->count, sizeof *values);
-  substitute(graph, equations->acceleration, equations->count, expansion.replacements, values);
-  warn_without_equilibrium(model, values, diagnostics);
-  linearize_accelerations(model, equations, inertia);
-  expand_positions(model, &expansion);
-  equations->kinetic = expand(&expansion, equations->kinetic, 2);
-  equations->potential = expand(&expansion, equations->potential, 2);
-  equations->total = add(graph, equations->kinetic, equations->potential);
-  inertia_free(equations->inertia);
-  equations->inertia = inertia;
-  equations->explicit_form = true;
-  model->work_line = 0;
-  free(values);
   expansion_free(&expansion);
+  if (!singular) return linear;
+  equations_free(linear);
+  return NULL;
 }
 
-static bool is_constant_in_motion(const struct Graph *graph, Node node) {
-  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+/* A row of A and B from the gradient of an acceleration; reports where it is not constant. */
+static void fill_row(const struct Model *model, const struct Equations *equations, size_t row,
+                     struct LinearSystem *system, struct Diagnostics *diagnostics) {
+  struct Graph *graph = model->graph;
+  size_t n = equations->count;
+  struct Gradient slopes = gradient_by_kinds(graph, equations->acceleration[row], STATES_AND_INPUTS);
+  Node *a = system->a + (n + row) * system->states, *b = system->b + (n + row) * system->inputs;
+  for (size_t k = 0; k < slopes.count; k++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, slopes.symbols[k]);
+    Node slope = simplify_fraction(graph, slopes.values[k]);
+    Node *elements = symbol->kind == INPUT ? b : symbol->kind == VELOCITY ? a + n : a;
+    elements[symbol->index] = slope;
+    if (!graph_is_constant_in_time(graph, slope))
+      report_error(diagnostics, model->solver_line,
+                   "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
+                   model->velocities.items[row].name, symbol->name);
+  }
+  gradient_free(&slopes);
 }
 
-/* One element of A or B; reports where the derivative is not constant. */
-static Node coefficient(struct Model *model, const struct Equations *equations, size_t row, Node symbol,
-                        struct Diagnostics *diagnostics) {
-  Node slope = derivative_by(model->graph, equations->acceleration[row], symbol);
-  slope = simplify_fraction(model->graph, slope);
-  if (!is_constant_in_motion(model->graph, slope))
-    report_error(diagnostics, model->solver_line,
-                 "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
-                 model->velocities.items[row].name, graph_symbol_of(model->graph, symbol)->name);
-  return slope;
-}
-
-static void fill_accelerations(struct Model *model, const struct Equations *equations, struct LinearSystem *system,
-                               struct Diagnostics *diagnostics) {
+static void fill_accelerations(const struct Model *model, const struct Equations *equations,
+                               struct LinearSystem *system, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
   Node *zero = allocate(graph->symbol_count, sizeof *zero);
@@ -216,16 +281,9 @@ static void fill_accelerations(struct Model *model, const struct Equations *equa
     zero[graph->vertices[model->parameters.items[i].node].left] = model->parameters.items[i].node;
   zero[graph->vertices[model->time].left] = model->time;
   for (size_t i = 0; i < n; i++) {
-    size_t row = n + i;
-    for (size_t j = 0; j < n; j++) {
-      Node q = model->coordinates.items[j].node, v = model->velocities.items[j].node;
-      system->a[row * 2 * n + j] = coefficient(model, equations, i, q, diagnostics);
-      system->a[row * 2 * n + n + j] = coefficient(model, equations, i, v, diagnostics);
-    }
-    for (size_t j = 0; j < system->inputs; j++)
-      system->b[row * system->inputs + j] = coefficient(model, equations, i, model->inputs.items[j].node, diagnostics);
-    substitute(graph, &equations->acceleration[i], 1, zero, &system->c[row]);
-    if (!is_constant_in_motion(graph, system->c[row]))
+    fill_row(model, equations, i, system, diagnostics);
+    substitute(graph, &equations->acceleration[i], 1, zero, &system->c[n + i]);
+    if (!graph_is_constant_in_time(graph, system->c[n + i]))
       report_error(diagnostics, model->solver_line,
                    "the system is not linear with constant coefficients: der(%s) depends on time; expected another "
                    "method than 'exact'",
@@ -234,7 +292,7 @@ static void fill_accelerations(struct Model *model, const struct Equations *equa
   free(zero);
 }
 
-struct LinearSystem *linear_system_of(struct Model *model, const struct Equations *equations,
+struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics) {
   size_t n = equations->count;
   struct LinearSystem *system = allocate(1, sizeof *system);

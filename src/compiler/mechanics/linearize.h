@@ -12,16 +12,18 @@ struct LinearSystem {
 };
 
 /*
- * Replaces the equations by their linearisation at model->point: accelerations affine in states and inputs, outputs
- * and positions to first order, energies to second. Warns where the point is no equilibrium.
+ * The equations linearised at model->point: accelerations affine in states and inputs, outputs and positions to first
+ * order, energies to second; without the work of forces. Warns where the point is no equilibrium; NULL after reporting a
+ * system that cannot be linearised there.
  */
-void linearize(struct Model *model, struct Equations *equations, struct Diagnostics *diagnostics);
+struct Equations *linearize(const struct Model *model, const struct Equations *equations,
+                            struct Diagnostics *diagnostics);
 
 /*
  * The matrices of equations that are linear in states and inputs; NULL after reporting which acceleration is not.
  * Free with linear_system_free().
  */
-struct LinearSystem *linear_system_of(struct Model *model, const struct Equations *equations,
+struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics);
 void linear_system_free(struct LinearSystem *system);
 

@@ -86,7 +86,7 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
     report_error(diagnostics, model->solver_line,
                  "the method 'exact' takes a communication step as a whole; expected no maxStep");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
-  if (has_work(expressions))
+  if (expressions->equations->has_work)
     report_error(diagnostics, model->solver_line,
                  "<work/> is not linear in the state; expected another method than 'exact'");
 }
@@ -98,7 +98,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
   bool is_taylor = expressions->interface->method == SOLVER_TAYLOR;
   if (kink == NULL || !is_taylor)
-    expressions->series = series_plan_of_motion(model->graph, equations, has_work(expressions));
+    expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
   else
     report_error(diagnostics, model->solver_line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
@@ -111,10 +111,6 @@ static void create_output_series(struct Expressions *expressions) {
   expressions->output_series = series_plan_of_outputs(model->graph, expressions->result, count);
 }
 
-bool has_work(const struct Expressions *expressions) {
-  return expressions->interface->state_count > 2 * expressions->equations->count;
-}
-
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
@@ -123,7 +119,7 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
   if (method == SOLVER_EXACT) create_linear(expressions, diagnostics);
   create_directional(expressions);
-  if (method == SOLVER_BDF) expressions->jacobian = jacobian_create(model->graph, equations, has_work(expressions));
+  if (method == SOLVER_BDF) expressions->jacobian = jacobian_create(model->graph, equations);
   if (method == SOLVER_TAYLOR || method == SOLVER_ERK || method == SOLVER_BDF) create_series(expressions, diagnostics);
   create_output_series(expressions);
   if (model->graph->overflow)
@@ -138,7 +134,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct Equations *equations = expressions->equations;
   struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
   append_nodes(&targets, expressions->along, equations->count);
-  if (has_work(expressions)) append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
+  if (expressions->equations->has_work) append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
   if (expressions->jacobian != NULL) append_nodes(&targets, expressions->jacobian->value, expressions->jacobian->count);
   if (expressions->linear != NULL) {
     const struct LinearSystem *linear = expressions->linear;

@@ -37,9 +37,6 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
                                        const struct Interface *interface, struct Diagnostics *diagnostics);
 void expressions_free(struct Expressions *expressions);
 
-/* Whether the power of the forces is a derivative, that of their work. */
-bool has_work(const struct Expressions *expressions);
-
 /* All nodes that are computed. Free its nodes with free(). */
 struct NodeList expressions_targets(const struct Expressions *expressions);
 

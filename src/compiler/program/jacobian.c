@@ -48,7 +48,7 @@ static void append_gradient(struct ElementList *list, struct Graph *graph, size_
 /* The elements of one column in the rows of a block: M da = -d(M a - right_side), solved where the block is small. */
 static void append_column(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                           const struct InertiaBlock *block, size_t column, Node *right) {
-  if (block->is_unrolled) inertia_solve_block(graph, block, right, right);
+  if (block->is_unrolled) block_solve(graph, block, right);
   for (size_t i = 0; i < block->count; i++)
     if (!block->is_unrolled || right[i] != ZERO)
       append(list, equations->count + block->coordinates[i], column, right[i]);
@@ -88,7 +88,7 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   return jacobian;
 }
 
-struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations, bool with_work) {
+struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
   struct ElementList list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
@@ -96,8 +96,8 @@ struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Eq
     append_gradient(&list, graph, n, equations->acceleration[i], n + i);
   for (size_t i = 0; !equations->explicit_form && i < equations->inertia->block_count; i++)
     append_block(&list, graph, equations, &equations->inertia->blocks[i]);
-  if (with_work) append_gradient(&list, graph, n, equations->power, 2 * n);
-  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + with_work);
+  if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
+  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->has_work);
   free(list.items);
   return jacobian;
 }

@@ -5,7 +5,7 @@
 #include "program/expressions.h"
 
 /* Free with jacobian_free(). */
-struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations, bool with_work);
+struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations);
 void jacobian_free(struct JacobianExpressions *jacobian);
 
 #endif

@@ -40,9 +40,9 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   struct Routine *routine = values_begin(values);
   size_t n = program->equations->count;
   append_accelerations(values, program->equations, &program->blocks);
-  if (has_work(program->expressions)) values_compute(values, &program->equations->power, 1, false);
+  if (program->equations->has_work) values_compute(values, &program->equations->power, 1, false);
   for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_STATE, n + i));
-  if (has_work(program->expressions)) values_copy(values, target(2 * n), program->equations->power);
+  if (program->equations->has_work) values_copy(values, target(2 * n), program->equations->power);
   return routine;
 }
 
@@ -61,7 +61,7 @@ static struct Routine *directional_routine(const struct Program *program, struct
   size_t n = program->equations->count;
   append_needed_accelerations(program, values, along, n);
   values_compute(values, along, n, false);
-  if (has_work(expressions)) values_compute(values, &expressions->power_along, 1, false);
+  if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
   for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
   for (size_t i = 0; i < n; i++)
     if (!is_looped(program->equations, i)) values_copy(values, target(n + i), along[i]);
@@ -74,7 +74,7 @@ static struct Routine *directional_routine(const struct Program *program, struct
       copy_place(values, target(n + looped->block->coordinates[i]), place_in(SPACE_SIDE, looped->first_side + i));
     free(right_side);
   }
-  if (has_work(expressions)) values_copy(values, target(2 * n), expressions->power_along);
+  if (expressions->equations->has_work) values_copy(values, target(2 * n), expressions->power_along);
   return routine;
 }
 

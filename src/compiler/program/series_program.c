@@ -242,12 +242,12 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   program->limit = limits_of(builder);
   append_nodes_of_order(builder);
   for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
-  append_states(builder, equations, has_work(expressions));
+  append_states(builder, equations, expressions->equations->has_work);
   struct Rows rows = rows_create(builder, blocks->count > 0 ? n : 0, blocks->mass_count, program);
   complete(program, &rows);
 
   program->start = values_begin(values);
-  compute_first(builder, values, &equations->power, has_work(expressions));
+  compute_first(builder, values, &equations->power, expressions->equations->has_work);
   append_accelerations(values, equations, blocks);
   copy_first(&rows, values);
   for (size_t i = 0; i < n; i++) {
@@ -256,7 +256,7 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
       routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
                      place_in(SPACE_ACCELERATION, i), 0, 0);
   }
-  if (has_work(expressions)) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
+  if (expressions->equations->has_work) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
   rows_free(&rows);
   routine_free(builder->order);
   builder_free(builder);

@@ -13,6 +13,7 @@ enum Pass { DECLARATIONS, POSITIONS, EXPRESSIONS };
 struct Reader {
   struct Model *model;
   struct Scope *scope;
+  struct Names *bodies; /* name -> size_t, its place among the model's */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;

@@ -139,17 +139,27 @@ static void define_component(struct Reader *reader, const struct Body *body, con
   free(name);
 }
 
-static const struct Body *find_body(const struct Model *model, const char *name) {
-  for (size_t i = 0; i < model->body_count; i++)
-    if (strcmp(model->bodies[i].name, name) == 0) return &model->bodies[i];
-  return NULL;
+static const struct Body *find_body(const struct Reader *reader, const char *name) {
+  const size_t *place = names_find(reader->bodies, name);
+  return place != NULL ? &reader->model->bodies[*place] : NULL;
+}
+
+/* Of several bodies of one name, which is reported, the first keeps it. */
+static void append_body(struct Reader *reader, struct Body body) {
+  struct Model *model = reader->model;
+  size_t *place = allocate(1, sizeof *place);
+  *place = model->body_count;
+  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, place);
+  else free(place);
+  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
+  model->bodies[model->body_count++] = body;
 }
 
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
   if (body.name == NULL) body.name = format_text("body%zu", model->body_count + 1);
-  const struct Body *other = find_body(model, body.name);
+  const struct Body *other = find_body(reader, body.name);
   if (other != NULL)
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
@@ -174,8 +184,7 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++)
     add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
   add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
-  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
-  model->bodies[model->body_count++] = body;
+  append_body(reader, body);
 }
 
 /* Adds the element's expression to a sum and returns it. */
@@ -196,26 +205,47 @@ static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   model->driven |= driven;
 }
 
-static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
-  struct Model *model = reader->model;
-  for (size_t i = 0; i < model->coordinates.count; i++) {
-    if (strcmp(model->coordinates.items[i].name, coordinate) != 0) continue;
-    struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
-    require_unit(reader, xmlGetLineNo(node), "the force", force,
-                 dimension_multiply(unit_of("J"), model->coordinates.items[i].dimension, -1.0));
-    add_term(model, &model->forces[i], force.node);
-    return;
-  }
-  report_error(reader->diagnostics, xmlGetLineNo(node),
-               "there is no coordinate '%s' for this force; "
-               "expected the name of a <coordinate>",
-               coordinate);
+/* The coordinate of this name, NULL where there is none. */
+static const struct Symbol *find_coordinate(const struct Reader *reader, const char *name) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Quantity *quantity = scope_find(reader->scope, name);
+  if (quantity == NULL || graph->vertices[quantity->node].operation != SYMBOL) return NULL;
+  const struct Symbol *symbol = graph_symbol_of(graph, quantity->node);
+  return symbol->kind == COORDINATE && strcmp(symbol->name, name) == 0 ? symbol : NULL;
 }
 
-/* A Cartesian force F at r contributes Q_i = F . dr/dq_i (principle of virtual work); its power is F . dr/dt. */
+static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
+  struct Model *model = reader->model;
+  const struct Symbol *symbol = find_coordinate(reader, coordinate);
+  if (symbol == NULL) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "there is no coordinate '%s' for this force; "
+                 "expected the name of a <coordinate>",
+                 coordinate);
+    return;
+  }
+  int index = symbol->index;
+  struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
+  require_unit(reader, xmlGetLineNo(node), "the force", force,
+               dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
+  add_term(model, &model->forces[index], force.node);
+}
+
+/* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
+static void add_force(struct Model *model, Node position, Node force) {
+  struct Graph *graph = model->graph;
+  struct Gradient levers = gradient_by_kinds(graph, position, KIND(COORDINATE) | KIND(TIME));
+  for (size_t i = 0; i < levers.count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
+    struct Quantity *sum = symbol->kind == TIME ? &model->driven_power : &model->forces[symbol->index];
+    add_term(model, sum, multiply(graph, force, levers.values[i]));
+  }
+  gradient_free(&levers);
+}
+
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Model *model = reader->model;
-  const struct Body *body = find_body(model, name);
+  const struct Body *body = find_body(reader, name);
   if (body == NULL) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "there is no particle or body '%s' for this force; expected the name of one", name);
@@ -229,12 +259,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
       report_error(reader->diagnostics, xmlGetLineNo(node),
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);
-    for (size_t i = 0; i < model->coordinates.count; i++) {
-      Node lever = derivative_by(model->graph, body->position[axis].node, model->coordinates.items[i].node);
-      add_term(model, &model->forces[i], multiply(model->graph, force.node, lever));
-    }
-    Node drive = derivative_by(model->graph, body->position[axis].node, model->time);
-    add_term(model, &model->driven_power, multiply(model->graph, force.node, drive));
+    add_force(model, body->position[axis].node, force.node);
   }
 }
 
@@ -286,17 +311,25 @@ static void read_definition(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
-void read_solver(struct Reader *reader, xmlNodePtr node) {
+bool solver_method(const char *name, enum SolverMethod *method) {
   static const struct {
     const char *name;
     enum SolverMethod method;
   } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    if (strcmp(name, methods[i].name) != 0) continue;
+    *method = methods[i].method;
+    return true;
+  }
+  return false;
+}
+
+void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
   if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
-  for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
-    if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
+  if (method != NULL) solver_method(method, &reader->model->method);
   double *tolerance = &reader->model->tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",

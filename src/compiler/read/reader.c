@@ -159,9 +159,11 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     model = model_create();
     *scope = language_of(model, &local);
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
+    reader.bodies = names_create();
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     read_system(&reader, root);
     free(reader.definition_used);
+    names_free(reader.bodies);
   }
   if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
     apply_point(model, *scope, options->point, options->point_count, &local);
@@ -176,5 +178,8 @@ struct Model *model_read(const char *path, const struct ReaderOptions *options, 
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
   scope_free(scope);
-  return model;
+  if (model == NULL || options->solver == NULL || solver_method(options->solver, &model->method)) return model;
+  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", options->solver);
+  model_free(model);
+  return NULL;
 }

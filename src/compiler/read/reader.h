@@ -9,6 +9,7 @@
 struct ReaderOptions {
   const char *const *definitions; /* "name=value" for <constant> elements */
   size_t definition_count;
+  const char *solver;       /* the method in place of the system's own; NULL for none */
   const char *const *point; /* "name=value" of a linearisation point; empty for none */
   size_t point_count;
   bool linearize; /* linearise at point even where it is empty */

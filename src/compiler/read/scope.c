@@ -11,35 +11,30 @@ struct Entry {
   long line; /* of the definition; 0 for names of the language itself */
 };
 
-static void free_entry(void *entry, const xmlChar *name) {
-  (void)name;
-  free(entry);
-}
-
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics) {
   struct Scope *scope = allocate(1, sizeof *scope);
   scope->graph = graph;
   scope->diagnostics = diagnostics;
-  scope->names = xmlHashCreate(64);
+  scope->names = names_create();
   return scope;
 }
 
 void scope_free(struct Scope *scope) {
   if (scope == NULL) return;
-  xmlHashFree(scope->names, free_entry);
+  names_free(scope->names);
   free(scope->time_derivatives);
   free(scope->requirements.items);
   free(scope);
 }
 
 static struct Entry *find_entry(const struct Scope *scope, const char *name) {
-  return xmlHashLookup(scope->names, (const xmlChar *)name);
+  return names_find(scope->names, name);
 }
 
 static void add_entry(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
   struct Entry *entry = allocate(1, sizeof *entry);
   *entry = (struct Entry){quantity, line};
-  if (xmlHashUpdateEntry(scope->names, (const xmlChar *)name, entry, free_entry) != 0) free(entry);
+  names_set(scope->names, name, entry);
 }
 
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
@@ -63,7 +58,7 @@ void scope_set_number(struct Scope *scope, const char *name, double value) {
 }
 
 void scope_remove(struct Scope *scope, const char *name) {
-  xmlHashRemoveEntry(scope->names, (const xmlChar *)name, free_entry);
+  names_remove(scope->names, name);
 }
 
 const struct Quantity *scope_find(const struct Scope *scope, const char *name) {
@@ -92,25 +87,19 @@ static size_t edit_distance(const char *a, const char *b) {
   return row[n];
 }
 
-struct Similar {
-  const char *wanted, *best;
-  size_t distance;
-};
-
-static void compare_name(void *entry, void *data, const xmlChar *name) {
-  struct Similar *similar = data;
-  (void)entry;
-  size_t distance = edit_distance(similar->wanted, (const char *)name);
-  bool earlier = similar->best != NULL && strcmp((const char *)name, similar->best) < 0;
-  if (distance > similar->distance || (distance == similar->distance && !earlier)) return;
-  similar->distance = distance;
-  similar->best = (const char *)name;
-}
-
+/* The nearest name, and of several the first in the alphabet. */
 const char *scope_similar_name(const struct Scope *scope, const char *name) {
-  struct Similar similar = {.wanted = name, .distance = strlen(name) > 3 ? 3 : 2};
-  xmlHashScan(scope->names, compare_name, &similar);
-  return similar.best;
+  size_t least = strlen(name) > 3 ? 3 : 2;
+  const char *best = NULL;
+  for (size_t i = 0; i < scope->names->capacity; i++) {
+    const char *known = scope->names->places[i].text;
+    size_t distance = known != NULL ? edit_distance(name, known) : NAME_LIMIT;
+    bool earlier = best != NULL && distance == least && strcmp(known, best) < 0;
+    if (distance > least || (distance == least && !earlier)) continue;
+    least = distance;
+    best = known;
+  }
+  return best;
 }
 
 bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second) {

@@ -2,16 +2,15 @@
 #ifndef SCOPE_H
 #define SCOPE_H
 
-#include <libxml/hash.h>
-
 #include "algebra/domain.h"
 #include "algebra/quantity.h"
 #include "diagnostics.h"
+#include "read/names.h"
 
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
-  xmlHashTablePtr names;            /* name -> struct Entry */
+  struct Names *names;              /* name -> struct Entry */
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */

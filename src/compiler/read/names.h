@@ -1,0 +1,31 @@
+/* A table of names: what each stands for is found in a time that does not grow with their number. */
+#ifndef NAMES_H
+#define NAMES_H
+
+#include <stddef.h>
+
+struct Name {
+  char *text; /* NULL where the place is empty */
+  void *meaning;
+};
+
+struct Names {
+  struct Name *places;
+  size_t capacity, count;
+};
+
+struct Names *names_create(void);
+
+/* Also frees what the names stand for, with free(). */
+void names_free(struct Names *names);
+
+/* What the name stands for; NULL where it is not in the table. */
+void *names_find(const struct Names *names, const char *text);
+
+/* Gives a name a meaning, which the table owns from now on; the one before is freed. */
+void names_set(struct Names *names, const char *text, void *meaning);
+
+/* Does nothing where the name is not in the table. */
+void names_remove(struct Names *names, const char *text);
+
+#endif
