@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "memory.h"
+#include "algebra/functions.h"
 #include "algebra/simplify.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000 };
@@ -296,38 +297,53 @@ static void check_function(struct Parser *parser, enum Operation operation, Node
 }
 
 static struct Quantity apply(struct Parser *parser, enum Operation operation, struct Quantity a, struct Quantity b) {
+  bool has_two = operation_arity(operation) == 2;
   struct Quantity result = {.node = function(parser->graph, operation, a.node, b.node),
                             .dimension = dimension_one,
-                            .literal = a.literal && (operation_arity(operation) == 1 || b.literal)};
+                            .literal = a.literal && (!has_two || b.literal)};
   check_function(parser, operation, a.node);
-  if (operation == ABSOLUTE) result.dimension = a.dimension;
-  else if (operation == MINIMUM || operation == MAXIMUM)
-    result.dimension = common_dimension(parser, a, b, operation_name(operation));
-  else if (operation == ATAN2) common_dimension(parser, a, b, "atan2");
-  else if (operation != SIGN) {
+  if (functions[operation].units == PURE_NUMBERS) {
     char *what = format_text("the argument of %s", operation_name(operation));
     require_dimensionless(parser, a, what);
+    if (has_two) require_dimensionless(parser, b, what);
     free(what);
+    return result;
   }
+  struct Dimension common = has_two ? common_dimension(parser, a, b, operation_name(operation)) : a.dimension;
+  if (functions[operation].units == UNIT_KEPT) result.dimension = common;
   return result;
+}
+
+/* The operation that the language calls by this name, OPERATION_COUNT for none. */
+static enum Operation find_function(const char *name) {
+  int operation = 0;
+  while (operation < OPERATION_COUNT &&
+         (functions[operation].is_internal || strcmp(name, functions[operation].name) != 0))
+    operation++;
+  return (enum Operation)operation;
+}
+
+static void report_unknown_function(struct Parser *parser, const char *name) {
+  char *names = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&names, &length);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) fprintf(file, "%s, ", functions[operation].name);
+  fclose(file);
+  FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
+  free(names);
 }
 
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
-  bool root = strcmp(name, "sqrt") == 0, raise = strcmp(name, "pow") == 0;
-  int operation = ATAN2;
-  while (operation < OPERATION_COUNT &&
-         (operation == LESS || strcmp(name, operation_name((enum Operation)operation)) != 0))
-    operation++;
-  if (operation == OPERATION_COUNT && !root && !raise) {
-    FAIL(parser,
-         "%s: unknown function '%s'; expected sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, "
-         "acosh, atanh, exp, log, sqrt, pow, abs, sign, min, max, der or sum",
-         parser->place.what, name);
+  bool is_root = strcmp(name, "sqrt") == 0;
+  enum Operation operation = is_root ? POWER : find_function(name);
+  if (operation == OPERATION_COUNT) {
+    report_unknown_function(parser, name);
     return nothing;
   }
-  int arity = root ? 1 : raise ? 2 : operation_arity((enum Operation)operation);
+  int arity = is_root ? 1 : operation_arity(operation);
   struct Quantity a = parse_sum(parser), b = nothing;
   if (arity == 2) {
     char *context = format_text("between the two arguments of %s", name);
@@ -339,8 +355,8 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   expect(parser, ')', context);
   free(context);
   if (parser->failed) return nothing;
-  if (root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
-  return root || raise ? raise_to(parser, a, b) : apply(parser, (enum Operation)operation, a, b);
+  if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
+  return operation == POWER ? raise_to(parser, a, b) : apply(parser, operation, a, b);
 }
 
 static struct Quantity parse_primary(struct Parser *parser) {
@@ -466,9 +482,9 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place) {
 }
 
 void define_language(struct Scope *scope) {
-  static const char *const functions[] = {"sqrt", "pow", "sum", "der"};
+  static const char *const others[] = {"sqrt", "sum", "der"};
   scope_set_number(scope, "pi", M_PI);
-  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) scope_set_number(scope, functions[i], NAN);
-  for (int operation = ATAN2; operation < OPERATION_COUNT; operation++)
-    if (operation != LESS) scope_set_number(scope, operation_name((enum Operation)operation), NAN);
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) scope_set_number(scope, others[i], NAN);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
 }
