@@ -8,6 +8,7 @@
 #include "memory.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/similar.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000 };
 
@@ -27,6 +28,9 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
 };
 
 static const struct Quantity nothing = {.node = ZERO};
+
+/* The functions of the language that are no operations of the graph. */
+static const char *const special_functions[] = {"sqrt", "der", "sum"};
 
 static struct Quantity parse_sum(struct Parser *parser);
 static struct Quantity parse_sign(struct Parser *parser);
@@ -187,7 +191,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     report_unknown_name(parser, name);
     return nothing;
   }
-  if (graph_is_constant(parser->graph, quantity->node) && isnan(graph_value(parser->graph, quantity->node)))
+  if (scope_is_reserved(parser->scope, quantity))
     FAIL(parser, "%s: '%s' is no variable; expected a parameter, coordinate, velocity, input, definition or time",
          parser->place.what, name);
   unsigned surplus = parser->graph->vertices[quantity->node].kinds & ~parser->place.kinds;
@@ -323,14 +327,29 @@ static enum Operation find_function(const char *name) {
   return (enum Operation)operation;
 }
 
-static void report_unknown_function(struct Parser *parser, const char *name) {
+/* Those of one argument first. */
+static char *function_names(void) {
   char *names = NULL;
   size_t length = 0;
   FILE *file = open_text(&names, &length);
-  for (int operation = 0; operation < OPERATION_COUNT; operation++)
-    if (!functions[operation].is_internal) fprintf(file, "%s, ", functions[operation].name);
+  for (int arity = 1; arity <= 2; arity++)
+    for (int operation = 0; operation < OPERATION_COUNT; operation++)
+      if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
+        fprintf(file, "%s, ", functions[operation].name);
   fclose(file);
-  FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
+  return names;
+}
+
+static void report_unknown_function(struct Parser *parser, const char *name) {
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
+    similar_consider(&similar, special_functions[i]);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
+  char *names = function_names();
+  if (similar.best != NULL)
+    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
+  else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
   free(names);
 }
 
@@ -482,9 +501,9 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place) {
 }
 
 void define_language(struct Scope *scope) {
-  static const char *const others[] = {"sqrt", "sum", "der"};
   scope_set_number(scope, "pi", M_PI);
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++) scope_set_number(scope, others[i], NAN);
+  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
+    scope_set_number(scope, special_functions[i], NAN);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
 }

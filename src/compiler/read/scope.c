@@ -1,10 +1,11 @@
 #include "read/scope.h"
 
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "algebra/differentiate.h"
 #include "memory.h"
+#include "read/similar.h"
 
 struct Entry {
   struct Quantity quantity;
@@ -71,46 +72,25 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name) {
   return entry == NULL ? NULL : &entry->quantity;
 }
 
-enum { NAME_LIMIT = 40 };
-
-/* Levenshtein's distance; names of NAME_LIMIT letters and more are never similar. */
-static size_t edit_distance(const char *a, const char *b) {
-  size_t n = strlen(b), row[NAME_LIMIT + 1];
-  if (n >= NAME_LIMIT || strlen(a) >= NAME_LIMIT) return NAME_LIMIT;
-  for (size_t j = 0; j <= n; j++) row[j] = j;
-  for (size_t i = 1; a[i - 1] != '\0'; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= n; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      row[j] = best;
-    }
-  }
-  return row[n];
+bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity) {
+  return graph_is_constant(scope->graph, quantity->node) && isnan(graph_value(scope->graph, quantity->node));
 }
 
-struct Similar {
-  const char *wanted, *best;
-  size_t distance;
+struct Search {
+  const struct Scope *scope;
+  struct Similar similar;
 };
 
-static void compare_name(void *entry, void *data, const xmlChar *name) {
-  struct Similar *similar = data;
-  (void)entry;
-  size_t distance = edit_distance(similar->wanted, (const char *)name);
-  bool earlier = similar->best != NULL && strcmp((const char *)name, similar->best) < 0;
-  if (distance > similar->distance || (distance == similar->distance && !earlier)) return;
-  similar->distance = distance;
-  similar->best = (const char *)name;
+static void consider_entry(void *entry, void *data, const xmlChar *name) {
+  struct Search *search = data;
+  const struct Entry *known = entry;
+  if (!scope_is_reserved(search->scope, &known->quantity)) similar_consider(&search->similar, (const char *)name);
 }
 
 const char *scope_similar_name(const struct Scope *scope, const char *name) {
-  struct Similar similar = {.wanted = name, .distance = strlen(name) > 3 ? 3 : 2};
-  xmlHashScan(scope->names, compare_name, &similar);
-  return similar.best;
+  struct Search search = {.scope = scope, .similar = {.wanted = name}};
+  xmlHashScan(scope->names, consider_entry, &search);
+  return search.similar.best;
 }
 
 bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second) {
