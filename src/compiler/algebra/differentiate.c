@@ -3,65 +3,18 @@
 #include <stdlib.h>
 
 #include "algebra/cone.h"
+#include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "memory.h"
 
-static Node one_minus_square(struct Graph *graph, Node x, double sign) {
-  return add(graph, ONE, scale(graph, sign, power_number(graph, x, 2.0)));
-}
-
 /* The partial derivatives of an operation with respect to its operands; right stays ZERO for one operand. */
 static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
-  const struct Vertex vertex = graph->vertices[node];
-  Node a = vertex.left, b = vertex.right;
+  const struct Function *row = &functions[graph->vertices[node].operation];
   *by_left = *by_right = ZERO;
-  switch (vertex.operation) {
-  case ADD: *by_left = *by_right = ONE; return;
-  case MULTIPLY:
-    *by_left = b;
-    *by_right = a;
-    return;
-  case POWER:
-    *by_left = multiply(graph, b, power(graph, a, subtract(graph, b, ONE)));
-    if (!graph_is_constant(graph, b)) *by_right = multiply(graph, function(graph, LOGARITHM, a, ZERO), node);
-    return;
-  case ATAN2: {
-    Node square = add(graph, power_number(graph, a, 2.0), power_number(graph, b, 2.0));
-    *by_left = divide(graph, b, square);
-    *by_right = negate(graph, divide(graph, a, square));
-    return;
-  }
-  case MINIMUM:
-    *by_right = function(graph, LESS, b, a);
-    *by_left = subtract(graph, ONE, *by_right);
-    return;
-  case MAXIMUM:
-    *by_right = function(graph, LESS, a, b);
-    *by_left = subtract(graph, ONE, *by_right);
-    return;
-  case SINE: *by_left = function(graph, COSINE, a, ZERO); return;
-  case COSINE: *by_left = negate(graph, function(graph, SINE, a, ZERO)); return;
-  case TANGENT: *by_left = one_minus_square(graph, node, 1.0); return;
-  case ARCSINE: *by_left = power_number(graph, one_minus_square(graph, a, -1.0), -0.5); return;
-  case ARCCOSINE: *by_left = negate(graph, power_number(graph, one_minus_square(graph, a, -1.0), -0.5)); return;
-  case ARCTANGENT: *by_left = power_number(graph, one_minus_square(graph, a, 1.0), -1.0); return;
-  case SINH: *by_left = function(graph, COSH, a, ZERO); return;
-  case COSH: *by_left = function(graph, SINH, a, ZERO); return;
-  case TANH: *by_left = one_minus_square(graph, node, -1.0); return;
-  case ARSINH: *by_left = power_number(graph, one_minus_square(graph, a, 1.0), -0.5); return;
-  case ARCOSH:
-    *by_left = power_number(graph, add(graph, power_number(graph, a, 2.0), graph_constant(graph, -1.0)), -0.5);
-    return;
-  case ARTANH: *by_left = power_number(graph, one_minus_square(graph, a, -1.0), -1.0); return;
-  case EXPONENTIAL: *by_left = node; return;
-  case LOGARITHM: *by_left = power_number(graph, a, -1.0); return;
-  case ABSOLUTE: *by_left = function(graph, SIGN, a, ZERO); return;
-  case LESS:
-  case SIGN:
-  case CONSTANT:
-  case SYMBOL:
-  case OPERATION_COUNT: return;
-  }
+  if (row->partial_derivatives != NULL) row->partial_derivatives(graph, node, by_left, by_right);
+  else if (row->recurrence == INTEGRAL) *by_left = scale(graph, row->sign, row->auxiliary(graph, node));
+  else if (row->recurrence == RATIO)
+    *by_left = scale(graph, row->sign, power_number(graph, row->auxiliary(graph, node), -1.0));
 }
 
 /*

@@ -4,35 +4,26 @@
 #include <string.h>
 
 #include "memory.h"
+#include "algebra/functions.h"
 
 bool domain_contains(enum Operation operation, double argument) {
-  switch (operation) {
-  case POWER: return argument >= 0;
-  case LOGARITHM: return argument > 0;
-  case ARCSINE:
-  case ARCCOSINE: return fabs(argument) <= 1;
-  case ARCOSH: return argument >= 1;
-  case ARTANH: return fabs(argument) < 1;
-  default: return true;
+  const struct Domain *domain = &functions[operation].domain;
+  switch (domain->kind) {
+  case EVERYWHERE: return true;
+  case CLOSED: return domain->low <= argument && argument <= domain->high;
+  case OPEN: return domain->low < argument && argument < domain->high;
   }
+  return true;
 }
 
 const char *domain_text(enum Operation operation) {
-  switch (operation) {
-  case POWER: return "that is not negative";
-  case LOGARITHM: return "that is positive";
-  case ARCSINE:
-  case ARCCOSINE: return "from -1 to 1";
-  case ARCOSH: return "of 1 or more";
-  case ARTANH: return "between -1 and 1";
-  case TANGENT: return "between its poles";
-  default: return "nearer to 0"; /* of what overflows */
-  }
+  const char *text = functions[operation].domain_text;
+  return text != NULL ? text : "nearer to 0"; /* of what overflows */
 }
 
 void require_domain(struct Requirements *requirements, const struct Graph *graph, enum Operation operation,
                     Node argument, long line) {
-  if (graph_is_constant(graph, argument) || domain_contains(operation, NAN)) return;
+  if (graph_is_constant(graph, argument) || functions[operation].domain.kind == EVERYWHERE) return;
   requirements->items = reallocate(requirements->items, requirements->count + 1, sizeof *requirements->items);
   requirements->items[requirements->count++] = (struct Requirement){operation, argument, line};
 }

@@ -6,64 +6,19 @@
 
 #include "algebra/cone.h"
 #include "memory.h"
-
-static const char *const names[OPERATION_COUNT] = {
-    [ATAN2] = "atan2",  [MINIMUM] = "min",     [MAXIMUM] = "max",       [LESS] = "less",         [SINE] = "sin",
-    [COSINE] = "cos",   [TANGENT] = "tan",     [ARCSINE] = "asin",      [ARCCOSINE] = "acos",    [ARCTANGENT] = "atan",
-    [SINH] = "sinh",    [COSH] = "cosh",       [TANH] = "tanh",         [ARSINH] = "asinh",      [ARCOSH] = "acosh",
-    [ARTANH] = "atanh", [EXPONENTIAL] = "exp", [LOGARITHM] = "log",     [ABSOLUTE] = "abs",      [SIGN] = "sign",
-    [POWER] = "pow",    [ADD] = "add",         [MULTIPLY] = "multiply", [CONSTANT] = "constant", [SYMBOL] = "symbol",
-};
+#include "algebra/functions.h"
 
 int operation_arity(enum Operation operation) {
-  if (operation <= SYMBOL) return 0;
-  return operation <= LESS ? 2 : 1;
+  return functions[operation].of_one != NULL ? 1 : functions[operation].of_two != NULL ? 2 : 0;
 }
 
 const char *operation_name(enum Operation operation) {
-  return names[operation];
-}
-
-/* sin and cos of whole quarter turns are exact, so that linearising about theta = pi leaves no rounding. */
-static double exact_sine(double angle, double quarter_turns) {
-  double turns = quarter_turns + nearbyint(angle / (M_PI / 2));
-  if (fabs(turns) < 1e6 && angle == (turns - quarter_turns) * (M_PI / 2)) {
-    static const double values[4] = {0.0, 1.0, 0.0, -1.0};
-    return values[(long)turns & 3];
-  }
-  return quarter_turns > 0 ? cos(angle) : sin(angle);
+  return functions[operation].name;
 }
 
 double operation_evaluate(enum Operation operation, double left, double right) {
-  switch (operation) {
-  case ADD: return left + right;
-  case MULTIPLY: return left * right;
-  case POWER: return pow(left, right);
-  case ATAN2: return atan2(left, right);
-  case MINIMUM: return fmin(left, right);
-  case MAXIMUM: return fmax(left, right);
-  case LESS: return left < right ? 1.0 : 0.0;
-  case SINE: return exact_sine(left, 0.0);
-  case COSINE: return exact_sine(left, 1.0);
-  case TANGENT: return exact_sine(left, 0.0) / exact_sine(left, 1.0);
-  case ARCSINE: return asin(left);
-  case ARCCOSINE: return acos(left);
-  case ARCTANGENT: return atan(left);
-  case SINH: return sinh(left);
-  case COSH: return cosh(left);
-  case TANH: return tanh(left);
-  case ARSINH: return asinh(left);
-  case ARCOSH: return acosh(left);
-  case ARTANH: return atanh(left);
-  case EXPONENTIAL: return exp(left);
-  case LOGARITHM: return log(left);
-  case ABSOLUTE: return fabs(left);
-  case SIGN: return (double)((left > 0.0) - (left < 0.0));
-  case CONSTANT:
-  case SYMBOL:
-  case OPERATION_COUNT: break;
-  }
-  return NAN;
+  const struct Function *row = &functions[operation];
+  return row->of_one != NULL ? row->of_one(left) : row->of_two != NULL ? row->of_two(left, right) : NAN;
 }
 
 struct Graph *graph_create(void) {

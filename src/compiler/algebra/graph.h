@@ -12,6 +12,7 @@
 
 typedef uint32_t Node;
 
+/* What a node does; functions.h knows what each of them is. */
 enum Operation {
   CONSTANT,
   SYMBOL,
@@ -107,7 +108,7 @@ double graph_value(const struct Graph *graph, Node node);
 /* How many operands an operation has: 0, 1 or 2. */
 int operation_arity(enum Operation operation);
 
-/* The name of a function of C's math library, or of this project's expression language. */
+/* Its name in formulas and messages. */
 const char *operation_name(enum Operation operation);
 
 /* The value of an operation on numbers. */

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "algebra/functions.h"
+
 static const struct Vertex *vertex_of(const struct Graph *graph, Node node) {
   return &graph->vertices[node];
 }
@@ -131,8 +133,7 @@ Node power_number(struct Graph *graph, Node base, double exponent) {
 static bool is_never_negative(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = vertex_of(graph, node);
   double n = vertex->operation == POWER ? numeric_exponent(graph, vertex) : NAN;
-  return vertex->operation == ABSOLUTE || vertex->operation == EXPONENTIAL || vertex->operation == COSH ||
-         fmod(n, 2.0) == 0.0 || (!isnan(n) && !is_whole(n));
+  return functions[vertex->operation].is_never_negative || fmod(n, 2.0) == 0.0 || (!isnan(n) && !is_whole(n));
 }
 
 /*
@@ -301,11 +302,6 @@ Node subtract(struct Graph *graph, Node left, Node right) {
   return add(graph, left, negate(graph, right));
 }
 
-static bool is_odd_function(enum Operation operation) {
-  return operation == SINE || operation == TANGENT || operation == ARCSINE || operation == ARCTANGENT ||
-         operation == SINH || operation == TANH || operation == ARSINH || operation == ARTANH || operation == SIGN;
-}
-
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right) {
   if (operation_arity(operation) == 1) right = ZERO;
   if (graph_is_constant(graph, left) && graph_is_constant(graph, right))
@@ -314,9 +310,9 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
   if (operation == ABSOLUTE && is_never_negative(graph, left)) return left;
   Node base;
   if (coefficient_of(graph, left, &base) < 0) {
-    if (is_odd_function(operation)) return negate(graph, graph_node(graph, operation, negate(graph, left), right));
-    if (operation == COSINE || operation == COSH || operation == ABSOLUTE)
-      return graph_node(graph, operation, negate(graph, left), right);
+    enum Parity parity = functions[operation].parity;
+    if (parity == ODD) return negate(graph, graph_node(graph, operation, negate(graph, left), right));
+    if (parity == EVEN) return graph_node(graph, operation, negate(graph, left), right);
   }
   return graph_node(graph, operation, left, right);
 }

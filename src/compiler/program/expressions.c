@@ -134,7 +134,8 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct Equations *equations = expressions->equations;
   struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
   append_nodes(&targets, expressions->along, equations->count);
-  if (expressions->equations->has_work) append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
+  if (expressions->equations->has_work)
+    append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
   if (expressions->jacobian != NULL) append_nodes(&targets, expressions->jacobian->value, expressions->jacobian->count);
   if (expressions->linear != NULL) {
     const struct LinearSystem *linear = expressions->linear;

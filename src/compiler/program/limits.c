@@ -2,7 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "algebra/functions.h"
 #include "memory.h"
 
 static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
@@ -116,41 +118,27 @@ static void check_power(struct CheckList *list, Node node) {
     append(list, (struct Check){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
 }
 
+static enum LimitRule rule_named(const char *name) {
+  int rule = 0;
+  while (strcmp(facts[rule].name, name) != 0) rule++;
+  return (enum LimitRule)rule;
+}
+
+/* What a rule of the table of functions says of an operand or of the auxiliary node. */
+static void check_by_rule(struct CheckList *list, const char *rule, Node row, const char *function) {
+  if (rule != NULL && can_have_row(list->builder, row))
+    append(list, (struct Check){.rule = rule_named(rule), .rows = {row}, .function = function, .share = NAN});
+}
+
 static void check_function(struct CheckList *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
-  Node auxiliary = builder->plan->auxiliary[node];
-  struct Check check = {.rows = {vertex->left}, .function = operation_name(vertex->operation), .share = NAN};
-  switch (vertex->operation) {
-  case EXPONENTIAL: check.rule = LIMIT_EXPONENTIAL; break;
-  case SINH:
-  case COSH: check.rule = LIMIT_HYPERBOLIC; break;
-  case LOGARITHM: check.rule = LIMIT_POSITIVE; break;
-  case ARCTANGENT:
-  case ARTANH:
-    check.rule = LIMIT_POSITIVE;
-    check.rows[0] = auxiliary;
-    break;
-  case ABSOLUTE:
-  case SIGN: check.rule = LIMIT_SIGN; break;
-  case MINIMUM:
-  case MAXIMUM:
-  case LESS:
-    check.rule = LIMIT_SIGN;
-    check.rows[0] = auxiliary;
-    break;
-  case TANH: check.rule = LIMIT_TANH; break;
-  case TANGENT: check.rule = LIMIT_TANGENT; break;
-  case ATAN2:
-    check.rule = LIMIT_POSITIVE;
-    check.rows[0] = auxiliary;
-    if (can_have_row(builder, auxiliary)) append(list, check);
-    if (!can_have_row(builder, vertex->left) || !can_have_row(builder, vertex->right)) return;
-    check = (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN};
-    break;
-  default: return;
-  }
-  if (can_have_row(builder, check.rows[0])) append(list, check);
+  const struct Function *function = &functions[vertex->operation];
+  check_by_rule(list, function->operand_limit, vertex->left, function->name);
+  check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], function->name);
+  bool is_angle =
+      function->recurrence == ANGLE && can_have_row(builder, vertex->left) && can_have_row(builder, vertex->right);
+  if (is_angle) append(list, (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
 }
 
 /* Where a power of the denominator itself is checked, its numerators do not matter. */

@@ -1,6 +1,7 @@
 /* Which recurrence of series.h gives the coefficients of a node. */
 #include <math.h>
 
+#include "algebra/functions.h"
 #include "program/series_builder.h"
 #include "program/values.h"
 
@@ -117,17 +118,9 @@ static void append_integral(struct SeriesBuilder *builder, Node node, double sig
 
 Node integrated_operand(const struct SeriesBuilder *builder, Node node) {
   const struct Vertex *vertex = &builder->graph->vertices[node];
-  switch (vertex->operation) {
-  case SINE:
-  case COSINE:
-  case SINH:
-  case COSH:
-  case TANGENT:
-  case TANH:
-  case EXPONENTIAL: return vertex->left;
-  case POWER: return is_constant_series(builder, vertex->right) ? ZERO : builder->plan->auxiliary[node];
-  default: return ZERO;
-  }
+  if (functions[vertex->operation].recurrence == INTEGRAL) return vertex->left;
+  bool is_integrated = vertex->operation == POWER && !is_constant_series(builder, vertex->right);
+  return is_integrated ? builder->plan->auxiliary[node] : ZERO;
 }
 
 bool is_integrated_power(const struct SeriesBuilder *builder, Node node) {
@@ -171,8 +164,8 @@ static void append_angle(struct SeriesBuilder *builder, Node node, Node y, Node 
  * The coefficients of the piece that is there first: that of the larger or of the smaller operand. Where their
  * difference is constant, both have the same.
  */
-static void append_choice(struct SeriesBuilder *builder, Node node, enum Opcode opcode, Node left, Node right,
-                          Node difference) {
+static void append_choice(struct SeriesBuilder *builder, Node node, Node left, Node right, Node difference) {
+  enum Opcode opcode = builder->graph->vertices[node].operation == MAXIMUM ? SERIES_LARGER : SERIES_SMALLER;
   Place result = series_coefficient(builder, node), first = series_coefficient(builder, left);
   if (is_constant_series(builder, difference)) append(builder, SERIES_COPY, result, first, 0, 0);
   else append(builder, opcode, result, series_row(builder, difference), first, series_coefficient(builder, right));
@@ -180,26 +173,18 @@ static void append_choice(struct SeriesBuilder *builder, Node node, enum Opcode 
 
 static void append_function(struct SeriesBuilder *builder, Node node) {
   const struct Vertex *vertex = &builder->graph->vertices[node];
+  const struct Function *function = &functions[vertex->operation];
   Node operand = vertex->left, auxiliary = builder->plan->auxiliary[node];
-  switch (vertex->operation) {
-  case COSINE: append_integral(builder, node, -1.0, operand, auxiliary); return;
-  case SINE:
-  case SINH:
-  case COSH:
-  case TANGENT:
-  case TANH: append_integral(builder, node, 1.0, operand, auxiliary); return;
-  case EXPONENTIAL: append_integral(builder, node, 1.0, operand, node); return;
-  case LOGARITHM: append_ratio_integral(builder, node, 1.0, ONE, operand, operand); return;
-  case ARCCOSINE: append_ratio_integral(builder, node, -1.0, ONE, operand, auxiliary); return;
-  case MINIMUM: append_choice(builder, node, SERIES_SMALLER, operand, vertex->right, auxiliary); return;
-  case MAXIMUM: append_choice(builder, node, SERIES_LARGER, operand, vertex->right, auxiliary); return;
-  case SIGN:
-  case LESS: append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0); return;
-  case ABSOLUTE:
+  switch (function->recurrence) {
+  case INTEGRAL: append_integral(builder, node, function->sign, operand, auxiliary); return;
+  case RATIO: append_ratio_integral(builder, node, function->sign, ONE, operand, auxiliary); return;
+  case ANGLE: append_angle(builder, node, operand, vertex->right, auxiliary); return;
+  case CHOICE: append_choice(builder, node, operand, vertex->right, auxiliary); return;
+  case REFLECTION:
     append(builder, SERIES_ABSOLUTE, series_coefficient(builder, node), series_row(builder, operand), 0, 0);
     return;
-  case ATAN2: append_angle(builder, node, operand, vertex->right, auxiliary); return;
-  default: append_ratio_integral(builder, node, 1.0, ONE, operand, auxiliary);
+  case PIECEWISE_CONSTANT: append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0); return;
+  case ARITHMETIC: return; /* no function */
   }
 }
 

@@ -1,63 +1,18 @@
 #include "program/series_plan.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "memory.h"
-#include "algebra/simplify.h"
+#include "algebra/functions.h"
 
 static void append(struct SeriesPlan *plan, Node node) {
   plan->targets = reallocate(plan->targets, plan->count + 1, sizeof *plan->targets);
   plan->targets[plan->count++] = node;
 }
 
-static Node square(struct Graph *graph, Node node) {
-  return graph_node(graph, POWER, node, graph_constant(graph, 2.0));
-}
-
-/* sign + factor * node^2 */
-static Node square_plus(struct Graph *graph, double sign, double factor, Node node) {
-  return add(graph, graph_constant(graph, sign), scale(graph, factor, square(graph, node)));
-}
-
-/*
- * Whole powers come from smaller ones, so that a base of 0 is no pole, and negative ones are quotients; variable
- * exponents go by exp and log.
- */
-static Node auxiliary_of_power(struct Graph *graph, const struct Vertex *vertex) {
-  if (!graph_is_constant_in_time(graph, vertex->right))
-    return multiply(graph, vertex->right, function(graph, LOGARITHM, vertex->left, ZERO));
-  double exponent = graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
-  if (exponent == -0.5 || (exponent == floor(exponent) && exponent < -1.0))
-    return graph_node(graph, POWER, vertex->left, graph_constant(graph, -exponent));
-  if (exponent != floor(exponent) || exponent < 3.0) return ZERO;
-  double lower = fmod(exponent, 2.0) == 0.0 ? exponent / 2.0 : exponent - 1.0;
-  return graph_node(graph, POWER, vertex->left, graph_constant(graph, lower));
-}
-
-/* With y for the node and x for its operand: y' = x' a, or x' / a for the inverse functions, and a is returned. */
 static Node auxiliary_of(struct Graph *graph, Node node) {
-  const struct Vertex vertex = graph->vertices[node];
-  switch (vertex.operation) {
-  case SINE: return graph_node(graph, COSINE, vertex.left, ZERO);
-  case COSINE: return graph_node(graph, SINE, vertex.left, ZERO);
-  case SINH: return graph_node(graph, COSH, vertex.left, ZERO);
-  case COSH: return graph_node(graph, SINH, vertex.left, ZERO);
-  case TANGENT: return square_plus(graph, 1.0, 1.0, node);
-  case TANH: return square_plus(graph, 1.0, -1.0, node);
-  case ARCSINE:
-  case ARCCOSINE: return power_number(graph, square_plus(graph, 1.0, -1.0, vertex.left), 0.5);
-  case ARCTANGENT: return square_plus(graph, 1.0, 1.0, vertex.left);
-  case ARSINH: return power_number(graph, square_plus(graph, 1.0, 1.0, vertex.left), 0.5);
-  case ARCOSH: return power_number(graph, square_plus(graph, -1.0, 1.0, vertex.left), 0.5);
-  case ARTANH: return square_plus(graph, 1.0, -1.0, vertex.left);
-  case ATAN2: return add(graph, square(graph, vertex.left), square(graph, vertex.right));
-  case POWER: return auxiliary_of_power(graph, &vertex);
-  case MINIMUM:
-  case MAXIMUM:
-  case LESS: return subtract(graph, vertex.left, vertex.right);
-  default: return ZERO;
-  }
+  const struct Function *row = &functions[graph->vertices[node].operation];
+  return row->auxiliary != NULL ? row->auxiliary(graph, node) : ZERO;
 }
 
 /*
@@ -66,21 +21,16 @@ static Node auxiliary_of(struct Graph *graph, Node node) {
  */
 static const char *kink_without_series(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = &graph->vertices[node];
-  enum Operation inner = operation_arity(vertex->operation) == 1 ? graph->vertices[vertex->left].operation : CONSTANT;
-  bool of_wave = inner == SINE || inner == COSINE;
-  switch (vertex->operation) {
-  case ARCSINE: return of_wave ? "asin of a sine" : NULL;
-  case ARCCOSINE: return of_wave ? "acos of a cosine" : NULL;
-  case ARCTANGENT: return inner == TANGENT ? "atan of a tangent" : NULL;
-  default: return NULL;
-  }
+  const struct Function *row = &functions[vertex->operation];
+  if (row->fold_name == NULL) return NULL;
+  enum Operation inner = graph->vertices[vertex->left].operation;
+  bool folds = operation_arity(inner) == 1 && (inner == row->folded[0] || inner == row->folded[1]);
+  return folds ? row->fold_name : NULL;
 }
 
 static const char *kink_at(const struct Graph *graph, Node node) {
-  enum Operation operation = graph->vertices[node].operation;
-  bool has_pieces =
-      operation == MINIMUM || operation == MAXIMUM || operation == ABSOLUTE || operation == SIGN || operation == LESS;
-  return has_pieces ? operation_name(operation) : kink_without_series(graph, node);
+  const struct Function *row = &functions[graph->vertices[node].operation];
+  return row->has_pieces ? row->name : kink_without_series(graph, node);
 }
 
 /* What `at` says of the first node below these that changes in time and of which it says something. */
@@ -132,7 +82,8 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
       if (!needed[node] || visited[node] || graph_is_constant_in_time(graph, node)) continue;
       visited[node] = grown = true;
       Node auxiliary = auxiliary_of(graph, node);
-      if (auxiliary != ZERO) append(plan, auxiliary);
+      bool is_known = auxiliary == ZERO || auxiliary == node || auxiliary == graph->vertices[node].left;
+      if (!is_known) append(plan, auxiliary);
     }
     free(needed);
   }

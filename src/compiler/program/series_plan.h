@@ -11,7 +11,7 @@
 struct SeriesPlan {
   Node *targets;
   size_t count;
-  Node *auxiliary; /* for each node of the graph, the node that its recurrence needs beside its operands; ZERO: none */
+  Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */
 };
 
 /*

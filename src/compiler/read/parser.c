@@ -6,19 +6,12 @@
 #include <string.h>
 
 #include "memory.h"
+#include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/quantities.h"
+#include "read/similar.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000 };
-
-struct Parser {
-  struct Scope *scope;
-  struct Graph *graph;
-  struct Place place;
-  const char *text, *next;
-  int nesting;
-  long repetitions; /* bodies of sum(...) parsed so far */
-  bool failed;
-};
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
@@ -27,21 +20,17 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
 
 static const struct Quantity nothing = {.node = ZERO};
 
+/* The functions of the language that are no operations of the graph. */
+static const char *const special_functions[] = {"sqrt", "der", "sum"};
+
 static struct Quantity parse_sum(struct Parser *parser);
 static struct Quantity parse_sign(struct Parser *parser);
 
-static long current_line(const struct Parser *parser) {
+long current_line(const struct Parser *parser) {
   long line = parser->place.line;
   for (const char *c = parser->text; c < parser->next; c++) line += *c == '\n';
   return line;
 }
-
-/* Reports the first error of an expression; later ones would only follow from it. */
-#define FAIL(parser, ...)                                                                                              \
-  do {                                                                                                                 \
-    if (!(parser)->failed) report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);              \
-    (parser)->failed = true;                                                                                           \
-  } while (0)
 
 /* Recursion is bounded here, so that no input exhausts the stack. */
 static void enter(struct Parser *parser) {
@@ -79,29 +68,6 @@ static void expect(struct Parser *parser, char c, const char *context) {
   FAIL(parser, "%s: expected '%c' %s, found %s", parser->place.what, c, context, found(parser, buffer));
 }
 
-static struct Quantity require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
-  if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return value;
-  char *unit = unit_text(value.dimension);
-  FAIL(parser, "%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what, unit);
-  free(unit);
-  return value;
-}
-
-/* The dimension of a sum, a minimum and the like, whose operands must agree. */
-static struct Dimension common_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
-                                         const char *where) {
-  if (a.literal) return b.dimension;
-  if (b.literal) return a.dimension;
-  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) {
-    char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
-    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
-         where);
-    free(first);
-    free(second);
-  }
-  return a.dimension.known ? a.dimension : b.dimension;
-}
-
 static struct Quantity parse_literal(struct Parser *parser) {
   char *end;
   if (parser->next[0] == '0' && (parser->next[1] == 'x' || parser->next[1] == 'X')) {
@@ -120,13 +86,6 @@ static struct Quantity parse_literal(struct Parser *parser) {
   return (struct Quantity){.node = graph_constant(parser->graph, value),
                            .dimension = pure ? dimension_one : dimension_unknown,
                            .literal = true};
-}
-
-/* Whether all numbers made of numbers since the expression began are finite. */
-static bool require_finite(struct Parser *parser, const char *what) {
-  if (parser->graph->not_finite)
-    FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->place.what, what);
-  return !parser->failed;
 }
 
 /* A whole number from an expression of compile-time numbers. */
@@ -186,7 +145,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     report_unknown_name(parser, name);
     return nothing;
   }
-  if (graph_is_constant(parser->graph, quantity->node) && isnan(graph_value(parser->graph, quantity->node)))
+  if (scope_is_reserved(parser->scope, quantity))
     FAIL(parser, "%s: '%s' is no variable; expected a parameter, coordinate, velocity, input, definition or time",
          parser->place.what, name);
   unsigned surplus = parser->graph->vertices[quantity->node].kinds & ~parser->place.kinds;
@@ -231,10 +190,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     scope_set_number(parser->scope, index, (double)i);
     struct Quantity term = parse_sum(parser);
     if (first > last) continue;
-    total.dimension = common_dimension(parser, total, term, "sum");
-    total.literal = total.literal && term.literal;
-    total.node = add(parser->graph, total.node, term.node);
-    require_finite(parser, "a sum");
+    total = quantity_add(parser, total, term);
   }
   scope_remove(parser->scope, index);
   free(index);
@@ -259,75 +215,51 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
 }
 
-/* A power or root of numbers that has a finite value, or of what may have one. */
-static void check_power(struct Parser *parser, Node base, Node exponent) {
-  const struct Graph *graph = parser->graph;
-  bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
-  double b = graph_value(graph, base), n = graph_value(graph, exponent);
-  if (base_given && exponent_given && graph->not_finite && n == 0.5)
-    FAIL(parser, "%s: sqrt(%g) is no real number; expected an argument %s", parser->place.what, b, domain_text(POWER));
-  else if (base_given && exponent_given && graph->not_finite)
-    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected another base or exponent", parser->place.what, b, n);
-  else if (base_given && !exponent_given && b <= 0)
-    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
-  require_finite(parser, "a power");
-  if (!exponent_given || n != floor(n))
-    require_domain(&parser->scope->requirements, graph, POWER, base, current_line(parser));
+/* The operation that the language calls by this name, OPERATION_COUNT for none. */
+static enum Operation find_function(const char *name) {
+  int operation = 0;
+  while (operation < OPERATION_COUNT &&
+         (functions[operation].is_internal || strcmp(name, functions[operation].name) != 0))
+    operation++;
+  return (enum Operation)operation;
 }
 
-static struct Quantity raise_to(struct Parser *parser, struct Quantity base, struct Quantity exponent) {
-  require_dimensionless(parser, exponent, "an exponent");
-  struct Quantity result = {.node = power(parser->graph, base.node, exponent.node),
-                            .dimension = dimension_unknown,
-                            .literal = base.literal && exponent.literal};
-  check_power(parser, base.node, exponent.node);
-  if (graph_is_constant(parser->graph, exponent.node))
-    result.dimension = dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
-  else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
-  return result;
+/* Those of one argument first. */
+static char *function_names(void) {
+  char *names = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&names, &length);
+  for (int arity = 1; arity <= 2; arity++)
+    for (int operation = 0; operation < OPERATION_COUNT; operation++)
+      if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
+        fprintf(file, "%s, ", functions[operation].name);
+  fclose(file);
+  return names;
 }
 
-/* A function of numbers must have a finite value; one of variables must have one where these are. */
-static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
-  if (parser->graph->not_finite)
-    FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
-         operation_name(operation), graph_value(parser->graph, argument), domain_text(operation));
-  require_domain(&parser->scope->requirements, parser->graph, operation, argument, current_line(parser));
-}
-
-static struct Quantity apply(struct Parser *parser, enum Operation operation, struct Quantity a, struct Quantity b) {
-  struct Quantity result = {.node = function(parser->graph, operation, a.node, b.node),
-                            .dimension = dimension_one,
-                            .literal = a.literal && (operation_arity(operation) == 1 || b.literal)};
-  check_function(parser, operation, a.node);
-  if (operation == ABSOLUTE) result.dimension = a.dimension;
-  else if (operation == MINIMUM || operation == MAXIMUM)
-    result.dimension = common_dimension(parser, a, b, operation_name(operation));
-  else if (operation == ATAN2) common_dimension(parser, a, b, "atan2");
-  else if (operation != SIGN) {
-    char *what = format_text("the argument of %s", operation_name(operation));
-    require_dimensionless(parser, a, what);
-    free(what);
-  }
-  return result;
+static void report_unknown_function(struct Parser *parser, const char *name) {
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
+    similar_consider(&similar, special_functions[i]);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
+  char *names = function_names();
+  if (similar.best != NULL)
+    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
+  else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
+  free(names);
 }
 
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
-  bool root = strcmp(name, "sqrt") == 0, raise = strcmp(name, "pow") == 0;
-  int operation = ATAN2;
-  while (operation < OPERATION_COUNT &&
-         (operation == LESS || strcmp(name, operation_name((enum Operation)operation)) != 0))
-    operation++;
-  if (operation == OPERATION_COUNT && !root && !raise) {
-    FAIL(parser,
-         "%s: unknown function '%s'; expected sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, "
-         "acosh, atanh, exp, log, sqrt, pow, abs, sign, min, max, der or sum",
-         parser->place.what, name);
+  bool is_root = strcmp(name, "sqrt") == 0;
+  enum Operation operation = is_root ? POWER : find_function(name);
+  if (operation == OPERATION_COUNT) {
+    report_unknown_function(parser, name);
     return nothing;
   }
-  int arity = root ? 1 : raise ? 2 : operation_arity((enum Operation)operation);
+  int arity = is_root ? 1 : operation_arity(operation);
   struct Quantity a = parse_sum(parser), b = nothing;
   if (arity == 2) {
     char *context = format_text("between the two arguments of %s", name);
@@ -339,8 +271,8 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   expect(parser, ')', context);
   free(context);
   if (parser->failed) return nothing;
-  if (root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
-  return root || raise ? raise_to(parser, a, b) : apply(parser, (enum Operation)operation, a, b);
+  if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
+  return operation == POWER ? quantity_power(parser, a, b) : quantity_function(parser, operation, a, b);
 }
 
 static struct Quantity parse_primary(struct Parser *parser) {
@@ -377,7 +309,7 @@ static struct Quantity parse_power(struct Parser *parser) {
   enter(parser);
   struct Quantity exponent = parser->failed ? nothing : parse_sign(parser);
   parser->nesting--;
-  return parser->failed ? nothing : raise_to(parser, base, exponent);
+  return parser->failed ? nothing : quantity_power(parser, base, exponent);
 }
 
 static struct Quantity parse_sign(struct Parser *parser) {
@@ -392,19 +324,11 @@ static struct Quantity parse_sign(struct Parser *parser) {
 static struct Quantity parse_term(struct Parser *parser) {
   struct Quantity value = parse_sign(parser);
   while (!parser->failed) {
-    bool division = false;
-    if (!accept(parser, '*')) {
-      if (!accept(parser, '/')) break;
-      division = true;
-    }
+    bool is_product = accept(parser, '*');
+    if (!is_product && !accept(parser, '/')) break;
     struct Quantity factor = parse_sign(parser);
     if (parser->failed) break;
-    if (division && factor.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
-    value.node =
-        division ? divide(parser->graph, value.node, factor.node) : multiply(parser->graph, value.node, factor.node);
-    if (!require_finite(parser, division ? "a quotient" : "a product")) break;
-    value.dimension = dimension_multiply(value.dimension, factor.dimension, division ? -1.0 : 1.0);
-    value.literal = value.literal && factor.literal;
+    value = (is_product ? quantity_multiply : quantity_divide)(parser, value, factor);
   }
   return value;
 }
@@ -414,17 +338,11 @@ static struct Quantity parse_sum(struct Parser *parser) {
   if (parser->failed) return nothing;
   struct Quantity value = parse_term(parser);
   while (!parser->failed) {
-    bool minus = false;
-    if (!accept(parser, '+')) {
-      if (!accept(parser, '-')) break;
-      minus = true;
-    }
+    bool is_plus = accept(parser, '+');
+    if (!is_plus && !accept(parser, '-')) break;
     struct Quantity term = parse_term(parser);
     if (parser->failed) break;
-    value.dimension = common_dimension(parser, value, term, "sum");
-    value.literal = value.literal && term.literal;
-    value.node = (minus ? subtract : add)(parser->graph, value.node, term.node);
-    if (!require_finite(parser, "a sum")) break;
+    value = (is_plus ? quantity_add : quantity_subtract)(parser, value, term);
   }
   parser->nesting--;
   return value;
@@ -466,9 +384,9 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place) {
 }
 
 void define_language(struct Scope *scope) {
-  static const char *const functions[] = {"sqrt", "pow", "sum", "der"};
   scope_set_number(scope, "pi", M_PI);
-  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) scope_set_number(scope, functions[i], NAN);
-  for (int operation = ATAN2; operation < OPERATION_COUNT; operation++)
-    if (operation != LESS) scope_set_number(scope, operation_name((enum Operation)operation), NAN);
+  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
+    scope_set_number(scope, special_functions[i], NAN);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
 }

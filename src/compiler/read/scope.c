@@ -1,10 +1,11 @@
 #include "read/scope.h"
 
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "algebra/differentiate.h"
 #include "memory.h"
+#include "read/similar.h"
 
 struct Entry {
   struct Quantity quantity;
@@ -66,40 +67,17 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name) {
   return entry == NULL ? NULL : &entry->quantity;
 }
 
-enum { NAME_LIMIT = 40 };
-
-/* Levenshtein's distance; names of NAME_LIMIT letters and more are never similar. */
-static size_t edit_distance(const char *a, const char *b) {
-  size_t n = strlen(b), row[NAME_LIMIT + 1];
-  if (n >= NAME_LIMIT || strlen(a) >= NAME_LIMIT) return NAME_LIMIT;
-  for (size_t j = 0; j <= n; j++) row[j] = j;
-  for (size_t i = 1; a[i - 1] != '\0'; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= n; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      row[j] = best;
-    }
-  }
-  return row[n];
+bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity) {
+  return graph_is_constant(scope->graph, quantity->node) && isnan(graph_value(scope->graph, quantity->node));
 }
 
-/* The nearest name, and of several the first in the alphabet. */
 const char *scope_similar_name(const struct Scope *scope, const char *name) {
-  size_t least = strlen(name) > 3 ? 3 : 2;
-  const char *best = NULL;
+  struct Similar similar = {.wanted = name};
   for (size_t i = 0; i < scope->names->capacity; i++) {
     const char *known = scope->names->places[i].text;
-    size_t distance = known != NULL ? edit_distance(name, known) : NAME_LIMIT;
-    bool earlier = best != NULL && distance == least && strcmp(known, best) < 0;
-    if (distance > least || (distance == least && !earlier)) continue;
-    least = distance;
-    best = known;
+    if (known != NULL && !scope_is_reserved(scope, scope_find(scope, known))) similar_consider(&similar, known);
   }
-  return best;
+  return similar.best;
 }
 
 bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second) {

@@ -29,7 +29,10 @@ void scope_remove(struct Scope *scope, const char *name);
 /* NULL where the name is unknown. */
 const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 
-/* A known name that differs from this one by at most two letters, or NULL. */
+/* Whether a known name is a word of the language that has no value, such as that of a function. */
+bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity);
+
+/* The name of a value that was meant by an unknown one, or NULL; see similar.h. */
 const char *scope_similar_name(const struct Scope *scope, const char *name);
 
 /* Whether two quantities may be added; always true where units are not checked. */

@@ -1,5 +1,6 @@
 #include "write/instruction_text.h"
 
+#include "algebra/functions.h"
 #include "write/c_text.h"
 
 /* The names of arrays; the other spaces are no arrays, or two. */
@@ -36,15 +37,6 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
   if (space >= SPACE_ROW) fputs(elements[role], file);
 }
 
-const char *c_function_name(enum Operation function) {
-  switch (function) {
-  case ABSOLUTE: return "fabs";
-  case MINIMUM: return "fmin";
-  case MAXIMUM: return "fmax";
-  default: return operation_name(function);
-  }
-}
-
 /* The statement of opcode_facts() with its operands. */
 static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
                              const char *target) {
@@ -55,7 +47,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
       continue;
     }
     text++;
-    if (*text == 'f') fputs(c_function_name(instruction->function), file);
+    if (*text == 'f') fputs(functions[instruction->function].c_name, file);
     else if (*text == '0' && facts->result == NUMBER) fprintf(file, "%u", instruction->result);
     else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
     else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);

@@ -12,7 +12,4 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
 /* The statements of a routine; without a target, values for it are returned. */
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target);
 
-/* The name of a function in C. */
-const char *c_function_name(enum Operation function);
-
 #endif

@@ -2,7 +2,7 @@
 #ifndef STATEMENTS_H
 #define STATEMENTS_H
 
-#include "write/functions.h"
+#include "write/function_text.h"
 
 /* Names for what the routine reads of the point and the direction. */
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/functions.h"
 #include "memory.h"
 #include "write/c_text.h"
 #include "write/instruction_text.h"
@@ -19,7 +20,8 @@ static void note(struct TableContext *context, const struct Routine *routine) {
     const struct Instruction *instruction = &routine->instructions[i];
     if (instruction->opcode == CALL || instruction->opcode == CALL_OF_TWO) context->function[instruction->function] = 1;
     for (int j = 0; j < opcode_arity(instruction->opcode); j++)
-      if (space_of(instruction->operands[j]) == SPACE_NUMBER) add_number(context, index_in(instruction->operands[j]));
+      if (space_of(instruction->operands[j]) == SPACE_NUMBER)
+        add_number(context, (Node)index_in(instruction->operands[j]));
   }
 }
 
@@ -30,7 +32,7 @@ static void note_series(struct TableContext *context, const struct SeriesProgram
   for (size_t i = 0; i < series->limit.count; i++) {
     const struct LimitCheck *check = &series->limit.items[i];
     if (limit_facts(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
-      add_number(context, index_in(check->exponent));
+      add_number(context, (Node)index_in(check->exponent));
   }
 }
 
@@ -64,7 +66,7 @@ static void write_functions(FILE *file, const struct TableContext *context, int 
   fprintf(file, "static double (*const %s[])(%s) = {", name, type);
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
     if (context->function[function] > 0 && operation_arity(function) == arity)
-      fprintf(file, "%s, ", c_function_name(function));
+      fprintf(file, "%s, ", functions[function].c_name);
   fputs("NULL};\n", file);
 }
 

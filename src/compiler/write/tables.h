@@ -2,7 +2,7 @@
 #ifndef TABLES_H
 #define TABLES_H
 
-#include "write/functions.h"
+#include "write/function_text.h"
 
 /* What the tables of a program refer to. */
 struct TableContext {

@@ -1,6 +1,6 @@
 /* The functions of the generated code, which both writers write. */
-#ifndef FUNCTIONS_H
-#define FUNCTIONS_H
+#ifndef FUNCTION_TEXT_H
+#define FUNCTION_TEXT_H
 
 #include <stdio.h>
 

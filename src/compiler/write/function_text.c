@@ -1,4 +1,4 @@
-#include "write/functions.h"
+#include "write/function_text.h"
 
 const struct FunctionText prepare_text = {"What depends on parameters alone",
                                           "prepare",

@@ -1,0 +1,27 @@
+/* What the files that read expressions share. */
+#ifndef PARSER_STATE_H
+#define PARSER_STATE_H
+
+#include "read/parser.h"
+
+struct Parser {
+  struct Scope *scope;
+  struct Graph *graph;
+  struct Place place;
+  const char *text, *next;
+  int nesting;
+  long repetitions; /* bodies of sum(...) parsed so far */
+  bool failed;
+};
+
+/* The line of the reading position. */
+long current_line(const struct Parser *parser);
+
+/* Reports the first error of an expression; later ones would only follow from it. */
+#define FAIL(parser, ...)                                                                                              \
+  do {                                                                                                                 \
+    if (!(parser)->failed) report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);              \
+    (parser)->failed = true;                                                                                           \
+  } while (0)
+
+#endif
