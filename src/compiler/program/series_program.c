@@ -88,31 +88,34 @@ static Place acceleration_row(size_t coordinate) {
   return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
-/* side -= the coefficient k of M_ij a_j, without the part M_0 a_k */
-static void append_rest(struct SeriesBuilder *builder, Place side, Node mass, size_t coordinate) {
-  routine_append(builder->order, SERIES_REST, side, side, series_row(builder, mass), acceleration_row(coordinate));
+/* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
+static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, size_t coordinate) {
+  Place rest = place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+  routine_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
+  return rest;
 }
 
 /* M_0 a_k = b_k - sum over l of M_l a_(k-l) in each large block. */
 static void append_block(struct SeriesBuilder *builder, const struct Equations *equations,
                          const struct LoopedBlock *looped, size_t number) {
   const struct InertiaBlock *block = looped->block;
-  for (size_t i = 0; i < block->count; i++)
-    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i),
-                   series_coefficient(builder, equations->right_side[block->coordinates[i]]), 0, 0);
+  Place *sum = allocate(block->count, sizeof *sum);
   for (size_t i = 0; i < block->count; i++) {
+    sum[i] = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
     for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
       size_t j = block->column[e];
       if (is_constant_series(builder, block->mass[e])) continue;
-      append_rest(builder, place_in(SPACE_SIDE, looped->first_side + i), block->mass[e], block->coordinates[j]);
-      if (i != j)
-        append_rest(builder, place_in(SPACE_SIDE, looped->first_side + j), block->mass[e], block->coordinates[i]);
+      sum[i] = append_rest(builder, sum[i], block->mass[e], block->coordinates[j]);
+      if (i != j) sum[j] = append_rest(builder, sum[j], block->mass[e], block->coordinates[i]);
     }
   }
+  for (size_t i = 0; i < block->count; i++)
+    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum[i], 0, 0);
   routine_append(builder->order, SERIES_SOLVE, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  free(sum);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Place derivative) {

@@ -29,7 +29,7 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
   case SPACE_SEED_STATE: write_state(file, program, "d", index); return;
   case SPACE_TIME: fputs("point->time", file); return;
   case SPACE_SEED_TIME: fputs("seed->time", file); return;
-  case SPACE_LOCAL: fprintf(file, "t%zu", index); return;
+  case SPACE_LOCAL: fprintf(file, role == COEFFICIENT ? "s%zu" : "t%zu", index); return;
   case SPACE_TARGET: fprintf(file, "%s[%zu]", target, index); return;
   case SPACE_TIME_ROW: fputs("time", file); break;
   default: fprintf(file, "%s[%zu]", arrays[space], index); break;
