@@ -125,6 +125,8 @@ CASES = [
     ("work without forces", 9, "<work/>", 9, "<work/> without forces"),
     ("series of a function with a kink", 11,
      '<force coordinate="theta">tau*asin(sin(theta))</force><solver method="taylor"/>', 11, "asin of a sine has a kink.*expected the method 'erk'"),
+    ("series of another function with a kink", 11,
+     '<force coordinate="theta">tau*acosh(cosh(theta))</force><solver method="taylor"/>', 11, "acosh of a cosh has a kink"),
     ("exact for a nonlinear system", 11, '<solver method="exact"/>', 11, "not linear.*another method than 'exact'"),
     ("index that is no number", 7, '<for index="i" from="1" to="n"></for>', 7, "unknown name 'n'"),
     ("index that is half", 7, '<for index="i" from="1" to="1.5"></for>', 7, "expected whole numbers"),
