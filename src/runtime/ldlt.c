@@ -53,12 +53,19 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *
   return 0;
 }
 
-static void solve_full(size_t n, const double *m, double *x) {
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < i; k++) x[i] -= m[i * (i + 1) / 2 + k] * x[k];
+static void solve_full(size_t n, const double *restrict m, double *restrict x) {
+  const double *row = m;
+  for (size_t i = 0; i < n; row += ++i) {
+    double rest = x[i];
+    for (size_t k = 0; k < i; k++) rest -= row[k] * x[k];
+    x[i] = rest;
+  }
   for (size_t i = 0; i < n; i++) x[i] /= m[i * (i + 1) / 2 + i];
-  for (size_t i = n; i-- > 0;)
-    for (size_t k = 0; k < i; k++) x[k] -= m[i * (i + 1) / 2 + k] * x[i];
+  for (size_t i = n; i-- > 0;) {
+    const double known = x[i];
+    row -= i + 1;
+    for (size_t k = 0; k < i; k++) x[k] -= row[k] * known;
+  }
 }
 
 void ldlt_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x) {

@@ -88,6 +88,42 @@ static Place acceleration_row(size_t coordinate) {
   return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
+/* The elements of each whole row of a block that change in time: row i has start[i] .. start[i + 1] - 1. */
+struct WholeRows {
+  size_t *start, *column;
+  Node *mass;
+};
+
+static struct WholeRows whole_rows_create(const struct SeriesBuilder *builder, const struct InertiaBlock *block) {
+  size_t count = block->count, elements = block->start[count];
+  struct WholeRows rows = {allocate(count + 1, sizeof(size_t)), allocate(2 * elements, sizeof(size_t)),
+                           allocate(2 * elements, sizeof(Node))};
+  size_t *next = allocate(count + 1, sizeof *next);
+  for (int filling = 0; filling <= 1; filling++) {
+    for (size_t i = 0; i < count; i++) {
+      for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
+        const size_t ends[] = {i, block->column[e]};
+        for (int end = 0; end < (ends[0] == ends[1] ? 1 : 2) && !is_constant_series(builder, block->mass[e]); end++) {
+          size_t place = next[ends[end]]++;
+          if (!filling) continue;
+          rows.column[place] = ends[1 - end];
+          rows.mass[place] = block->mass[e];
+        }
+      }
+    }
+    for (size_t i = 0; i < count && !filling; i++) rows.start[i + 1] = rows.start[i] + next[i];
+    for (size_t i = 0; i < count; i++) next[i] = rows.start[i];
+  }
+  free(next);
+  return rows;
+}
+
+static void whole_rows_free(struct WholeRows *rows) {
+  free(rows->start);
+  free(rows->column);
+  free(rows->mass);
+}
+
 /* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
 static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, size_t coordinate) {
   Place rest = place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
@@ -99,23 +135,18 @@ static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, si
 static void append_block(struct SeriesBuilder *builder, const struct Equations *equations,
                          const struct LoopedBlock *looped, size_t number) {
   const struct InertiaBlock *block = looped->block;
-  Place *sum = allocate(block->count, sizeof *sum);
+  struct WholeRows rows = whole_rows_create(builder, block);
   for (size_t i = 0; i < block->count; i++) {
-    sum[i] = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
-    for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
-      size_t j = block->column[e];
-      if (is_constant_series(builder, block->mass[e])) continue;
-      sum[i] = append_rest(builder, sum[i], block->mass[e], block->coordinates[j]);
-      if (i != j) sum[j] = append_rest(builder, sum[j], block->mass[e], block->coordinates[i]);
-    }
+    Place sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
+    for (size_t e = rows.start[i]; e < rows.start[i + 1]; e++)
+      sum = append_rest(builder, sum, rows.mass[e], block->coordinates[rows.column[e]]);
+    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
   }
-  for (size_t i = 0; i < block->count; i++)
-    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum[i], 0, 0);
   routine_append(builder->order, SERIES_SOLVE, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-  free(sum);
+  whole_rows_free(&rows);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Place derivative) {
