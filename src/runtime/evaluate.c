@@ -40,7 +40,8 @@ struct Point evaluate_point(const struct Instance *instance) {
                         .state = instance->state,
                         .input = instance->input,
                         .parameter = instance->parameter,
-                        .prepared = instance->prepared};
+                        .prepared = instance->prepared,
+                        .work = instance->point_work};
 }
 
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {

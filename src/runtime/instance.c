@@ -65,11 +65,12 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
   instance->saved = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
   instance->prepared = evaluation;
-  instance->work = evaluation + lagrangian.prepared_count;
+  instance->point_work = evaluation + lagrangian.prepared_count;
+  instance->work = instance->point_work + lagrangian.work_count;
 }
 
 static size_t evaluation_count(void) {
-  return lagrangian.prepared_count + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+  return lagrangian.prepared_count + lagrangian.work_count + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
          lagrangian.parameter_count + 1;
 }
 

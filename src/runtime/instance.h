@@ -43,6 +43,7 @@ struct Instance {
   bool prepared_is_stale;
   bool solver_is_stale; /* the situation was replaced: what the solver keeps outside of it no longer counts */
   int singular;         /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  double *point_work;   /* lagrangian.work_count, for generated functions */
   double *work;         /* 3 state_count + 2 input_count + parameter_count, for evaluations */
   void *solver_memory;
 };
