@@ -2,9 +2,9 @@
  * The instructions that a system's equations become. lagc writes those of small systems as C statements, and those of
  * large ones as tables of numbers, which instructions.c carries out.
  *
- * A table is a sequence of runs: an opcode, how many instructions of it follow, and the operands of each of them, its
- * result first. CALL and CALL_OF_TWO have the function's place in the tables after their count. A run with the opcode
- * END is the last. An operand is a place: a space and an index in it; in rows of coefficients the index counts numbers.
+ * A table is a sequence of runs: an opcode, how many instructions of it follow, the spaces that their operands are in, in
+ * CALL and CALL_OF_TWO the function's place in the tables, and then the operands of each instruction, its result first.
+ * A run with the opcode END is the last. An operand is an index in its space; in rows it counts coefficients.
  */
 #ifndef INSTRUCTIONS_H
 #define INSTRUCTIONS_H
@@ -39,9 +39,10 @@ enum Space {
   SPACE_COUNT
 };
 
-enum { PLACE_BITS = 27 };
-
+/* A space and an index in it. */
 typedef uint32_t Place;
+
+enum { PLACE_BITS = 27, SPACE_BITS = 5 }; /* of the index; of each space of a run, the result's in the lowest bits */
 
 /*
  * r is the result, a, b and c are the operands. Values are numbers; in instructions for series, k is the order, a_k a

@@ -47,25 +47,29 @@ static void solve(const struct Frame *frame, size_t number) {
              frame->base[SPACE_SIDE] + block->first_side);
 }
 
-/* The instructions of a run, with r, a, b and c for the result and the operands. */
+enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
+
+/* The instructions of a run; R, A, B and C are the result and the operands. */
 #define EACH(size, statement)                                                                                          \
   for (; count > 0; count--, code += (size)) statement;                                                                \
   break
 
-#define R *at(base, code[0])
-#define A *at(base, code[1])
-#define B *at(base, code[2])
+#define R r[code[0]]
+#define A a[code[1]]
+#define B b[code[2]]
 
 int instructions_run(const struct Frame *frame, const uint32_t *code) {
   double *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
-    uint32_t count = code[1];
-    code += 2;
+    uint32_t count = code[1], spaces = code[2];
+    double *r = base[spaces & SPACE_MASK];
+    const double *a = base[spaces >> SPACE_BITS & SPACE_MASK], *b = base[spaces >> 2 * SPACE_BITS & SPACE_MASK];
+    code += 3;
     switch (opcode) {
     case COPY: EACH(2, R = A);
-    case FIRST_SLOPE: EACH(2, R = at(base, code[1])[1]);
+    case FIRST_SLOPE: EACH(2, R = (&A)[1]);
     case SUM: EACH(3, R = A + B);
     case DIFFERENCE: EACH(3, R = A - B);
     case PRODUCT: EACH(3, R = A * B);
@@ -110,25 +114,63 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
 #undef B
 
 /* Coefficients k, and whole rows. */
-#define R *at(newest, code[0])
-#define A *at(newest, code[1])
-#define B *at(newest, code[2])
-#define C *at(newest, code[3])
-#define ROW_R at(base, code[0])
-#define ROW_A at(base, code[1])
-#define ROW_B at(base, code[2])
-#define ROW_C at(base, code[3])
+#define R r[code[0]]
+#define A a[code[1]]
+#define B b[code[2]]
+#define C c[code[3]]
+#define ROW_R (row_r + code[0])
+#define ROW_A (row_a + code[1])
+#define ROW_B (row_b + code[2])
+#define ROW_C (row_c + code[3])
+
+/* With code of its own for each order. */
+#define EACH_OF_ORDER(size, order, statement)                                                                          \
+  case order: {                                                                                                        \
+    enum { K = order };                                                                                                \
+    for (; count > 0; count--, code += (size)) statement;                                                              \
+    break;                                                                                                             \
+  }
+#define EACH_UNROLLED(size, statement)                                                                                 \
+  switch (k) {                                                                                                         \
+    EACH_OF_ORDER(size, 1, statement)                                                                                  \
+    EACH_OF_ORDER(size, 2, statement)                                                                                  \
+    EACH_OF_ORDER(size, 3, statement)                                                                                  \
+    EACH_OF_ORDER(size, 4, statement)                                                                                  \
+    EACH_OF_ORDER(size, 5, statement)                                                                                  \
+    EACH_OF_ORDER(size, 6, statement)                                                                                  \
+    EACH_OF_ORDER(size, 7, statement)                                                                                  \
+    EACH_OF_ORDER(size, 8, statement)                                                                                  \
+    EACH_OF_ORDER(size, 9, statement)                                                                                  \
+    EACH_OF_ORDER(size, 10, statement)                                                                                 \
+    EACH_OF_ORDER(size, 11, statement)                                                                                 \
+    EACH_OF_ORDER(size, 12, statement)                                                                                 \
+    EACH_OF_ORDER(size, 13, statement)                                                                                 \
+    EACH_OF_ORDER(size, 14, statement)                                                                                 \
+    EACH_OF_ORDER(size, 15, statement)                                                                                 \
+    EACH_OF_ORDER(size, 16, statement)                                                                                 \
+    EACH_OF_ORDER(size, 17, statement)                                                                                 \
+    EACH_OF_ORDER(size, 18, statement)                                                                                 \
+    EACH_OF_ORDER(size, 19, statement)                                                                                 \
+    EACH_OF_ORDER(size, 20, statement)                                                                                 \
+    EACH_OF_ORDER(size, 21, statement)                                                                                 \
+    EACH_OF_ORDER(size, 22, statement)                                                                                 \
+  default: break;                                                                                                      \
+  }                                                                                                                    \
+  break
 
 void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k) {
   double *const *base = frame->base;
-  double *newest[SPACE_COUNT];
-  for (int space = 0; space < SPACE_COUNT; space++)
-    newest[space] = space >= SPACE_ROW && base[space] != NULL ? base[space] + k : base[space];
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
-    uint32_t count = code[1];
-    code += 2;
+    uint32_t count = code[1], spaces = code[2];
+    const uint32_t space_r = spaces & SPACE_MASK, space_a = spaces >> SPACE_BITS & SPACE_MASK;
+    const uint32_t space_b = spaces >> 2 * SPACE_BITS & SPACE_MASK, space_c = spaces >> 3 * SPACE_BITS & SPACE_MASK;
+    double *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);
+    const double *const row_a = base[space_a], *const a = row_a + (space_a >= SPACE_ROW ? k : 0);
+    const double *const row_b = base[space_b], *const b = row_b + (space_b >= SPACE_ROW ? k : 0);
+    const double *const row_c = base[space_c], *const c = row_c + (space_c >= SPACE_ROW ? k : 0);
+    code += 3;
     switch (opcode) {
     case SERIES_COPY: EACH(2, R = A);
     case SERIES_ZERO: EACH(1, R = 0.0);
@@ -137,24 +179,24 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_NEGATION: EACH(2, R = -A);
     case SERIES_MULTIPLE: EACH(3, R = *ROW_A * B);
     case SERIES_SHARE: EACH(3, R = A / *ROW_B);
-    case SERIES_PRODUCT: EACH(3, R = series_product(k, ROW_A, ROW_B));
-    case SERIES_SQUARE: EACH(2, R = series_square(k, ROW_A));
+    case SERIES_PRODUCT: EACH_UNROLLED(3, R = series_product(K, ROW_A, ROW_B));
+    case SERIES_SQUARE: EACH_UNROLLED(2, R = series_square(K, ROW_A));
     case SERIES_QUOTIENT: EACH(4, R = series_quotient(k, A, *ROW_C, ROW_B, ROW_R));
     case SERIES_ROOT: EACH(2, R = series_root(k, ROW_A, ROW_R));
     case SERIES_POWER: EACH(3, R = series_power(k, *ROW_B, ROW_A, ROW_R));
-    case SERIES_RATE: EACH(2, at(newest, code[0])[-1] = k * A);
-    case SERIES_INTEGRAL: EACH(3, R = series_integral(k, ROW_A, ROW_B));
-    case SERIES_NEGATIVE_INTEGRAL: EACH(3, R = -series_integral(k, ROW_A, ROW_B));
+    case SERIES_RATE: EACH(2, (&R)[-1] = k * A);
+    case SERIES_INTEGRAL: EACH_UNROLLED(3, R = series_integral(K, ROW_A, ROW_B));
+    case SERIES_NEGATIVE_INTEGRAL: EACH_UNROLLED(3, R = -series_integral(K, ROW_A, ROW_B));
     case SERIES_RATIO_INTEGRAL: EACH(3, R = series_ratio_integral(k, A, ROW_B, ROW_R));
     case SERIES_AREA: EACH(3, R = series_area(k, ROW_A, ROW_B));
     case SERIES_ANGLE: EACH(4, R = series_angle(k, ROW_A, ROW_B, ROW_C, ROW_R));
     case SERIES_ABSOLUTE: EACH(2, R = series_absolute(k, ROW_A));
     case SERIES_LARGER: EACH(4, R = series_sign(k, ROW_A) > 0.0 ? B : C);
     case SERIES_SMALLER: EACH(4, R = series_sign(k, ROW_A) < 0.0 ? B : C);
-    case SERIES_REST: EACH(4, R = A - series_rest(k, ROW_B, ROW_C));
+    case SERIES_REST: EACH_UNROLLED(4, R = A - series_rest(K, ROW_B, ROW_C));
     case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
-    case SERIES_STATE: EACH(2, at(newest, code[0])[1] = A * (1.0 / (k + 1)));
-    case SERIES_SLOPE: EACH(2, R = (k + 1) * at(newest, code[1])[1]);
+    case SERIES_STATE: EACH(2, (&R)[1] = A * (1.0 / (k + 1)));
+    case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
     default: return; /* lagc writes no other */
     }
   }

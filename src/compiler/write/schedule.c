@@ -88,6 +88,7 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
 
 struct Turn {
   size_t level, number;
+  uint32_t spaces;
   const struct Instruction *instruction;
 };
 
@@ -97,7 +98,15 @@ static int compare(const void *first, const void *second) {
   if (a->instruction->opcode != b->instruction->opcode) return a->instruction->opcode < b->instruction->opcode ? -1 : 1;
   if (a->instruction->function != b->instruction->function)
     return a->instruction->function < b->instruction->function ? -1 : 1;
+  if (a->spaces != b->spaces) return a->spaces < b->spaces ? -1 : 1;
   return (a->number > b->number) - (a->number < b->number);
+}
+
+uint32_t spaces_of(const struct Instruction *instruction) {
+  uint32_t spaces = has_result(opcode_facts(instruction->opcode)) ? space_of(instruction->result) : 0;
+  for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+    spaces |= (uint32_t)space_of(instruction->operands[j]) << (j + 1) * SPACE_BITS;
+  return spaces;
 }
 
 size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
@@ -106,7 +115,7 @@ size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks
   size_t *order = allocate(routine->count, sizeof *order);
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
-    turns[i] = (struct Turn){level_of(&accesses, instruction, blocks), i, instruction};
+    turns[i] = (struct Turn){level_of(&accesses, instruction, blocks), i, spaces_of(instruction), instruction};
   }
   if (routine->count > 0) qsort(turns, routine->count, sizeof *turns, compare);
   for (size_t i = 0; i < routine->count; i++) order[i] = turns[i].number;
@@ -116,5 +125,6 @@ size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks
 }
 
 bool same_run(const struct Instruction *first, const struct Instruction *second) {
-  return first->opcode == second->opcode && first->function == second->function;
+  return first->opcode == second->opcode && first->function == second->function &&
+         spaces_of(first) == spaces_of(second);
 }

@@ -1,4 +1,4 @@
-/* The order of a routine's instructions in a table: those of one opcode side by side, as far as their operands allow. */
+/* The order of a routine's instructions in a table: those of one run side by side, as far as their operands allow. */
 #ifndef SCHEDULE_H
 #define SCHEDULE_H
 
@@ -6,6 +6,9 @@
 
 /* The numbers of the routine's instructions in the order of execution, to be freed with free(). */
 size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks);
+
+/* The spaces of the result and the operands, packed as in a table; an instruction's run has the same for all. */
+uint32_t spaces_of(const struct Instruction *instruction);
 
 /* Whether two instructions may stand in one run. */
 bool same_run(const struct Instruction *first, const struct Instruction *second);

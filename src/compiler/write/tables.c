@@ -119,12 +119,16 @@ void tables_shared(FILE *file, const struct TableContext *context) {
           local_count(program), program->blocks.mass_count, program->blocks.side_count);
 }
 
-static uint32_t encoded(const struct TableContext *context, Place place) {
+/* The index of a place in its space, as tables count it. */
+static uint32_t index_of(const struct TableContext *context, Place place) {
   enum Space space = space_of(place);
   size_t index = index_in(place);
-  if (space == SPACE_NUMBER) index = context->number[index] - 1;
-  else if (space >= SPACE_ROW && space != SPACE_TIME_ROW) index *= SERIES_LENGTH;
-  return place_in(space, index);
+  if (space == SPACE_NUMBER) return (uint32_t)context->number[index] - 1;
+  return (uint32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
+}
+
+static uint32_t encoded(const struct TableContext *context, Place place) {
+  return place_in(space_of(place), index_of(context, place));
 }
 
 /* Writes numbers in lines. */
@@ -145,13 +149,14 @@ static void write_run(struct CodeLine *line, const struct TableContext *context,
   const struct OpcodeFacts *facts = opcode_facts(opcode);
   write_word(line, opcode);
   write_word(line, (uint32_t)(end - first));
+  write_word(line, spaces_of(&instructions[schedule[first]]));
   if (opcode == CALL || opcode == CALL_OF_TWO)
     write_word(line, (uint32_t)context->function[instructions[schedule[first]].function] - 1);
   for (size_t i = first; i < end; i++) {
     const struct Instruction *instruction = &instructions[schedule[i]];
     bool is_place = facts->result != NUMBER && facts->result != BLOCK;
-    write_word(line, is_place ? encoded(context, instruction->result) : instruction->result);
-    for (int j = 0; j < opcode_arity(opcode); j++) write_word(line, encoded(context, instruction->operands[j]));
+    write_word(line, is_place ? index_of(context, instruction->result) : instruction->result);
+    for (int j = 0; j < opcode_arity(opcode); j++) write_word(line, index_of(context, instruction->operands[j]));
   }
 }
 
