@@ -80,9 +80,11 @@ static struct Equations *derive(const struct Model *model, struct Diagnostics *d
 static void compile(struct Model *model, const struct Equations *equations, const char *directory,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
+  struct Summary *summary = summary_create(model, equations);
   struct Program *program = program_create(model, equations, interface, diagnostics);
-  if (program != NULL) output_write(program, directory, diagnostics);
+  if (program != NULL) output_write(program, summary, directory, diagnostics);
   program_free(program);
+  summary_free(summary);
   interface_free(interface);
 }
 
