@@ -118,12 +118,9 @@ static void test_substitution(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_operation),
-      cmocka_unit_test(test_directions_and_weights),
-      cmocka_unit_test(test_sparse_gradient),
-      cmocka_unit_test(test_long_sums),
-      cmocka_unit_test(test_no_expression_swell),
-      cmocka_unit_test(test_substitution),
+      cmocka_unit_test(test_every_operation),     cmocka_unit_test(test_directions_and_weights),
+      cmocka_unit_test(test_sparse_gradient),     cmocka_unit_test(test_long_sums),
+      cmocka_unit_test(test_no_expression_swell), cmocka_unit_test(test_substitution),
   };
   return cmocka_run_group_tests_name("differentiate", tests, NULL, NULL);
 }
