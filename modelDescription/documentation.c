@@ -6,11 +6,8 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "algebra/differentiate.h"
-#include "memory.h"
 #include "algebra/formula.h"
-#include "algebra/rational.h"
-#include "algebra/simplify.h"
+#include "memory.h"
 #include "xml_output.h"
 
 static const char *const style =
@@ -22,49 +19,33 @@ static void element(xmlTextWriterPtr writer, const char *name, const char *text)
   xmlTextWriterWriteElement(writer, BAD_CAST name, BAD_CAST text);
 }
 
-/* The expression as it is, or multiplied out where that is shorter. */
-static char *readable_text(struct Graph *graph, Node node) {
-  char *text = expression_text(graph, node), *expanded = expression_text(graph, simplify_fraction(graph, node));
-  bool shorter = strlen(expanded) < strlen(text);
-  free(shorter ? text : expanded);
-  return shorter ? expanded : text;
-}
+/* What the page is made of. */
+struct Page {
+  xmlTextWriterPtr writer;
+  const struct Model *model;
+  const struct Equations *equations;
+  const struct Interface *interface;
+  const struct Summary *summary;
+};
 
 /* left = expression, on a line of its own. */
-static void write_equation(xmlTextWriterPtr writer, struct Graph *graph, const char *left, Node right) {
-  char *expression = readable_text(graph, right), *text = format_text("%s = %s", left, expression);
-  element(writer, "code", text);
+static void write_equation(const struct Page *page, const char *left, Node right) {
+  char *expression = expression_text(page->model->graph, right), *text = format_text("%s = %s", left, expression);
+  element(page->writer, "code", text);
   free(text);
   free(expression);
 }
 
-/* Row i of M a = right side, or the acceleration itself. */
-static void write_motion(xmlTextWriterPtr writer, const struct Program *program, size_t i) {
-  const struct Equations *equations = program->equations;
-  struct Graph *graph = program->model->graph;
-  if (equations->explicit_form) {
-    char *left = format_text("der(%s)", program->model->velocities.items[i].name);
-    write_equation(writer, graph, left, equations->acceleration[i]);
-    free(left);
-    return;
-  }
-  const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-  Node inertia = ZERO;
-  for (size_t k = 0; k < block->count; k++) {
-    size_t j = block->coordinates[k];
-    Node mass = inertia_element(equations->inertia, i, j);
-    inertia = add(graph, inertia, multiply(graph, mass, program->model->accelerations[j]));
-  }
-  char *left = readable_text(graph, inertia);
-  write_equation(writer, graph, left, equations->right_side[i]);
-  free(left);
+/* Says how many of the things of a kind the page leaves out. */
+static void write_rest(xmlTextWriterPtr writer, size_t count, size_t shown, const char *things) {
+  if (count == shown) return;
+  char *text = format_text("%zu further %s are not shown.", count - shown, things);
+  element(writer, "p", text);
+  free(text);
 }
 
 /* Which law totalEnergy obeys (see energies.h). */
-static const char *balance_of(const struct Model *model) {
-  struct Graph *graph = model->graph;
-  Node difference = subtract(graph, model->kinetic.node, model->potential.node); /* L */
-  bool autonomous = simplify_fraction(graph, derivative_by(graph, difference, model->time)) == ZERO;
+static const char *balance_of(const struct Model *model, bool autonomous) {
   if (!model->driven && autonomous)
     return model->has_forces
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
@@ -83,14 +64,15 @@ static const char *balance_of(const struct Model *model) {
          "partial derivative dL/dt, so that it is not constant either.";
 }
 
-static void write_energies(xmlTextWriterPtr writer, const struct Program *program) {
-  const struct Equations *equations = program->equations;
-  const struct Model *model = program->model;
-  bool linearized = model->linearized, separate = !linearized && model->kinetic.node != equations->kinetic;
+static void write_energies(const struct Page *page) {
+  xmlTextWriterPtr writer = page->writer;
+  const struct Summary *summary = page->summary;
+  bool linearized = page->model->linearized;
+  bool separate = !linearized && page->model->kinetic.node != page->equations->kinetic;
   element(writer, "h2", "Energies");
-  if (separate) write_equation(writer, model->graph, "T", model->kinetic.node);
-  write_equation(writer, model->graph, "K", equations->kinetic);
-  write_equation(writer, model->graph, "U", linearized ? equations->potential : model->potential.node);
+  if (separate) write_equation(page, "T", summary->lagrangian_kinetic);
+  write_equation(page, "K", summary->kinetic);
+  write_equation(page, "U", summary->potential);
   element(writer, "p", separate ? "The Lagrangian is L = T - U." : "The Lagrangian is L = K - U.");
   if (linearized) return;
   element(writer, "p",
@@ -98,28 +80,35 @@ static void write_energies(xmlTextWriterPtr writer, const struct Program *progra
           "term itself where it is a quadratic polynomial of the velocities v, else the sum of v dT/dv less T. "
           "potentialEnergy is U less the sum of v dU/dv, which is U where it has no velocities. totalEnergy is the "
           "sum of both.");
-  element(writer, "p", balance_of(model));
+  element(writer, "p", balance_of(page->model, summary->is_autonomous));
 }
 
-static void write_mechanics(xmlTextWriterPtr writer, const struct Program *program) {
-  const struct Equations *equations = program->equations;
-  struct Graph *graph = program->model->graph;
-  write_energies(writer, program);
+static void write_mechanics(const struct Page *page) {
+  xmlTextWriterPtr writer = page->writer;
+  const struct Summary *summary = page->summary;
+  write_energies(page);
   element(writer, "h2", "Equations of motion");
-  for (size_t i = 0; i < equations->count; i++) write_motion(writer, program, i);
-  if (!program->model->has_forces) return;
+  for (size_t i = 0; i < summary->motion_count; i++) {
+    char *left = expression_text(page->model->graph, summary->inertial[i]);
+    write_equation(page, left, summary->right_side[i]);
+    free(left);
+  }
+  write_rest(writer, page->equations->count, summary->motion_count, "equations");
+  if (!page->model->has_forces) return;
   element(writer, "h2", "Power of the non-conservative forces");
-  write_equation(writer, graph, "P", equations->power);
+  write_equation(page, "P", summary->power);
   element(writer, "p",
           "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
           "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on.");
 }
 
-static void write_outputs(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations) {
-  if (model->outputs.count == 0) return;
-  element(writer, "h2", "Outputs");
-  for (size_t i = 0; i < model->outputs.count; i++)
-    write_equation(writer, model->graph, model->outputs.items[i].name, equations->outputs[i]);
+static void write_outputs(const struct Page *page) {
+  const struct VariableList *outputs = &page->model->outputs;
+  if (outputs->count == 0) return;
+  element(page->writer, "h2", "Outputs");
+  for (size_t i = 0; i < page->summary->output_count; i++)
+    write_equation(page, outputs->items[i].name, page->summary->outputs[i]);
+  write_rest(page->writer, outputs->count, page->summary->output_count, "outputs");
 }
 
 static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
@@ -141,6 +130,8 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   xmlTextWriterEndElement(writer);
 }
 
+enum { ROW_LIMIT = 1000 };
+
 static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
   static const char *const headings[] = {"name", "kind", "unit", "start", "description"};
   element(writer, "h2", "Variables");
@@ -148,11 +139,15 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
   xmlTextWriterStartElement(writer, BAD_CAST "tr");
   for (size_t i = 0; i < 5; i++) element(writer, "th", headings[i]);
   xmlTextWriterEndElement(writer);
-  for (size_t i = 0; i < interface->count; i++) write_variable_row(writer, &interface->variables[i]);
+  size_t rows = interface->count < ROW_LIMIT ? interface->count : ROW_LIMIT;
+  for (size_t i = 0; i < rows; i++) write_variable_row(writer, &interface->variables[i]);
   xmlTextWriterEndElement(writer);
+  write_rest(writer, interface->count, rows, "variables, which modelDescription.xml has,");
 }
 
-static void write_solver(xmlTextWriterPtr writer, const struct Program *program) {
+static void write_solver(const struct Page *page) {
+  xmlTextWriterPtr writer = page->writer;
+  enum SolverMethod method = page->interface->method;
   static const char *const solvers[] = {
       [SOLVER_ERK] = "Co-simulation integrates with Dormand and Prince's method of order 5(4); a step depends only "
                      "on the state that the FMU saves, so that a repeated step gives the same bits.",
@@ -168,21 +163,21 @@ static void write_solver(xmlTextWriterPtr writer, const struct Program *program)
       [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
                        "time over the communication step.",
   };
-  if (program->equations->count == 0) return;
+  if (page->equations->count == 0) return;
   element(writer, "h2", "Solver");
-  element(writer, "p", solvers[program->interface->method]);
-  if (!isnan(program->model->max_step)) {
-    char *text = format_text("No step of the method is longer than %g s.", program->model->max_step);
+  element(writer, "p", solvers[method]);
+  if (!isnan(page->model->max_step)) {
+    char *text = format_text("No step of the method is longer than %g s.", page->model->max_step);
     element(writer, "p", text);
     free(text);
-  } else if (program->interface->method == SOLVER_ERK || program->interface->method == SOLVER_BDF)
+  } else if (method == SOLVER_ERK || method == SOLVER_BDF)
     element(writer, "p",
             "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
             "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");
 }
 
-bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {
-  const struct Model *model = program->model;
+bool documentation_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
+                         const struct Interface *interface, const struct Summary *summary) {
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
   if (writer == NULL) return false;
   xmlTextWriterWriteDTD(writer, BAD_CAST "html", NULL, NULL, NULL);
@@ -197,10 +192,11 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program) {
   xmlTextWriterStartElement(writer, BAD_CAST "body");
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
-  if (program->equations->count > 0) write_mechanics(writer, program);
-  write_outputs(writer, model, program->equations);
-  write_solver(writer, program);
-  write_variables(writer, program->interface);
+  const struct Page page = {writer, model, equations, interface, summary};
+  if (equations->count > 0) write_mechanics(&page);
+  write_outputs(&page);
+  write_solver(&page);
+  write_variables(writer, interface);
   xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);
   bool written = xmlTextWriterEndDocument(writer) >= 0;

@@ -199,6 +199,34 @@ def coupled_oscillators():
     return System([x1, x2], [v1, v2], T, U, [f1 + F - b1 * v1, f2 - b2 * v2], [F], [m1, m2, k1, k2, k, b1, b2, f1, f2])
 
 
+def lattice(count=8):
+    m, k, b, c, F = symbols("m k b c F")
+    x = [sp.Symbol(f"x[{i}]") for i in range(1, count + 1)]
+    v = [sp.Symbol(f"v[{i}]") for i in range(1, count + 1)]
+    stretches = [right - left for left, right in zip([0, *x], [*x, 0])]
+    U = sum(k * s**2 / 2 + b * s**4 / 4 for s in stretches)
+    Q = [sp.Integer(0)] * count
+    for i in range(1, count):
+        damping = c * (v[i] - v[i - 1])
+        Q[i - 1] += damping
+        Q[i] -= damping
+    Q[0] += F
+    positions = {f"mass[{i + 1}]": (x[i],) for i in range(count)}
+    return System(x, v, sum(m * vi**2 / 2 for vi in v), U, Q, [F], [m, k, b, c], positions)
+
+
+def inerter_tree():
+    m, b, a, k = symbols("m b a k")
+    x = [sp.Symbol(f"x[{i}]") for i in range(1, 8)]
+    v = [sp.Symbol(f"v[{i}]") for i in range(1, 8)]
+    T = sum(m * vi**2 / 2 for vi in v)
+    for child in range(1, 7):
+        parent = (child - 1) // 2
+        stretch, rate = x[child] - x[parent], v[child] - v[parent]
+        T += b / 2 * (rate * (1 + (stretch / a) ** 2)) ** 2
+    return System(x, v, T, sum(k * xi**2 / 2 for xi in x), None, [], [m, b, a, k])
+
+
 DEFINITIONS = {
     "ParticleCartesian": particle_cartesian,
     "ParticlePolar": particle_polar,
@@ -225,6 +253,8 @@ DEFINITIONS = {
     "RollingDisk": rolling_disk,
     "Functions": functions,
     "CoupledOscillators": coupled_oscillators,
+    "Lattice": lattice,
+    "InerterTree": inerter_tree,
 }
 
 

@@ -244,6 +244,16 @@ def test_several_errors_in_one_run(tmp_path):
     assert re.findall(r"system.xml:(\d+):", result.stderr) == ["4", "8", "9"]
 
 
+def test_one_mistake_in_a_long_loop(tmp_path):
+    """The first hundred messages are enough, each with its suggestion, and the rest costs no search for one."""
+    loop = '<for index="i" from="1" to="10000"><parameter name="p[i]" start="1"/><potential>q[i]*bob.y</potential></for>'
+    result = compile_text(broken(11, loop), tmp_path)
+    lines = result.stderr.splitlines()
+    assert result.returncode == 1 and len(lines) == 101
+    assert all(f"unknown name 'q[{i}]'; did you mean 'p[{i}]'?" in line for i, line in enumerate(lines[:100], 1))
+    assert lines[100] == "system.xml: there are more mistakes; expected these to be mended first"
+
+
 def test_old_output_goes_when_the_system_breaks(tmp_path):
     """A stale system.c beside a broken system.xml would be built without a word."""
     compile_text(RIGHT, tmp_path)

@@ -66,3 +66,23 @@ def test_every_term_arrives(tmp_path):
         locals=s,
     )
     assert sp.expand(ours - expected) == 0
+
+
+def test_the_page_of_a_large_system(tmp_path):
+    """A hundred equations and outputs are enough to read; the page says how many there are besides."""
+    (tmp_path / "system.xml").write_text(
+        """<system name="Many"><constant name="N" value="300"/>
+  <for index="i" from="1" to="N">
+    <coordinate name="x[i]" velocity="v[i]"/><kinetic>v[i]^2/2</kinetic><potential>cos(x[i])</potential>
+    <output name="y[i]">2*x[i]</output>
+  </for>
+</system>"""
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    assert "<code>der(v[100]) = sin(x[100])</code>" in page and "<code>y[100] = 2*x[100]</code>" in page
+    assert "der(v[101]) =" not in page and "y[101] =" not in page
+    assert "200 further equations are not shown" in page and "200 further outputs are not shown" in page
+    # 300 coordinates and velocities, their derivatives, 300 outputs, 3 energies and 2 statistics make 1505 rows.
+    assert page.count("<tr>") == 1001 and "505 further variables, which modelDescription.xml has, are not shown" in page

@@ -14,9 +14,10 @@ static void print_message(const char *file, long line, const char *kind, const c
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  print_message(diagnostics->file, line, "", format, arguments);
+  if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics->file, line, "", format, arguments);
   va_end(arguments);
-  diagnostics->errors++;
+  if (++diagnostics->errors == ERROR_LIMIT + 1)
+    fprintf(stderr, "%s: there are more mistakes; expected these to be mended first\n", diagnostics->file);
 }
 
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {

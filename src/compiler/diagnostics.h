@@ -2,12 +2,15 @@
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 
+/* As many errors of one file are shown: a mistake in a loop would be told ten thousand times. */
+enum { ERROR_LIMIT = 100 };
+
 struct Diagnostics {
   const char *file; /* the file being read, as named by the user */
   int errors;
 };
 
-/* Prints an error to stderr and counts it; line 0 where no line can be named. */
+/* Prints an error to stderr, unless there have been many, and counts it; line 0 where no line can be named. */
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

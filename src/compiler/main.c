@@ -80,11 +80,13 @@ static struct Equations *derive(const struct Model *model, struct Diagnostics *d
 static void compile(struct Model *model, const struct Equations *equations, const char *directory,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
+  struct Summary *summary = summary_create(model, equations);
   struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions) : NULL;
-  if (program != NULL) output_write(program, directory, diagnostics);
+  if (program != NULL) output_write(program, summary, directory, diagnostics);
   program_free(program);
   expressions_free(expressions);
+  summary_free(summary);
   interface_free(interface);
 }
 

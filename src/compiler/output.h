@@ -3,13 +3,15 @@
 #define OUTPUT_H
 
 #include "diagnostics.h"
+#include "mechanics/summary.h"
 #include "program/program.h"
 
 /*
  * Writes system.c, modelDescription.xml and documentation/index.html into the directory, which is created where it
  * is missing, or reports why that fails.
  */
-void output_write(const struct Program *program, const char *directory, struct Diagnostics *diagnostics);
+void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
+                  struct Diagnostics *diagnostics);
 
 /* Removes these files, also those of an earlier run: after an error none is left. */
 void output_remove(const char *directory);

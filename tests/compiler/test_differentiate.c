@@ -76,6 +76,25 @@ static void test_sparse_gradient(void **state) {
   expressions_free(&e);
 }
 
+/* The gradient of sum x_i x_(i+1) has two terms an element: its nodes grow as the sum does. */
+static void test_long_sums(void **state) {
+  (void)state;
+  enum { LENGTH = 20000 };
+  struct Expressions e = expressions_create();
+  Node *x = malloc(LENGTH * sizeof *x), sum = ZERO;
+  for (int i = 0; i < LENGTH; i++) x[i] = graph_symbol(e.graph, VELOCITY, i, "v");
+  for (int i = 1; i < LENGTH; i++) sum = add(e.graph, sum, multiply(e.graph, x[i - 1], x[i]));
+  size_t before = e.graph->count;
+  struct Gradient gradient = gradient_by_kinds(e.graph, sum, 1u << VELOCITY);
+  assert_int_equal(gradient.count, LENGTH);
+  assert_int_equal(gradient.values[0], x[1]);
+  for (int i = 1; i < LENGTH - 1; i++) assert_int_equal(gradient.values[i], add(e.graph, x[i - 1], x[i + 1]));
+  assert_true(e.graph->count - before < 2 * LENGTH);
+  gradient_free(&gradient);
+  free(x);
+  expressions_free(&e);
+}
+
 /* x (x+1) (x+2) ... nested: the derivative must not grow faster than the function. */
 static void test_no_expression_swell(void **state) {
   (void)state;
@@ -99,9 +118,9 @@ static void test_substitution(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_operation), cmocka_unit_test(test_directions_and_weights),
-      cmocka_unit_test(test_sparse_gradient), cmocka_unit_test(test_no_expression_swell),
-      cmocka_unit_test(test_substitution),
+      cmocka_unit_test(test_every_operation),     cmocka_unit_test(test_directions_and_weights),
+      cmocka_unit_test(test_sparse_gradient),     cmocka_unit_test(test_long_sums),
+      cmocka_unit_test(test_no_expression_swell), cmocka_unit_test(test_substitution),
   };
   return cmocka_run_group_tests_name("differentiate", tests, NULL, NULL);
 }

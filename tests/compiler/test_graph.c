@@ -57,6 +57,23 @@ static void test_growth(void **state) {
   expressions_free(&e);
 }
 
+/* Nothing may recurse as deep as a product is long: the stack would not hold it. */
+static void test_long_products(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  Node product = ONE;
+  double expected = 1.0;
+  for (int i = 1; i <= 300000; i++) {
+    product = multiply(e.graph, product, function(e.graph, COSINE, scale(e.graph, 1e-8 * i, e.x), ZERO));
+    expected *= cos(1e-8 * i * 0.5);
+  }
+  assert_true(fabs(value_at(&e, product, 0.5, 0, 0) - expected) < 1e-9);
+  char *text = expression_text(e.graph, product);
+  assert_true(strlen(text) < 100000);
+  free(text);
+  expressions_free(&e);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_equal_expressions_are_one_node),
@@ -64,6 +81,7 @@ int main(void) {
       cmocka_unit_test(test_constants_are_told_apart_by_their_bits),
       cmocka_unit_test(test_marking_finds_what_is_needed),
       cmocka_unit_test(test_growth),
+      cmocka_unit_test(test_long_products),
   };
   return cmocka_run_group_tests_name("graph", tests, NULL, NULL);
 }

@@ -1,4 +1,7 @@
-/* Takes the shorter one of two forms of expressions, by the operations that they need together. */
+/*
+ * Takes the shorter one of two forms of expressions, by the operations that they need together: those that change in
+ * motion count first, those of parameters alone are computed once for all.
+ */
 #ifndef SHORTEN_H
 #define SHORTEN_H
 

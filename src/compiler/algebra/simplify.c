@@ -51,17 +51,22 @@ static int insert_factor(struct Factor factors[FACTOR_LIMIT], int count, Node ba
   return count + 1;
 }
 
-static int collect_factors(const struct Graph *graph, Node node, double exponent, struct Factor *factors, int count) {
+/* Products looked into for their factors, so that long ones are neither searched as a whole nor exhaust the stack. */
+enum { PRODUCT_LIMIT = 4 * FACTOR_LIMIT };
+
+static int collect_factors(const struct Graph *graph, Node node, double exponent, struct Factor *factors, int count,
+                           int *products) {
   const struct Vertex *vertex = vertex_of(graph, node);
   while (count >= 0 && vertex->operation == MULTIPLY) {
-    count = collect_factors(graph, vertex->left, exponent, factors, count);
+    if (++*products > PRODUCT_LIMIT) return -1;
+    count = collect_factors(graph, vertex->left, exponent, factors, count, products);
     node = vertex->right;
     vertex = vertex_of(graph, node);
   }
   if (count < 0 || node == ONE) return count;
   if (vertex->operation == POWER) {
     double inner = numeric_exponent(graph, vertex);
-    if (is_whole(inner)) return collect_factors(graph, vertex->left, exponent * inner, factors, count);
+    if (is_whole(inner)) return collect_factors(graph, vertex->left, exponent * inner, factors, count, products);
     if (!isnan(inner) && is_whole(exponent)) return insert_factor(factors, count, vertex->left, exponent * inner);
   }
   return insert_factor(factors, count, node, exponent);
@@ -70,7 +75,8 @@ static int collect_factors(const struct Graph *graph, Node node, double exponent
 int factors_of(const struct Graph *graph, Node node, struct Factor factors[FACTOR_LIMIT]) {
   Node base;
   coefficient_of(graph, node, &base);
-  return collect_factors(graph, base, 1.0, factors, 0);
+  int products = 0;
+  return collect_factors(graph, base, 1.0, factors, 0, &products);
 }
 
 Node product_of(struct Graph *graph, const struct Factor *factors, int count) {

@@ -3,19 +3,19 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "algebra/cone.h"
 #include "algebra/differentiate.h"
-#include "memory.h"
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
+#include "memory.h"
 
 Node stored_energy(const struct Model *model, Node potential) {
   struct Graph *graph = model->graph;
-  size_t n = model->velocities.count;
-  Node energy = potential, *slope = allocate(n, sizeof *slope);
-  gradient_of(graph, energy, VELOCITY, n, slope);
-  for (size_t i = 0; i < n; i++)
-    energy = subtract(graph, energy, multiply(graph, slope[i], model->velocities.items[i].node));
-  free(slope);
+  struct Gradient slopes = gradient_by_kinds(graph, potential, 1u << VELOCITY);
+  Node energy = potential;
+  for (size_t i = 0; i < slopes.count; i++)
+    energy = subtract(graph, energy, multiply(graph, slopes.values[i], slopes.symbols[i]));
+  gradient_free(&slopes);
   return energy;
 }
 
@@ -24,12 +24,14 @@ struct Degrees {
   double lowest, highest;
 };
 
+/* of: the degrees of all nodes below, by their places in the graph's cone. */
 static struct Degrees degrees_of_vertex(const struct Graph *graph, Node node, const struct Degrees *of) {
   const struct Vertex *vertex = &graph->vertices[node];
-  struct Degrees left = of[vertex->left], right = of[vertex->right];
   if (!graph_depends_on(graph, node, VELOCITY)) return (struct Degrees){0, 0};
+  if (vertex->operation == SYMBOL) return (struct Degrees){1, 1};
+  struct Degrees left = of[cone_place(graph->cone, vertex->left)], right = {0, 0};
+  if (operation_arity(vertex->operation) == 2) right = of[cone_place(graph->cone, vertex->right)];
   switch (vertex->operation) {
-  case SYMBOL: return (struct Degrees){1, 1};
   case ADD: return (struct Degrees){fmin(left.lowest, right.lowest), fmax(left.highest, right.highest)};
   case MULTIPLY: return (struct Degrees){left.lowest + right.lowest, left.highest + right.highest};
   case POWER: {
@@ -42,14 +44,12 @@ static struct Degrees degrees_of_vertex(const struct Graph *graph, Node node, co
 }
 
 static struct Degrees degrees_of(const struct Graph *graph, Node target) {
-  bool *needed = allocate(graph->count, sizeof *needed);
-  struct Degrees *of = allocate((size_t)target + 1, sizeof *of), result;
-  graph_mark(graph, &target, 1, needed);
-  for (Node node = 0; node <= target; node++)
-    if (needed[node]) of[node] = degrees_of_vertex(graph, node, of);
-  result = of[target];
+  struct Cone *cone = graph->cone;
+  cone_collect(cone, graph, &target, 1, NULL);
+  struct Degrees *of = allocate(cone->count, sizeof *of);
+  for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(graph, cone->nodes[place], of);
+  struct Degrees result = of[cone_place(cone, target)];
   free(of);
-  free(needed);
   return result;
 }
 

@@ -132,7 +132,9 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
 }
 
 static void report_unknown_name(struct Parser *parser, const char *name) {
-  const char *similar = scope_similar_name(parser->scope, name);
+  /* A search through all names is for messages that are shown. */
+  bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
+  const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL;
   if (similar != NULL) FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else
     FAIL(parser, "%s: unknown name '%s'; expected a parameter, coordinate, velocity, input, definition or time",

@@ -1,0 +1,21 @@
+/* The formulas that the documentation shows, in their readable form; those of large systems in part. */
+#ifndef SUMMARY_H
+#define SUMMARY_H
+
+#include "mechanics/lagrange.h"
+
+enum { SHOWN_LIMIT = 100 }; /* equations of motion, and outputs, that a page shows */
+
+struct Summary {
+  Node lagrangian_kinetic;           /* K of L = K - U */
+  Node kinetic, potential, power;    /* as in struct Equations; potential is U of L where nothing is linearised */
+  bool is_autonomous;                /* L does not depend on time explicitly */
+  Node *inertial, *right_side;       /* M a = right side, of the first equations */
+  Node *outputs;                     /* of the first outputs */
+  size_t motion_count, output_count; /* how many are shown */
+};
+
+struct Summary *summary_create(const struct Model *model, const struct Equations *equations);
+void summary_free(struct Summary *summary);
+
+#endif
