@@ -90,6 +90,8 @@ enum Opcode {
   SERIES_RATE,              /* r_(k-1) = k a_k */
   SERIES_INTEGRAL,          /* r' = a b, rows */
   SERIES_NEGATIVE_INTEGRAL, /* r' = -a b, rows */
+  SERIES_TURN,              /* r' = a b, the value a and the row b */
+  SERIES_NEGATIVE_TURN,     /* r' = -a b, the value a and the row b */
   SERIES_RATIO_INTEGRAL,    /* r' = a' / b, with a_k and the row b */
   SERIES_AREA,              /* the coefficient k - 1 of a' b - b' a over k, rows */
   SERIES_ANGLE,             /* atan2 of the rows a and b, with the row c = a^2 + b^2 */

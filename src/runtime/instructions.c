@@ -187,6 +187,8 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_RATE: EACH(2, (&R)[-1] = k * A);
     case SERIES_INTEGRAL: EACH_UNROLLED(3, R = series_integral(K, ROW_A, ROW_B));
     case SERIES_NEGATIVE_INTEGRAL: EACH_UNROLLED(3, R = -series_integral(K, ROW_A, ROW_B));
+    case SERIES_TURN: EACH(3, R = *ROW_A * (&B)[-1] * (1.0 / k));
+    case SERIES_NEGATIVE_TURN: EACH(3, R = -(*ROW_A * (&B)[-1]) * (1.0 / k));
     case SERIES_RATIO_INTEGRAL: EACH(3, R = series_ratio_integral(k, A, ROW_B, ROW_R));
     case SERIES_AREA: EACH(3, R = series_area(k, ROW_A, ROW_B));
     case SERIES_ANGLE: EACH(4, R = series_angle(k, ROW_A, ROW_B, ROW_C, ROW_R));

@@ -109,6 +109,9 @@ static void append_integral(struct SeriesBuilder *builder, Node node, double sig
   if (is_constant_series(builder, operand)) append(builder, SERIES_ZERO, result, 0, 0, 0);
   else if (is_constant_series(builder, factor))
     append(builder, SERIES_COPY, result, scaled(builder, sign, factor, operand), 0, 0);
+  else if (builder->plan->slope[operand] != ZERO)
+    append(builder, sign < 0.0 ? SERIES_NEGATIVE_TURN : SERIES_TURN, result,
+           value_of(builder, builder->plan->slope[operand]), series_row(builder, factor), 0);
   else {
     Place rate = rate_row(builder, operand);
     append(builder, sign < 0.0 ? SERIES_NEGATIVE_INTEGRAL : SERIES_INTEGRAL, result, rate, series_row(builder, factor),

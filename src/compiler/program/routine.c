@@ -49,6 +49,9 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_INTEGRAL] = {"SERIES_INTEGRAL", "series_integral(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
     [SERIES_NEGATIVE_INTEGRAL] =
         {"SERIES_NEGATIVE_INTEGRAL", "-series_integral(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
+    [SERIES_TURN] = {"SERIES_TURN", "$1 * $2[k - 1] * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
+    [SERIES_NEGATIVE_TURN] =
+        {"SERIES_NEGATIVE_TURN", "-($1 * $2[k - 1]) * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
     [SERIES_RATIO_INTEGRAL] =
         {"SERIES_RATIO_INTEGRAL", "series_ratio_integral(k, $1, $2, $0)", ROW, {COEFFICIENT, ROW_OF_PAST}, 1, true},
     [SERIES_AREA] = {"SERIES_AREA", "series_area(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},

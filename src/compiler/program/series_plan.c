@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "algebra/differentiate.h"
 #include "algebra/functions.h"
 
 static void append(struct SeriesPlan *plan, Node node) {
@@ -67,6 +68,33 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
   }
 }
 
+/* The time derivative of a node that is linear in time, whatever the motion; ZERO where it is not. */
+static Node slope_of(struct Graph *graph, Node node, Node time) {
+  if ((graph->vertices[node].kinds & ~(1u << PARAMETER)) != 1u << TIME) return ZERO;
+  Node slope = derivative_by(graph, node, time);
+  return graph_is_constant_in_time(graph, slope) ? slope : ZERO;
+}
+
+/* The slopes of what functions with an integral for their series take, as targets too. */
+static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
+  Node time = ZERO;
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == TIME) time = graph->symbols[i].node;
+  size_t size = graph->count;
+  bool *needed = allocate(size, sizeof *needed);
+  Node *slope = allocate(size, sizeof *slope);
+  graph_mark(graph, plan->targets, plan->count, needed);
+  for (Node node = 0; node < size; node++) {
+    Node operand = graph->vertices[node].left;
+    if (!needed[node] || functions[graph->vertices[node].operation].recurrence != INTEGRAL) continue;
+    if (slope[operand] == ZERO) slope[operand] = slope_of(graph, operand, time);
+    if (slope[operand] != ZERO) append(plan, slope[operand]);
+  }
+  plan->slope = reallocate(slope, graph->count, sizeof *slope);
+  for (size_t i = size; i < graph->count; i++) plan->slope[i] = ZERO;
+  free(needed);
+}
+
 /* Adds the auxiliary nodes of all nodes that the targets need, and theirs, until there are no new ones. */
 static void close(struct SeriesPlan *plan, struct Graph *graph) {
   bool *visited = NULL;
@@ -93,6 +121,7 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
 /* The plan with its targets given. */
 static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
   close(plan, graph);
+  append_slopes(plan, graph);
   size_t size = graph->count;
   bool *needed = allocate(size, sizeof *needed);
   graph_mark(graph, plan->targets, plan->count, needed);
@@ -120,5 +149,6 @@ void series_plan_free(struct SeriesPlan *plan) {
   if (plan == NULL) return;
   free(plan->targets);
   free(plan->auxiliary);
+  free(plan->slope);
   free(plan);
 }

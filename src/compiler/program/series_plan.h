@@ -11,6 +11,8 @@
 struct SeriesPlan {
   Node *targets;
   size_t count;
+  Node
+      *slope; /* for each node of the graph: its constant time derivative where it is linear in time; ZERO: it is not */
   Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */
 };
 

@@ -191,17 +191,37 @@ static Place settled(struct Rows *rows, Place place) {
   }
 }
 
+/* Which instructions have an effect: not those of a node that nothing rests on, as sines of what is linear in time. */
+static bool *find_used(const struct SeriesBuilder *builder) {
+  const struct Routine *open = builder->order;
+  bool *is_used = allocate(open->count, sizeof *is_used);
+  bool *is_read = allocate(builder->graph->count, sizeof *is_read);
+  for (size_t i = open->count; i-- > 0;) {
+    const struct Instruction *instruction = &open->instructions[i];
+    bool of_node = instruction->opcode != SERIES_SOLVE && (int)space_of(instruction->result) == SPACE_OF_NODES;
+    size_t node = index_in(instruction->result);
+    is_used[i] = !of_node || builder->has_row[node] || is_read[node];
+    for (int j = 0; j < opcode_arity(instruction->opcode) && is_used[i]; j++)
+      if ((int)space_of(instruction->operands[j]) == SPACE_OF_NODES) is_read[index_in(instruction->operands[j])] = true;
+  }
+  free(is_read);
+  return is_used;
+}
+
 /* The order with all places final. */
 static struct Routine *settle(struct Rows *rows) {
   const struct Routine *open = rows->builder->order;
+  bool *is_used = find_used(rows->builder);
   rows->order = routine_create();
   for (size_t i = 0; i < open->count; i++) {
     const struct Instruction *from = &open->instructions[i];
+    if (!is_used[i]) continue;
     Place operands[OPERAND_LIMIT] = {0};
     for (int j = 0; j < opcode_arity(from->opcode); j++) operands[j] = settled(rows, from->operands[j]);
     Place result = from->opcode == SERIES_SOLVE ? from->result : settled(rows, from->result);
     routine_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
   }
+  free(is_used);
   return rows->order;
 }
 

@@ -8,9 +8,15 @@
 
 /*
  * Systems up to this many recurrences an order get code of their own for the first orders, as many as have together so
- * many products that their code stays in the processor's instruction cache.
+ * many products that their code stays in the processor's instruction cache. With few recurrences, it is faster as one
+ * piece, without a jump that the processor would have to foresee.
  */
-enum { UNROLLED_RECURRENCES = 40, UNROLLED_PRODUCTS = 1300 };
+enum {
+  UNROLLED_RECURRENCES = 40,
+  UNROLLED_PRODUCTS = 1300,
+  RECURRENCES_IN_ONE_PIECE = 12,
+  PRODUCTS_IN_ONE_PIECE = 1100
+};
 
 bool series_is_unrolled(const struct Program *program) {
   return program->series != NULL && program->interface->method == SOLVER_TAYLOR && program->blocks.count == 0 &&
@@ -46,24 +52,49 @@ static void write_next_call(FILE *file, const struct Routine *order, const char 
   fprintf(file, "series_next(%s, ", k);
   for (int i = 0; i < FURTHER_COUNT; i++)
     if (routine_uses(order, further_arguments[i].space)) fprintf(file, "%s, ", further_arguments[i].argument);
-  fputs("x, w); break;\n", file);
+  fputs("x, w);\n", file);
 }
 
-/* The first orders are calls with a constant order, which the compiler unrolls. */
-static void write_unrolled_orders(FILE *file, const struct Program *program) {
+static void write_call_of_order(FILE *file, const struct Program *program, size_t k) {
+  char *order = format_text("%zu", k);
+  write_next_call(file, program->series->order, order);
+  free(order);
+}
+
+/* How many orders get code of their own. */
+static size_t unrolled_orders(size_t recurrences, size_t limit) {
+  size_t k = 0, products = 0;
+  while (k + 3 < SERIES_LENGTH && products + (k + 1) * recurrences <= limit) products += ++k * recurrences;
+  return k;
+}
+
+/* Calls with a constant order, which the compiler unrolls. */
+static void write_one_piece(FILE *file, const struct Program *program) {
+  size_t orders = unrolled_orders(program->series->recurrences, PRODUCTS_IN_ONE_PIECE);
+  for (size_t k = 1; k <= orders; k++) {
+    fprintf(file, "  if (order <= %zu) return;\n  ", k);
+    write_call_of_order(file, program, k);
+  }
+  fprintf(file, "  for (int k = %zu; k < order && k + 1 < SERIES_LENGTH; k++) ", orders + 1);
+  write_next_call(file, program->series->order, "k");
+}
+
+static void write_cases(FILE *file, const struct Program *program) {
+  size_t orders = unrolled_orders(program->series->recurrences, UNROLLED_PRODUCTS);
   fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n    switch (k) {\n", file);
-  size_t products = 0;
-  for (size_t k = 1; k + 1 < SERIES_LENGTH; k++) {
-    products += k * program->series->recurrences;
-    if (products > UNROLLED_PRODUCTS) break;
-    char *order = format_text("%zu", k);
+  for (size_t k = 1; k <= orders; k++) {
     fprintf(file, "    case %zu: ", k);
-    write_next_call(file, program->series->order, order);
-    free(order);
+    write_call_of_order(file, program, k);
+    fputs("      break;\n", file);
   }
   fputs("    default: ", file);
   write_next_call(file, program->series->order, "k");
   fputs("    }\n  }\n", file);
+}
+
+static void write_unrolled_orders(FILE *file, const struct Program *program) {
+  if (program->series->recurrences <= RECURRENCES_IN_ONE_PIECE) write_one_piece(file, program);
+  else write_cases(file, program);
 }
 
 static void declare_time(FILE *file, bool is_used) {
