@@ -58,7 +58,8 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
     accelerations_along(graph, program->equations, seeds, column);
     for (size_t i = 0; i < n; i++) program->jacobian[i * states + j] = column[i];
     free(seeds);
-    if (program->equations->has_work) program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
+    if (program->equations->has_work)
+      program->power_jacobian[j] = derivative_by(graph, program->equations->power, symbol);
   }
   free(column);
 }

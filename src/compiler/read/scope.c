@@ -93,7 +93,8 @@ const char *scope_similar_name(const struct Scope *scope, const char *name) {
   const char *best = NULL;
   for (size_t i = 0; i < scope->names->capacity; i++) {
     const char *known = scope->names->places[i].text;
-    size_t distance = known != NULL ? edit_distance(name, known) : NAME_LIMIT;
+    if (known == NULL) continue;
+    size_t distance = edit_distance(name, known);
     bool earlier = best != NULL && distance == least && strcmp(known, best) < 0;
     if (distance > least || (distance == least && !earlier)) continue;
     least = distance;
