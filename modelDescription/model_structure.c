@@ -31,7 +31,7 @@ static int compare(const void *first, const void *second) {
   return (a > b) - (a < b);
 }
 
-/* The places of the knowns that the unknown depends on, ascending; returns their number. */
+/* The places of the knowns that the unknown depends on, in no particular order; returns their number. */
 static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
   size_t count = 0;
@@ -41,31 +41,43 @@ static size_t find_places(const struct Structure *structure, size_t unknown, boo
     if (place > 0 && is_known(&structure->interface->variables[place - 1].entry, initial))
       structure->places[count++] = place - 1;
   }
-  qsort(structure->places, count, sizeof *structure->places, compare);
   return count;
 }
 
-/* The element for one unknown. */
-static void write_unknown(const struct Structure *structure, size_t unknown, bool initial) {
-  const struct Interface *interface = structure->interface;
+static void write_dependencies(const struct Structure *structure, size_t count, bool initial) {
   const struct Graph *graph = structure->dependencies->graph;
   char *places = NULL, *kinds = NULL;
-  size_t places_length = 0, kinds_length = 0, count = find_places(structure, unknown, initial);
+  size_t places_length = 0, kinds_length = 0;
+  qsort(structure->places, count, sizeof *structure->places, compare);
   FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
   for (size_t i = 0; i < count; i++) {
-    size_t symbol = graph->vertices[interface->variables[structure->places[i]].node].left;
+    size_t symbol = graph->vertices[structure->interface->variables[structure->places[i]].node].left;
     fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
     fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->dependencies->of[symbol], initial));
   }
   fclose(places_file);
   fclose(kinds_file);
-  xmlTextWriterStartElement(structure->writer, BAD_CAST "Unknown");
-  xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST "index", "%zu", unknown + 1);
   write_attribute(structure->writer, "dependencies", places);
   write_attribute(structure->writer, "dependenciesKind", kinds);
-  xmlTextWriterEndElement(structure->writer);
   free(places);
   free(kinds);
+}
+
+/*
+ * A derivative of a large coupled system depends on nearly all states, so that the lists of all of them would grow as
+ * their square. Without a list it depends on all knowns (section 2.2.8). Outputs keep theirs: importers find algebraic
+ * loops by them.
+ */
+enum { DEPENDENCY_LIMIT = 1000 };
+
+/* The element for one unknown. */
+static void write_unknown(const struct Structure *structure, size_t unknown, bool initial) {
+  size_t count = find_places(structure, unknown, initial);
+  xmlTextWriterStartElement(structure->writer, BAD_CAST "Unknown");
+  xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST "index", "%zu", unknown + 1);
+  if (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output)
+    write_dependencies(structure, count, initial);
+  xmlTextWriterEndElement(structure->writer);
 }
 
 static bool is_output(const struct ScalarVariable *entry) {

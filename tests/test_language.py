@@ -4,6 +4,7 @@ import html
 import re
 
 import sympy as sp
+from lxml import etree
 
 from fmu import lagc
 
@@ -86,3 +87,37 @@ def test_the_page_of_a_large_system(tmp_path):
     assert "200 further equations are not shown" in page and "200 further outputs are not shown" in page
     # 300 coordinates and velocities, their derivatives, 300 outputs, 3 energies and 2 statistics make 1505 rows.
     assert page.count("<tr>") == 1001 and "505 further variables, which modelDescription.xml has, are not shown" in page
+
+
+def test_dependencies_of_a_large_coupled_system(tmp_path):
+    """
+    Inerters in a row couple all accelerations with each other: lists of what these depend on would grow as the square of
+    their number. Without a list, FMI assumes all knowns. An output has its list however long.
+    """
+    (tmp_path / "system.xml").write_text(
+        """<system name="Row"><constant name="N" value="501"/><input name="F"/>
+  <for index="i" from="1" to="N"><coordinate name="x[i]" velocity="v[i]"/><kinetic>v[i]^2/2</kinetic></for>
+  <for index="i" from="2" to="N">
+    <kinetic>(v[i] - v[i-1])^2/2</kinetic><potential>cos(x[i] - x[i-1])</potential><dissipation>v[i]^4</dissipation>
+  </for>
+  <force coordinate="x[1]">F</force>
+  <output name="mean">sum(i, 1, N, x[i] + v[i])/N</output>
+</system>"""
+    )
+
+    def structure(*words):
+        result = lagc("system.xml", "-o", "out", *words, cwd=tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        root = etree.parse(tmp_path / "out" / "modelDescription.xml")
+        names = [variable.get("name") for variable in root.iter("ScalarVariable")]
+        return {
+            names[int(unknown.get("index")) - 1]: unknown.get("dependencies")
+            for unknown in root.find("ModelStructure/Derivatives")
+        }, [unknown.get("dependencies") for unknown in root.find("ModelStructure/Outputs")]
+
+    # 501 positions, 500 velocities and the input are 1002 knowns; with one mass less they are 1000.
+    derivatives, outputs = structure()
+    assert derivatives["der(v[7])"] is None and len(derivatives["der(x[7])"].split()) == 1
+    assert len(outputs[-1].split()) == 1002
+    derivatives, _ = structure("-D", "N=500")
+    assert len(derivatives["der(v[7])"].split()) == 1000

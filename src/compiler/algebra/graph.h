@@ -83,8 +83,8 @@ struct Graph {
   struct Symbol *symbols;
   size_t symbol_count;
   struct Cone *cone; /* workspace of the sweeps in algebra/, each of which collects anew */
-  bool overflow;   /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
-  bool not_finite; /* a constant that is no finite number was asked for, since this was last set to false */
+  bool overflow;     /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
+  bool not_finite;   /* a constant that is no finite number was asked for, since this was last set to false */
 };
 
 enum { NODE_LIMIT = 4000000, ZERO = 0, ONE = 1 };

@@ -130,21 +130,21 @@ static struct Fraction fraction_power(const struct Fraction *x, int exponent) {
   return result;
 }
 
-/* known: the fractions of all nodes below, by their places in the graph's cone. */
+/* known: the fractions of all nodes below, by their places in the cone. */
 static struct Fraction convert(struct Converter *converter, Node node, const struct Fraction *known) {
+  const struct Cone *cone = converter->graph->cone;
   const struct Vertex *vertex = &converter->graph->vertices[node];
-  int arity = operation_arity(vertex->operation);
-  const struct Fraction *left = arity > 0 ? &known[cone_place(converter->graph->cone, vertex->left)] : NULL;
-  const struct Fraction *right = arity > 1 ? &known[cone_place(converter->graph->cone, vertex->right)] : NULL;
   switch (vertex->operation) {
   case CONSTANT: return (struct Fraction){polynomial_constant(vertex->value), polynomial_constant(1.0)};
-  case ADD: return fraction_add(left, right);
-  case MULTIPLY: return fraction_multiply(left, right);
+  case ADD: return fraction_add(&known[cone_place(cone, vertex->left)], &known[cone_place(cone, vertex->right)]);
+  case MULTIPLY:
+    return fraction_multiply(&known[cone_place(cone, vertex->left)], &known[cone_place(cone, vertex->right)]);
   case POWER: {
     double exponent =
         graph_is_constant(converter->graph, vertex->right) ? graph_value(converter->graph, vertex->right) : NAN;
-    bool invertible = exponent > 0 || left->above.count > 0;
-    if (exponent == floor(exponent) && fabs(exponent) <= 20 && invertible) return fraction_power(left, (int)exponent);
+    const struct Fraction *base = &known[cone_place(cone, vertex->left)];
+    bool invertible = exponent > 0 || base->above.count > 0;
+    if (exponent == floor(exponent) && fabs(exponent) <= 20 && invertible) return fraction_power(base, (int)exponent);
     return atom_fraction(converter, node);
   }
   default: return atom_fraction(converter, node);

@@ -42,10 +42,12 @@ static void note(struct Dependencies *dependencies, size_t symbol, enum Dependen
   dependencies->of[symbol] = larger(dependencies->of[symbol], kind);
 }
 
-/* How constant a factor leaves the dependency on what it stands beside. */
-static enum Dependency beside_factor(const struct Graph *graph, Node factor) {
-  if (graph_is_constant(graph, factor)) return CONSTANT_FACTOR;
-  return graph_is_constant_in_time(graph, factor) ? TUNABLE_FACTOR : DEPENDENT;
+/* How an operation depends on one of its operands, which stands beside the other. */
+static enum Dependency step_of(const struct Graph *graph, enum Operation operation, Node other) {
+  if (operation == ADD) return CONSTANT_FACTOR;
+  if (operation != MULTIPLY) return DEPENDENT;
+  if (graph_is_constant(graph, other)) return CONSTANT_FACTOR;
+  return graph_is_constant_in_time(graph, other) ? TUNABLE_FACTOR : DEPENDENT;
 }
 
 /* Follows the node, on which something depends in this way, down to its symbols: the way is as good as its worst step. */
@@ -59,13 +61,10 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
     const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
     int arity = operation_arity(vertex->operation);
     if (vertex->operation == SYMBOL) note(dependencies, vertex->left, on[place]);
-    const Node operands[] = {vertex->left, vertex->right};
     for (int i = 0; i < arity; i++) {
-      enum Dependency step = vertex->operation == ADD        ? CONSTANT_FACTOR
-                             : vertex->operation == MULTIPLY ? beside_factor(graph, operands[1 - i])
-                                                             : DEPENDENT;
-      enum Dependency *below = &on[cone_place(cone, operands[i])];
-      *below = larger(*below, larger(on[place], step));
+      Node operand = i == 0 ? vertex->left : vertex->right, other = i == 0 ? vertex->right : vertex->left;
+      enum Dependency *below = &on[cone_place(cone, operand)];
+      *below = larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
     }
   }
   free(on);

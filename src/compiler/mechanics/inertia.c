@@ -17,6 +17,12 @@ struct Elements {
   size_t count, capacity;
 };
 
+static struct Elements elements_create(size_t capacity) {
+  return (struct Elements){.positions = allocate(capacity, sizeof(struct Position)),
+                           .nodes = allocate(capacity, sizeof(Node)),
+                           .capacity = capacity};
+}
+
 static void append(struct Elements *elements, size_t row, size_t column, Node node) {
   if (elements->count == elements->capacity) {
     elements->capacity = 2 * elements->capacity + 1;
@@ -34,7 +40,7 @@ static void elements_free(struct Elements *elements) {
 
 /* M_ij = d p_i / d v_j, row by row. */
 static struct Elements differentiate_momenta(struct Graph *graph, const Node *momentum, size_t count) {
-  struct Elements elements = {0};
+  struct Elements elements = elements_create(count);
   for (size_t i = 0; i < count && !graph->overflow; i++) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
@@ -73,7 +79,7 @@ static struct Components find_components(size_t count, const struct Elements *el
 
 /* Sorts the elements by components. Returns where each component begins, and the end; free with free(). */
 static size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
-  struct Elements sorted = {0};
+  struct Elements sorted = elements_create(elements->count);
   size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
   size_t *first = allocate(components->count, sizeof *first);
   for (size_t k = elements->count; k-- > 0;) {
