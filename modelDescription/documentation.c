@@ -150,29 +150,14 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
 }
 
 static void write_solver(xmlTextWriterPtr writer, const struct Program *program) {
-  static const char *const solvers[] = {
-      [SOLVER_ERK] = "Co-simulation integrates with Dormand and Prince's method of order 5(4); a step depends only "
-                     "on the state that the FMU saves, so that a repeated step gives the same bits.",
-      [SOLVER_BDF] = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
-                     "history, so that a restored state goes on within the tolerance, not to the same bits.",
-      [SOLVER_TAYLOR] = "Co-simulation integrates with Taylor series of the motion, of an order that follows from the "
-                        "tolerance; a step depends only on the state that the FMU saves, so that a repeated step gives "
-                        "the same bits. Each step is held against the equations of motion at its end, and is so short "
-                        "that no function in them (exp, tanh, powers, quotients, ...) can hide a hill, a wall or a "
-                        "pulse from the series, however narrow. abs, min, max and sign are followed piece by piece. A "
-                        "point where the equations have no solution, a stiff system, and a friction that sticks end "
-                        "in fmi2Discard with a message that names them.",
-      [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
-                       "time over the communication step.",
-  };
   if (program->equations->count == 0) return;
   element(writer, "h2", "Solver");
-  element(writer, "p", solvers[program->interface->method]);
+  element(writer, "p", program->interface->method->sentence);
   if (!isnan(program->model->max_step)) {
     char *text = format_text("No step of the method is longer than %g s.", program->model->max_step);
     element(writer, "p", text);
     free(text);
-  } else if (program->interface->method == SOLVER_ERK || program->interface->method == SOLVER_BDF)
+  } else if (program->interface->method->series == FIRST_TERMS)
     element(writer, "p",
             "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
             "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");

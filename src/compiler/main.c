@@ -12,7 +12,7 @@
 #include "program/program.h"
 #include "read/reader.h"
 
-static const char *const usage =
+static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "\n"
@@ -20,7 +20,7 @@ static const char *const usage =
     "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
     "\n"
     "  -o DIR           the directory for the files\n"
-    "  --solver METHOD  taylor, erk, bdf or exact in place of the system's own\n"
+    "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
 
@@ -67,16 +67,11 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
 
 /* A system without coordinates has no solver to replace. */
 static void override_solver(struct Model *model, const char *solver, struct Diagnostics *diagnostics) {
-  static const struct {
-    const char *name;
-    enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    if (strcmp(solver, methods[i].name) != 0) continue;
-    model->method = methods[i].method;
-    return;
-  }
-  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", solver);
+  model->method = method_named(solver);
+  if (model->method != NULL) return;
+  char *names = method_names();
+  report_error(diagnostics, 0, "--solver %s is not known; expected %s", solver, names);
+  free(names);
 }
 
 static void compile(struct Model *model, struct Equations *equations, const char *directory,
@@ -120,11 +115,13 @@ static int run(const struct Arguments *arguments) {
 int main(int count, char **words) {
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
-  if (!parse_arguments(count, words, &arguments)) fputs(usage, stderr);
-  else if (arguments.help) status = fputs(usage, stdout) < 0;
+  char *methods = method_names();
+  if (!parse_arguments(count, words, &arguments)) fprintf(stderr, usage, methods);
+  else if (arguments.help) status = fprintf(stdout, usage, methods) < 0;
   else status = run(&arguments);
   for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);
   free(arguments.point);
+  free(methods);
   free(arguments.definitions);
   xmlCleanupParser();
   return status;

@@ -160,7 +160,7 @@ void equations_solve(struct Graph *graph, const struct Equations *equations, con
 
 void mass_matrix_factor(struct Model *model, struct Equations *equations) {
   size_t n = equations->count;
-  bool unroll_all = model->linearized || model->method == SOLVER_EXACT;
+  bool unroll_all = model->linearized || (model->method != NULL && model->method->needs_linear);
   find_blocks(equations);
   equations->unrolled = allocate(equations->block_count, sizeof *equations->unrolled);
   equations->lower = allocate(n * n, sizeof *equations->lower);

@@ -67,7 +67,7 @@ static void create_jacobian(struct Program *program, struct Graph *graph) {
 static void create_series(struct Program *program, const struct Model *model, struct Diagnostics *diagnostics) {
   const struct Equations *equations = program->equations;
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  bool is_taylor = program->interface->method == SOLVER_TAYLOR;
+  bool is_taylor = program->interface->method->series == ALL_TERMS;
   if (kink == NULL || !is_taylor)
     program->series = series_plan_of_motion(model->graph, equations, model->work_line > 0);
   else
@@ -87,11 +87,12 @@ static void create_output_series(struct Program *program, const struct Model *mo
 struct Program *program_create(struct Model *model, const struct Equations *equations,
                                const struct Interface *interface, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
+  const struct Method *method = interface->method;
   size_t n = equations->count;
   int errors = diagnostics->errors;
   struct Program *program = allocate(1, sizeof *program);
   *program = (struct Program){.model = model, .equations = equations, .interface = interface};
-  if (interface->method == SOLVER_EXACT) {
+  if (method != NULL && method->needs_linear) {
     if (!isnan(model->max_step))
       report_error(diagnostics, model->solver_line,
                    "the method 'exact' takes a communication step as a whole; expected no maxStep");
@@ -111,10 +112,9 @@ struct Program *program_create(struct Model *model, const struct Equations *equa
   program->along = allocate(n, sizeof(Node));
   accelerations_along(graph, equations, seeds, program->along);
   derivative_along(graph, &equations->power, 1, seeds, &program->power_along);
-  if (interface->method == SOLVER_BDF) create_jacobian(program, graph);
+  if (method != NULL && method->needs_jacobian) create_jacobian(program, graph);
   free(seeds);
-  if (interface->method == SOLVER_TAYLOR || interface->method == SOLVER_ERK || interface->method == SOLVER_BDF)
-    create_series(program, model, diagnostics);
+  if (method != NULL && method->series != NO_SERIES) create_series(program, model, diagnostics);
   create_output_series(program, model);
   if (graph->overflow)
     report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",

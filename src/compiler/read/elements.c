@@ -287,16 +287,11 @@ static void read_definition(struct Reader *reader, xmlNodePtr node) {
 }
 
 void read_solver(struct Reader *reader, xmlNodePtr node) {
-  static const struct {
-    const char *name;
-    enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
   if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
-  for (size_t i = 0; method != NULL && i < sizeof methods / sizeof *methods; i++)
-    if (strcmp(method, methods[i].name) == 0) reader->model->method = methods[i].method;
+  if (method != NULL) reader->model->method = method_named(method);
   double *tolerance = &reader->model->tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",

@@ -171,7 +171,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
                             .states = program->interface->state_count};
   announce_all(&emitter);
   struct SeriesWriter *series = program->series == NULL ? NULL : series_writer_create(&emitter);
-  if (series != NULL && program->interface->method != SOLVER_TAYLOR && !emitter.has_limit) {
+  if (series != NULL && program->interface->method->series != ALL_TERMS && !emitter.has_limit) {
     series_writer_free(series);
     series = NULL;
   }

@@ -334,7 +334,7 @@ struct SeriesWriter *series_writer_create(struct Emitter *emitter) {
   writer->has_acceleration_rows = writer->keeps_factors = has_loops(emitter->equations);
   emitter->has_limit = limit_mark_rows(writer) > 0;
   writer->order_text = order_text(writer, write_order);
-  writer->is_unrolled = emitter->program->interface->method == SOLVER_TAYLOR && !has_loops(emitter->equations) &&
+  writer->is_unrolled = emitter->program->interface->method->series == ALL_TERMS && !has_loops(emitter->equations) &&
                         writer->recurrences <= UNROLLED_RECURRENCES;
   return writer;
 }

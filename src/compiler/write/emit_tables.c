@@ -105,11 +105,6 @@ static void emit_nominal_table(const struct Emitter *emitter) {
 }
 
 static void emit_description(const struct Emitter *emitter, const char *guid) {
-  static const char *const solvers[] = {[SOLVER_ERK] = "&solver_erk",
-                                        [SOLVER_BDF] = "&solver_bdf",
-                                        [SOLVER_EXACT] = "&solver_exact",
-                                        [SOLVER_TAYLOR] = "&solver_taylor",
-                                        [SOLVER_NONE] = "NULL"};
   const struct Program *program = emitter->program;
   const struct Interface *interface = program->interface;
   FILE *file = emitter->file;
@@ -127,8 +122,8 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   write_c_number(file, interface_tolerance(program->model));
   fputs(",\n    .max_step = ", file);
   write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
-  fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s,\n    .prepare = prepare,\n",
-          interface->depends_on_time ? "true" : "false", solvers[interface->method]);
+  fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s%s,\n    .prepare = prepare,\n",
+          interface->depends_on_time ? "true" : "false", moves ? "&" : "", moves ? interface->method->solver : "NULL");
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",
           moves ? "directional" : "NULL");
   if (emitter->has_series)
