@@ -21,6 +21,7 @@ struct Point {
   const double *input;
   const double *parameter;
   const double *prepared; /* what prepare() made of the parameters */
+  double *work;           /* workspace of the generated functions, whose values do not last from call to call */
 };
 
 /* A direction of a directional derivative. */
@@ -61,14 +62,22 @@ struct Result {
   bool uses_acceleration;
 };
 
+/* The elements of a matrix that may differ from 0. Those of column j are in row[start[j]] to row[start[j + 1] - 1]. */
+struct Sparsity {
+  size_t count;
+  const int *start; /* columns + 1 */
+  const int *row;   /* ascending in each column */
+};
+
 struct Solver;
 
 struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t variable_count, result_count;
+  size_t work_count;                      /* of Point.work */
   size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
-  int output_derivative_order;            /* the highest that fmi2GetRealOutputDerivatives knows */
+  int output_derivative_order;            /* the highest by time that outputs have */
   const struct ScalarVariable *variables;
   const struct Result *results;
   const double *nominal; /* state_count: scales of the absolute tolerance */
@@ -77,7 +86,8 @@ struct Lagrangian {
   double tolerance; /* relative, where the environment gives none */
   double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
   bool depends_on_time;
-  const struct Solver *solver; /* NULL for a system without coordinates */
+  const struct Solver *solver;      /* NULL for a system without coordinates */
+  struct Sparsity jacobian_pattern; /* where there is a jacobian() */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
@@ -90,8 +100,8 @@ struct Lagrangian {
   int (*derivatives)(const struct Point *point, double *derivative);
   /* The derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
-  /* d derivatives / d state, element (i, j) at jacobian[j * state_count + i] */
-  int (*jacobian)(const struct Point *point, double *jacobian);
+  /* d derivatives / d state: the elements in jacobian_pattern, in its order */
+  int (*jacobian)(const struct Point *point, double *values);
   /* The same as derivatives(); also fills the first coefficients in the workspace w[series_rows] of series(). */
   int (*start)(const struct Point *point, double *derivative, Series *w);
   /*

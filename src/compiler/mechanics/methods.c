@@ -16,7 +16,7 @@ static const struct Method methods[] = {
          "and sign are followed piece by piece. A point where the equations have no solution, a stiff system, and a "
          "friction that sticks end in fmi2Discard with a message that names them.",
      .evaluations = "series of the equations of motion",
-     .sources = {"solver_taylor.c", "taylor_reach.c", "series_limit.c"},
+     .sources = {"taylor.c", "taylor_reach.c", "series_limit.c"},
      .series = ALL_TERMS},
     {.name = "erk",
      .solver = "solver_erk",
@@ -35,7 +35,7 @@ static const struct Method methods[] = {
      .solver = "solver_exact",
      .sentence = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of time "
                  "over the communication step.",
-     .sources = {"solver_exact.c"},
+     .sources = {"exact.c"},
      .needs_linear = true},
 };
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };

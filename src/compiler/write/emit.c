@@ -39,7 +39,7 @@ static void directional_body(struct Emitter *emitter, size_t unused) {
   fprintf(emitter->file, "  double *change = derivative + %zu;\n", n);
   for (size_t i = 0; i < n; i++)
     if (!is_looped(emitter->equations, i)) emit_assignment(emitter, "change", i, along[i]);
-  emit_along_blocks(emitter, along, 1, "change", 0);
+  emit_along_blocks(emitter, along, 1, "change", NULL, 0);
   if (emitter->states > 2 * n) {
     statements_emit(emitter->statements, &emitter->program->power_along, 1);
     emit_assignment(emitter, "derivative", 2 * n, emitter->program->power_along);
@@ -47,25 +47,59 @@ static void directional_body(struct Emitter *emitter, size_t unused) {
   fputs("  return 0;\n", emitter->file);
 }
 
+/* Whether element (row, column) of the Jacobian may differ from 0. */
+static bool jacobian_has(const struct Emitter *emitter, size_t row, size_t column) {
+  const struct Equations *equations = emitter->equations;
+  size_t n = emitter->n, states = emitter->states;
+  if (column >= 2 * n) return false;
+  if (row < n) return column == n + row;
+  if (row == 2 * n) return emitter->program->power_jacobian[column] != ZERO;
+  size_t i = row - n;
+  if (emitter->program->jacobian[i * states + column] != ZERO) return true;
+  /* A block that is factored at run time has no zeros. */
+  for (size_t k = 0; is_looped(equations, i) && k < n; k++)
+    if (equations->block[k] == equations->block[i] && emitter->program->jacobian[k * states + column] != ZERO)
+      return true;
+  return false;
+}
+
+/* The pattern of the Jacobian by columns; returns the number of its elements. */
+static size_t emit_pattern(const struct Emitter *emitter) {
+  size_t states = emitter->states, count = 0, *start = allocate(states + 1, sizeof *start);
+  fputs("static const int jacobian_row[] = {", emitter->file);
+  for (size_t j = 0; j < states; j++) {
+    for (size_t i = 0; i < states; i++)
+      if (jacobian_has(emitter, i, j)) fprintf(emitter->file, "%s%zu", count++ > 0 ? ", " : "", i);
+    start[j + 1] = count;
+  }
+  fputs("};\nstatic const int jacobian_start[] = {", emitter->file);
+  for (size_t j = 0; j <= states; j++) fprintf(emitter->file, "%s%zu", j > 0 ? ", " : "", start[j]);
+  fputs("};\n\n", emitter->file);
+  free(start);
+  return count;
+}
+
 static void jacobian_body(struct Emitter *emitter, size_t unused) {
   (void)unused;
-  size_t n = emitter->n, states = emitter->states;
+  size_t n = emitter->n, states = emitter->states, count = 0, *place = allocate(n, sizeof *place);
   const Node *jacobian = emitter->program->jacobian;
   emit_local_accelerations(emitter, jacobian, n * states);
   statements_emit(emitter->statements, jacobian, n * states);
   if (states > 2 * n) statements_emit(emitter->statements, emitter->program->power_jacobian, states);
-  fprintf(emitter->file, "  memset(jacobian, 0, %zu * sizeof *jacobian);\n  double *column;\n", states * states);
   for (size_t j = 0; j < 2 * n; j++) {
-    fprintf(emitter->file, "  column = jacobian + %zu;\n", j * states);
-    if (j >= n) fprintf(emitter->file, "  column[%zu] = 1.0;\n", j - n);
-    fprintf(emitter->file, "  column += %zu;\n", n);
-    for (size_t i = 0; i < n; i++)
-      if (!is_looped(emitter->equations, i) && jacobian[i * states + j] != ZERO)
-        emit_assignment(emitter, "column", i, jacobian[i * states + j]);
-    emit_along_blocks(emitter, jacobian + j, states, "column", j);
-    if (states > 2 * n) emit_assignment(emitter, "column", n, emitter->program->power_jacobian[j]);
+    if (j >= n) fprintf(emitter->file, "  values[%zu] = 1.0;\n", count++);
+    for (size_t i = 0; i < n; i++) {
+      place[i] = NOWHERE;
+      if (!jacobian_has(emitter, n + i, j)) continue;
+      place[i] = count++;
+      if (!is_looped(emitter->equations, i)) emit_assignment(emitter, "values", place[i], jacobian[i * states + j]);
+    }
+    emit_along_blocks(emitter, jacobian + j, states, "values", place, j);
+    if (states > 2 * n && jacobian_has(emitter, 2 * n, j))
+      emit_assignment(emitter, "values", count++, emitter->program->power_jacobian[j]);
   }
   fputs("  return 0;\n", emitter->file);
+  free(place);
 }
 
 static void prepare_body(struct Emitter *emitter, size_t unused) {
@@ -180,7 +214,7 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
   fputs(series != NULL && !series->is_unrolled ? "#define SERIES_ROLLED 1\n" : "", file);
   fputs("#include <math.h>\n#include <string.h>\n\n#include \"lagrangian.h\"\n", file);
   fputs(has_loops(emitter.equations) ? "#include \"ldlt.h\"\n" : "", file);
-  fputs(emitter.n > 0 ? "#include \"solver.h\"\n\n" : "\n", file);
+  fputs("\n", file);
   emit_function(&emitter, "What depends on parameters alone", "int prepare(const double *p, double *prepared)",
                 prepare_body, 0);
   if (emitter.n > 0) {
@@ -190,9 +224,11 @@ void emit_system(FILE *file, const struct Program *program, const char *guid) {
                   "int directional(const struct Point *point, const struct Seed *seed, double *derivative)",
                   directional_body, 0);
   }
-  if (program->jacobian != NULL)
-    emit_function(&emitter, "Jacobian matrix", "int jacobian(const struct Point *point, double *jacobian)",
-                  jacobian_body, 0);
+  if (program->jacobian != NULL) {
+    emit_function(&emitter, "Jacobian matrix", "int jacobian(const struct Point *point, double *values)", jacobian_body,
+                  0);
+    emitter.jacobian_elements = emit_pattern(&emitter);
+  }
   if (series != NULL) emitter.series_rows = emit_series(&emitter, series);
   if (program->output_series != NULL) emitter.output_series_rows = emit_output_series(&emitter);
   if (program->linear != NULL)

@@ -115,19 +115,22 @@ void emit_accelerations(struct Emitter *emitter, const char *target) {
     if (block_is_looped(equations, block)) emit_block_solution(emitter, block, target);
 }
 
-void emit_along_blocks(struct Emitter *emitter, const Node *nodes, size_t stride, const char *target, size_t number) {
+void emit_along_blocks(struct Emitter *emitter, const Node *nodes, size_t stride, const char *target,
+                       const size_t *place, size_t number) {
   const struct Equations *equations = emitter->equations;
   size_t *members = allocate(emitter->n, sizeof *members);
   for (size_t block = 0; block < equations->block_count; block++) {
     if (!block_is_looped(equations, block)) continue;
     size_t count = block_members(equations, block, members);
+    if (place != NULL && place[members[0]] == NOWHERE) continue;
     char *name = format_text("y%zu_", number);
     struct NodeList right = {0};
     for (size_t i = 0; i < count; i++) append_nodes(&right, &nodes[members[i] * stride], 1);
     emit_array(emitter, name, block, right.nodes, right.count);
     fprintf(emitter->file, "  ldlt_solve(%zu, mass%zu, %s%zu);\n", count, block, name, block);
     for (size_t i = 0; i < count; i++)
-      fprintf(emitter->file, "  %s[%zu] = %s%zu[%zu];\n", target, members[i], name, block, i);
+      fprintf(emitter->file, "  %s[%zu] = %s%zu[%zu];\n", target, place != NULL ? place[members[i]] : members[i], name,
+              block, i);
     free(right.nodes);
     free(name);
   }

@@ -2,7 +2,11 @@
 #ifndef EMIT_ACCELERATIONS_H
 #define EMIT_ACCELERATIONS_H
 
+#include <stdint.h>
+
 #include "write/emitter.h"
+
+#define NOWHERE SIZE_MAX
 
 /* Whether the pivot depends on parameters alone, so that prepare() checks it. */
 bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
@@ -17,9 +21,11 @@ void emit_pivot_check(const struct Emitter *emitter, const struct Pivot *pivot);
 void emit_accelerations(struct Emitter *emitter, const char *target);
 
 /*
- * Solves the large blocks once more, for right sides in nodes[coordinate * stride], into target[0..n-1]; number keeps
+ * Solves the large blocks once more, for right sides in nodes[coordinate * stride], into target: that of coordinate i
+ * to target[place[i]], and blocks whose places are NOWHERE not at all; to target[i] where place is NULL. number keeps
  * local names apart.
  */
-void emit_along_blocks(struct Emitter *emitter, const Node *nodes, size_t stride, const char *target, size_t number);
+void emit_along_blocks(struct Emitter *emitter, const Node *nodes, size_t stride, const char *target,
+                       const size_t *place, size_t number);
 
 #endif

@@ -109,6 +109,8 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   const struct Interface *interface = program->interface;
   FILE *file = emitter->file;
   bool moves = emitter->n > 0;
+  const char *solver = moves ? interface->method->solver : NULL;
+  if (moves) fprintf(file, "extern const struct Solver %s;\n\n", solver);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = \"%s\",\n",
           program->model->name, guid);
   fprintf(file, "    .coordinate_count = %zu,\n    .state_count = %zu,\n    .input_count = %zu,\n", emitter->n,
@@ -123,7 +125,7 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   fputs(",\n    .max_step = ", file);
   write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
   fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s%s,\n    .prepare = prepare,\n",
-          interface->depends_on_time ? "true" : "false", moves ? "&" : "", moves ? interface->method->solver : "NULL");
+          interface->depends_on_time ? "true" : "false", moves ? "&" : "", moves ? solver : "NULL");
   fprintf(file, "    .derivatives = %s,\n    .directional = %s,\n", moves ? "derivatives" : "NULL",
           moves ? "directional" : "NULL");
   if (emitter->has_series)
@@ -132,6 +134,8 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   fprintf(file, "    .output_derivative_order = %d,\n", interface->output_derivative_order);
   if (program->output_series != NULL)
     fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", emitter->output_series_rows);
+  if (program->jacobian != NULL)
+    fprintf(file, "    .jacobian_pattern = {%zu, jacobian_start, jacobian_row},\n", emitter->jacobian_elements);
   fprintf(file, "    .jacobian = %s,\n    .linear = %s,\n};\n", program->jacobian != NULL ? "jacobian" : "NULL",
           program->linear != NULL ? "linear" : "NULL");
 }

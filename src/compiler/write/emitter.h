@@ -16,6 +16,7 @@ struct Emitter {
   size_t n, states;                       /* coordinates, state variables */
   struct SeriesWriter *series;            /* while series() is written */
   size_t series_rows, output_series_rows; /* of workspace that series() and output_series() need */
+  size_t jacobian_elements;               /* in the pattern that is written */
   bool has_series, has_limit;             /* series() and limit() are written */
 };
 
