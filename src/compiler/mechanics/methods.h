@@ -18,10 +18,11 @@ enum SeriesUse {
 enum { METHOD_SOURCES = 3 };
 
 struct Method {
-  const char *name;        /* in system.xml and on the command line */
-  const char *solver;      /* the C name of its struct Solver */
-  const char *sentence;    /* for the documentation */
-  const char *evaluations; /* what derivativeEvaluations counts; NULL for nothing */
+  const char *name;          /* in system.xml and on the command line */
+  const char *solver;        /* the C name of its struct Solver */
+  const char *sparse_solver; /* the one for a large sparse Jacobian; NULL for none */
+  const char *sentence;      /* for the documentation */
+  const char *evaluations;   /* what derivativeEvaluations counts; NULL for nothing */
   /* Its files for an FMU that carries sources; NULL where a library is behind it, which then allocates by itself. */
   const char *sources[METHOD_SOURCES];
   enum SeriesUse series;
@@ -37,5 +38,8 @@ char *method_names(void);
 
 /* Whether a library is behind the method. */
 bool method_uses_library(const struct Method *method);
+
+/* The C name of the solver for a Jacobian with so many rows and elements other than 0. */
+const char *method_solver(const struct Method *method, size_t rows, size_t elements);
 
 #endif

@@ -109,7 +109,7 @@ static void emit_description(const struct Emitter *emitter, const char *guid) {
   const struct Interface *interface = program->interface;
   FILE *file = emitter->file;
   bool moves = emitter->n > 0;
-  const char *solver = moves ? interface->method->solver : NULL;
+  const char *solver = moves ? method_solver(interface->method, emitter->states, emitter->jacobian_elements) : NULL;
   if (moves) fprintf(file, "extern const struct Solver %s;\n\n", solver);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = \"%s\",\n",
           program->model->name, guid);
