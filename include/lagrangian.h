@@ -21,13 +21,7 @@ struct Point {
   const double *input;
   const double *parameter;
   const double *prepared; /* what prepare() made of the parameters */
-  double *work;           /* lagrangian.work_count elements of workspace, for one thread at a time */
-};
-
-/* A sparse matrix by columns: column j has elements start[j] .. start[j + 1] - 1, with their rows ascending. */
-struct Sparsity {
-  size_t count; /* of elements */
-  const int *start, *row;
+  double *work;           /* workspace of the generated functions, whose values do not last from call to call */
 };
 
 /* A direction of a directional derivative. */
@@ -59,24 +53,32 @@ struct ScalarVariable {
   double start, minimum, maximum;
 };
 
+/* The elements of a matrix that may differ from 0. Those of column j are in row[start[j]] to row[start[j + 1] - 1]. */
+struct Sparsity {
+  size_t count;
+  const int *start; /* columns + 1 */
+  const int *row;   /* ascending in each column */
+};
+
 struct Solver;
 
 struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t variable_count, result_count;
+  size_t work_count;                      /* of Point.work */
   size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
-  int output_derivative_order;            /* the highest that fmi2GetRealOutputDerivatives knows */
+  int output_derivative_order;            /* the highest by time that outputs have */
   const struct ScalarVariable *variables;
   const bool *result_uses_acceleration; /* for each result */
-  size_t work_count;                    /* of struct Point */
-  const double *nominal; /* state_count: scales of the absolute tolerance */
+  const double *nominal;                /* state_count: scales of the absolute tolerance */
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */
   const char *const *inertia_depends_on;
   double tolerance; /* relative, where the environment gives none */
   double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
   bool depends_on_time;
-  const struct Solver *solver; /* NULL for a system without coordinates */
+  const struct Solver *solver;      /* NULL for a system without coordinates */
+  struct Sparsity jacobian_pattern; /* where there is a jacobian() */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
@@ -91,7 +93,6 @@ struct Lagrangian {
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
   /* d derivatives / d state: the elements of jacobian_pattern, in its order */
   int (*jacobian)(const struct Point *point, double *values);
-  struct Sparsity jacobian_pattern;
   /*
    * A computed variable; acceleration holds dv/dt at the point, where it is used. result_along: its derivative along
    * seed, with the accelerations changing by acceleration_along; of outputs alone.

@@ -147,30 +147,15 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
 
 static void write_solver(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
-  enum SolverMethod method = page->interface->method;
-  static const char *const solvers[] = {
-      [SOLVER_ERK] = "Co-simulation integrates with Dormand and Prince's method of order 5(4); a step depends only "
-                     "on the state that the FMU saves, so that a repeated step gives the same bits.",
-      [SOLVER_BDF] = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
-                     "history, so that a restored state goes on within the tolerance, not to the same bits.",
-      [SOLVER_TAYLOR] = "Co-simulation integrates with Taylor series of the motion, of an order that follows from the "
-                        "tolerance; a step depends only on the state that the FMU saves, so that a repeated step gives "
-                        "the same bits. Each step is held against the equations of motion at its end, and is so short "
-                        "that no function in them (exp, tanh, powers, quotients, ...) can hide a hill, a wall or a "
-                        "pulse from the series, however narrow. abs, min, max and sign are followed piece by piece. A "
-                        "point where the equations have no solution, a stiff system, and a friction that sticks end "
-                        "in fmi2Discard with a message that names them.",
-      [SOLVER_EXACT] = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of "
-                       "time over the communication step.",
-  };
+  const struct Method *method = page->interface->method;
   if (page->equations->count == 0) return;
   element(writer, "h2", "Solver");
-  element(writer, "p", solvers[method]);
+  element(writer, "p", method->sentence);
   if (!isnan(page->model->max_step)) {
     char *text = format_text("No step of the method is longer than %g s.", page->model->max_step);
     element(writer, "p", text);
     free(text);
-  } else if (method == SOLVER_ERK || method == SOLVER_BDF)
+  } else if (method->series == FIRST_TERMS)
     element(writer, "p",
             "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
             "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");

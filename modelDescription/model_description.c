@@ -23,14 +23,13 @@ static void write_file(xmlTextWriterPtr writer, const char *name) {
 /* FMUs without SUNDIALS are complete in C. */
 static void write_sources(xmlTextWriterPtr writer, const struct Equations *equations,
                           const struct Interface *interface) {
-  if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return;
+  const struct Method *method = interface->method;
+  if (method_uses_library(method)) return;
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
   write_file(writer, "system.c");
   for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
-  static const char *const taylor[] = {"solver_taylor.c", "taylor_reach.c", "series_limit.c"};
-  for (size_t i = 0; interface->method == SOLVER_TAYLOR && i < sizeof taylor / sizeof *taylor; i++)
-    write_file(writer, taylor[i]);
-  if (interface->method == SOLVER_EXACT) write_file(writer, "solver_exact.c");
+  for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
+    write_file(writer, method->sources[i]);
   if (has_loops(equations)) write_file(writer, "ldlt.c");
   xmlTextWriterEndElement(writer);
 }
@@ -39,12 +38,12 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
                              const struct Interface *interface) {
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
-  bool uses_sundials = interface->method == SOLVER_ERK || interface->method == SOLVER_BDF;
+  bool uses_library = method_uses_library(interface->method);
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
   write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   /* SUNDIALS allocates with malloc, so that these FMUs have no use for the caller's functions. */
-  if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
+  if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, equations, interface);
   xmlTextWriterEndElement(writer);
@@ -55,7 +54,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   /* Every system has outputs: its coordinates, or those that it names. */
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
                                     interface->output_derivative_order);
-  if (uses_sundials) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
+  if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, equations, interface);
   xmlTextWriterEndElement(writer);

@@ -11,16 +11,17 @@ file(COPY ${FOLDER}/documentation/index.html DESTINATION ${content}/documentatio
 file(COPY ${LIBRARY} DESTINATION ${content}/binaries/linux64)
 run(${ICON} ${LIBRARY} ${FOLDER}/modelDescription.xml model.png)
 
-# Where modelDescription.xml lists sources, these and all headers go with it.
+# Where modelDescription.xml lists sources, these and all headers go with it, in one folder: their names are unique.
 file(STRINGS ${FOLDER}/modelDescription.xml files REGEX "<File name=")
 if(files)
-  file(GLOB headers ${SOURCE}/include/*.h ${SOURCE}/src/runtime/*.h)
-  list(FILTER headers EXCLUDE REGEX "sundials")
+  file(GLOB headers ${SOURCE}/include/*.h ${SOURCE}/src/runtime/*.h ${SOURCE}/src/runtime/*/*.h)
+  list(FILTER headers EXCLUDE REGEX "(sundials|bdf)_support")
   file(COPY ${headers} ${FOLDER}/system.c DESTINATION ${content}/sources)
   foreach(file ${files})
     string(REGEX REPLACE ".*name=\"([^\"]*)\".*" "\\1" file "${file}")
     if(NOT file STREQUAL system.c)
-      file(COPY ${SOURCE}/src/runtime/${file} DESTINATION ${content}/sources)
+      file(GLOB source ${SOURCE}/src/runtime/${file} ${SOURCE}/src/runtime/*/${file})
+      file(COPY ${source} DESTINATION ${content}/sources)
     endif()
   endforeach()
 endif()

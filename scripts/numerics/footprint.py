@@ -32,7 +32,7 @@ def absent_features(name, members):
     present = {
         "input": "point->input" in code, "time": "point->time" in code, "loops": "ldlt_factor(" in code,
         "jacobian": "int jacobian(" in code, "series": "int series(" in code, "linear": "void linear(" in code,
-        "sundials": any("sundials" in m for m in members), "solver": any("solver_" in m for m in members),
+        "sundials": any("sundials" in m for m in members), "solver": any(m.startswith("libsolvers.a") for m in members),
     }  # fmt: skip
     return [text for feature, text in FEATURES.items() if not present[feature]]
 

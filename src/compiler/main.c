@@ -12,7 +12,7 @@
 #include "program/program.h"
 #include "read/reader.h"
 
-static const char *const usage =
+static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "\n"
@@ -20,7 +20,7 @@ static const char *const usage =
     "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
     "\n"
     "  -o DIR           the directory for the files\n"
-    "  --solver METHOD  taylor, erk, bdf or exact in place of the system's own\n"
+    "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
 
@@ -118,11 +118,13 @@ static int run(const struct Arguments *arguments) {
 int main(int count, char **words) {
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
-  if (!parse_arguments(count, words, &arguments)) fputs(usage, stderr);
-  else if (arguments.help) status = fputs(usage, stdout) < 0;
+  char *methods = method_names();
+  if (!parse_arguments(count, words, &arguments)) fprintf(stderr, usage, methods);
+  else if (arguments.help) status = fprintf(stdout, usage, methods) < 0;
   else status = run(&arguments);
   for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);
   free(arguments.point);
+  free(methods);
   free(arguments.definitions);
   xmlCleanupParser();
   return status;

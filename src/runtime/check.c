@@ -1,15 +1,5 @@
 #include "check.h"
 
-#include "log.h"
-
-bool check_call(struct Instance *instance, enum Function function, const char *name) {
-  enum Mode mode = (enum Mode)instance->situation->mode;
-  if (life_cycle_allows(function, instance->type, mode)) return true;
-  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, life_cycle_mode_name(mode),
-            instance->type == fmi2ModelExchange ? "model exchange" : "co-simulation");
-  return false;
-}
-
 bool check_array(struct Instance *instance, const void *array, size_t count, const char *function,
                  const char *argument) {
   if (array != NULL || count == 0) return true;
@@ -17,7 +7,7 @@ bool check_array(struct Instance *instance, const void *array, size_t count, con
   return false;
 }
 
-const struct ScalarVariable *check_reference(struct Instance *instance, fmi2ValueReference reference, bool integer,
+const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, bool integer,
                                              const char *function) {
   if (reference >= lagrangian.variable_count) {
     log_error(instance, "%s: the value reference %u is unknown; expected one below %zu", function, reference,

@@ -2,9 +2,7 @@
 
 #include <math.h>
 
-#include "log.h"
-
-void log_singularity(const struct Instance *instance, fmi2Status status, double time) {
+void log_singularity(const struct Instance *instance, enum Status status, double time) {
   if (instance->singular == 0) {
     log_message(
         instance, status,
@@ -24,15 +22,15 @@ void log_singularity(const struct Instance *instance, fmi2Status status, double 
               time, name, name, instance->state[coordinate], lagrangian.inertia_depends_on[coordinate]);
 }
 
-fmi2Status evaluate_prepare(struct Instance *instance) {
-  if (!instance->prepared_is_stale) return fmi2OK;
+enum Status evaluate_prepare(struct Instance *instance) {
+  if (!instance->prepared_is_stale) return STATUS_DONE;
   instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
   if (instance->singular != 0) {
-    log_singularity(instance, fmi2Discard, instance->situation->time);
-    return fmi2Discard;
+    log_singularity(instance, STATUS_DISCARD, instance->situation->time);
+    return STATUS_DISCARD;
   }
   instance->prepared_is_stale = false;
-  return fmi2OK;
+  return STATUS_DONE;
 }
 
 struct Point evaluate_point(const struct Instance *instance) {
@@ -50,6 +48,15 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   double sum = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) sum += derivative[i] - derivative[i];
   return sum == 0.0; /* infinities and NaN leave a NaN */
+}
+
+enum Status evaluate_situation(struct Instance *instance, double *derivative) {
+  enum Status status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  struct Point point = evaluate_point(instance);
+  if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  log_singularity(instance, STATUS_DISCARD, point.time);
+  return STATUS_DISCARD;
 }
 
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
@@ -70,50 +77,37 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
   }
 }
 
-static fmi2Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+  enum Status status = lagrangian.result_uses_acceleration[variable->index]
+                           ? evaluate_situation(instance, instance->work)
+                           : evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
-  if (lagrangian.result_uses_acceleration[variable->index] && !evaluate_derivatives(instance, &point, instance->work)) {
-    log_singularity(instance, fmi2Discard, point.time);
-    return fmi2Discard;
-  }
   *value = lagrangian.result(&point, instance->work + lagrangian.coordinate_count, variable->index);
-  return fmi2OK;
+  return STATUS_DONE;
 }
 
-static fmi2Status evaluate_derivative(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
-  struct Point point = evaluate_point(instance);
-  if (!evaluate_derivatives(instance, &point, instance->work)) {
-    log_singularity(instance, fmi2Discard, point.time);
-    return fmi2Discard;
-  }
-  *value = instance->work[variable->index];
-  return fmi2OK;
-}
-
-fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   double result = 0.0;
-  fmi2Status status = fmi2OK;
+  enum Status status = STATUS_DONE;
   switch (variable->kind) {
   case VARIABLE_TIME: result = instance->situation->time; break;
   case VARIABLE_STATE: result = instance->state[variable->index]; break;
   case VARIABLE_INPUT: result = instance->input[variable->index]; break;
   case VARIABLE_PARAMETER: result = instance->parameter[variable->index]; break;
   case VARIABLE_DERIVATIVE:
-    status = evaluate_prepare(instance);
-    if (status == fmi2OK) status = evaluate_derivative(instance, variable, &result);
+    status = evaluate_situation(instance, instance->work);
+    if (status == STATUS_DONE) result = instance->work[variable->index];
     break;
-  case VARIABLE_RESULT:
-    status = evaluate_prepare(instance);
-    if (status == fmi2OK) status = evaluate_result(instance, variable, &result);
-    break;
-  case VARIABLE_STATISTIC: return fmi2Error; /* no Real */
+  case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
+  case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
   }
-  if (status == fmi2OK && !isfinite(result)) {
-    log_message(instance, fmi2Discard, "time %g: '%s' has no finite value here; try other parameters or states",
+  if (status == STATUS_DONE && !isfinite(result)) {
+    log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value here; try other parameters or states",
                 instance->situation->time, variable->name);
-    status = fmi2Discard;
+    status = STATUS_DISCARD;
   }
-  if (status == fmi2OK) *value = result;
+  if (status == STATUS_DONE) *value = result;
   return status;
 }
 

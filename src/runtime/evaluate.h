@@ -4,8 +4,8 @@
 
 #include "instance.h"
 
-/* What prepare() makes of the parameters, brought up to date. Returns fmi2Discard after logging a singular matrix. */
-fmi2Status evaluate_prepare(struct Instance *instance);
+/* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
+enum Status evaluate_prepare(struct Instance *instance);
 
 /* The point of the situation: its time, state, inputs and parameters. */
 struct Point evaluate_point(const struct Instance *instance);
@@ -16,8 +16,11 @@ struct Point evaluate_point(const struct Instance *instance);
  */
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
 
+/* The same at the situation, prepared values included. Discards after logging why there is no derivative. */
+enum Status evaluate_situation(struct Instance *instance, double *derivative);
+
 /* Logs why evaluate_derivatives() returned false, as a message of this status. */
-void log_singularity(const struct Instance *instance, fmi2Status status, double time);
+void log_singularity(const struct Instance *instance, enum Status status, double time);
 
 /* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
@@ -25,8 +28,8 @@ void expand_input(const struct Instance *instance, size_t i, double time, double
 /* The inputs at time; input[input_count]. */
 void evaluate_inputs(const struct Instance *instance, double time, double *input);
 
-/* The value of a Real variable. Returns fmi2Discard after logging where it is not finite. */
-fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value);
+/* The value of a Real variable. Discards after logging where it is not finite. */
+enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value);
 
 /*
  * The derivative of an output, a state or a state derivative along seed; derivative and derivative_along hold
@@ -34,8 +37,5 @@ fmi2Status evaluate_variable(struct Instance *instance, const struct ScalarVaria
  */
 double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
                       const double *derivative, const double *derivative_along);
-
-/* d value / dt of outputs, with the inputs' first derivatives. Returns fmi2Discard after logging a singularity. */
-fmi2Status derivatives_in_time(struct Instance *instance, const fmi2ValueReference *vr, size_t nvr, double *value);
 
 #endif

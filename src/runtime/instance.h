@@ -1,57 +1,86 @@
-/* One instance of the FMU: nothing here is shared between instances. */
+/* One instance of the FMU, for any interface: nothing here is shared between instances. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fmi2.h"
 #include "lagrangian.h"
-#include "life_cycle.h"
+#include "log.h"
 
 enum { INPUT_ORDER = 3 }; /* the highest input derivative; an input is a polynomial over a step */
 
+enum Kind { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
+
+/* Where an instance stands in its life. */
+enum Mode {
+  MODE_INSTANTIATED,
+  MODE_INITIALIZATION,
+  MODE_EVENT,
+  MODE_CONTINUOUS_TIME,
+  MODE_STEP_COMPLETE,
+  MODE_STEP_FAILED,
+  MODE_TERMINATED,
+  MODE_ERROR,
+  MODE_COUNT
+};
+
+/* From one time to a later one. */
+struct Span {
+  double start, end;
+};
+
 /*
- * All that fmi2GetFMUstate saves, in one block of memory without pointers. The values are state, input, parameter,
- * the input derivatives of order 1, then 2, then 3, and what the solver keeps.
+ * All that a saved state of the instance holds, in one block of memory without pointers. The values are state, input,
+ * parameter, the input derivatives of order 1, then 2, then 3, and what the solver keeps.
  */
 struct Situation {
   int32_t mode; /* enum Mode */
-  int32_t type; /* fmi2Type */
+  int32_t kind; /* enum Kind */
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the step to come */
   int32_t changed;               /* state, inputs or parameters were, since the last step */
   int32_t statistics[STATISTIC_COUNT];
-  double time, start_time, stop_time;
+  double time, stop_time;
   double tolerance;
-  double suggested_step; /* of a one-step solver, not clipped by the communication step; 0 for none */
+  double suggested_step; /* of a solver that starts anew, not clipped by the communication step; 0 for none */
+  struct Span last_step; /* of the solver, which may end after time */
   double values[];
 };
 
+struct Allocator {
+  void *(*allocate)(size_t count, size_t size); /* zeros */
+  void (*free)(void *block);
+};
+
 struct Instance {
-  fmi2CallbackLogger logger;
-  fmi2CallbackAllocateMemory allocate;
-  fmi2CallbackFreeMemory free;
-  fmi2ComponentEnvironment environment;
-  char *name;
-  fmi2Type type;
-  unsigned log_categories; /* bit: enum LogCategory */
+  struct Allocator memory;
+  struct Log log;
+  enum Kind kind;
   struct Situation *situation;
   double *state, *input, *parameter, *input_derivatives; /* inside situation->values */
   void *saved;                                           /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
-  bool solver_is_stale; /* the situation was replaced: what the solver keeps outside of it no longer counts */
-  int singular;         /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
-  double *point_work;   /* lagrangian.work_count, for generated functions */
-  double *work;         /* 3 state_count + 2 input_count + parameter_count, for evaluations */
+  bool solver_is_stale;   /* the situation was replaced: what the solver keeps outside of it no longer counts */
+  int singular;           /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  const char *limited_by; /* the elementary function that shortened the solver's last step; NULL for none */
+  double *work;           /* 3 state_count + 2 input_count + parameter_count, for evaluations */
+  double *point_work;     /* lagrangian.work_count, for generated functions */
   void *solver_memory;
 };
 
+/* False, and nothing is allocated, where there is no memory. Logs nothing. */
+bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log);
+void instance_destroy(struct Instance *instance);
+
+/* As after creation: start values, nothing defined. */
+void instance_reset(struct Instance *instance);
+
+/* The mode as messages name it. */
+const char *instance_mode_name(const struct Instance *instance);
+
 /* Bytes of the situation of this system. */
 size_t situation_size(void);
-
-/* The situation after instantiation: start values, nothing defined. */
-void situation_reset(struct Instance *instance);
 
 #endif

@@ -1,8 +1,6 @@
-/* Messages to the caller's logger, by category (section 2.1.5). */
+/* How requests end, and messages about it, which an interface hands on to its caller. */
 #ifndef LOG_H
 #define LOG_H
-
-#include "instance.h"
 
 /* Lets compilers that know it check the arguments of a format. */
 #ifdef __GNUC__
@@ -11,21 +9,30 @@
 #define LIKE_PRINTF(place, first)
 #endif
 
-enum LogCategory { LOG_EVENTS, LOG_WARNING, LOG_DISCARD, LOG_ERROR, LOG_FATAL, LOG_ALL, LOG_CATEGORY_COUNT };
+struct Instance;
 
-enum { ALL_LOG_CATEGORIES = (1u << LOG_CATEGORY_COUNT) - 1u };
+/* From best to worst. */
+enum Status {
+  STATUS_DONE,
+  STATUS_WARNING,
+  STATUS_DISCARD, /* not possible here, but the instance can be read, or go on from an earlier state */
+  STATUS_ERROR    /* the instance goes on after a reset alone */
+};
 
-/* LOG_CATEGORY_COUNT where there is no category of this name. */
-enum LogCategory log_category(const char *name);
+enum { MESSAGE_LENGTH = 600 };
 
-/* Sends a message where its category is enabled; '%' and '#' are escaped as the logger expects. */
-void log_message(const struct Instance *instance, fmi2Status status, const char *format, ...) LIKE_PRINTF(3, 4);
+/* Where messages go. */
+struct Log {
+  void (*write)(void *receiver, enum Status status, const char *message);
+  void *receiver;
+  unsigned wanted; /* bits 1 << status; other messages are not even formatted */
+};
 
-/* Logs an error and makes the instance refuse to go on until it is reset; returns fmi2Error. */
-fmi2Status log_error(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
+void log_write(const struct Log *log, enum Status status, const char *format, ...) LIKE_PRINTF(3, 4);
 
-/* A message about an instance that does not exist yet; logger may be NULL. */
-void log_instantiation(const fmi2CallbackFunctions *functions, fmi2String name, const char *format, ...)
-    LIKE_PRINTF(3, 4);
+void log_message(const struct Instance *instance, enum Status status, const char *format, ...) LIKE_PRINTF(3, 4);
+
+/* Logs an error and makes the instance refuse to go on until it is reset; returns STATUS_ERROR. */
+enum Status log_error(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
 #endif

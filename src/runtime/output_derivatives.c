@@ -1,9 +1,9 @@
-/* Derivatives of outputs (section 4.2.1): the coefficients of their Taylor series in time. */
+/* Derivatives of outputs: the coefficients of their Taylor series in time. */
 #include <math.h>
 
 #include "check.h"
+#include "derivatives.h"
 #include "evaluate.h"
-#include "log.h"
 
 /* Series about the present time; the rows are parts of one block. */
 struct Expansion {
@@ -21,9 +21,9 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
   size_t work = larger(lagrangian.series_rows, lagrangian.output_series_rows);
   size_t rows = states + inputs + lagrangian.result_count + work;
   size_t matrix = lagrangian.linear == NULL ? 0 : states * (states + inputs + 1);
-  expansion->state = instance->allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
+  expansion->state = instance->memory.allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
   if (expansion->state == NULL) {
-    log_error(instance, "allocateMemory returned no memory for the derivatives of outputs");
+    log_error(instance, "there is no memory for the derivatives of outputs");
     return false;
   }
   expansion->input = expansion->state + states;
@@ -47,7 +47,7 @@ static void expand_linear(const struct Instance *instance, int order, const stru
     }
 }
 
-static fmi2Status expand(struct Instance *instance, int order, const struct Expansion *expansion) {
+static enum Status expand(struct Instance *instance, int order, const struct Expansion *expansion) {
   struct Point point = evaluate_point(instance);
   const Series *input = (const Series *)expansion->input;
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
@@ -55,8 +55,8 @@ static fmi2Status expand(struct Instance *instance, int order, const struct Expa
   if (lagrangian.series != NULL) {
     instance->singular = lagrangian.start(&point, instance->work, expansion->work);
     if (instance->singular != 0) {
-      log_singularity(instance, fmi2Discard, point.time);
-      return fmi2Discard;
+      log_singularity(instance, STATUS_DISCARD, point.time);
+      return STATUS_DISCARD;
     }
     for (size_t i = 0; i < lagrangian.state_count; i++) {
       expansion->state[i][0] = instance->state[i];
@@ -67,58 +67,53 @@ static fmi2Status expand(struct Instance *instance, int order, const struct Expa
   if (lagrangian.output_series != NULL)
     lagrangian.output_series(&point, order, input, (const Series *)expansion->state, expansion->work,
                              expansion->output);
-  return fmi2OK;
+  return STATUS_DONE;
 }
 
-static fmi2Status read_derivative(struct Instance *instance, const struct Expansion *expansion,
-                                  const struct ScalarVariable *variable, int order, double *value) {
+static enum Status read_derivative(struct Instance *instance, const struct Expansion *expansion,
+                                   const struct ScalarVariable *variable, int order, double *value,
+                                   const char *function) {
   Series *rows = variable->kind == VARIABLE_STATE ? expansion->state : expansion->output;
   double derivative = rows[variable->index][order];
   for (int k = 2; k <= order; k++) derivative *= k;
   if (!isfinite(derivative)) {
-    log_message(instance, fmi2Discard, "fmi2GetRealOutputDerivatives: the derivative %d of '%s' is not finite here",
-                order, variable->name);
-    return fmi2Discard;
+    log_message(instance, STATUS_DISCARD, "%s: the derivative %d of '%s' is not finite here", function, order,
+                variable->name);
+    return STATUS_DISCARD;
   }
   *value = derivative;
-  return fmi2OK;
+  return STATUS_DONE;
 }
 
-static fmi2Status read_from_series(struct Instance *instance, const fmi2ValueReference *vr, size_t nvr,
-                                   const fmi2Integer *order, double *value) {
+static enum Status read_from_series(struct Instance *instance, const unsigned *reference, size_t count,
+                                    const int *order, double *value, const char *function) {
   struct Expansion expansion;
   int highest = 0;
-  for (size_t i = 0; i < nvr; i++) highest = order[i] > highest ? order[i] : highest;
-  if (!expansion_create(instance, &expansion)) return fmi2Error;
-  fmi2Status status = expand(instance, highest, &expansion);
-  for (size_t i = 0; i < nvr && status == fmi2OK; i++)
-    status = read_derivative(instance, &expansion, &lagrangian.variables[vr[i]], order[i], &value[i]);
-  instance->free(expansion.state);
+  for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
+  if (!expansion_create(instance, &expansion)) return STATUS_ERROR;
+  enum Status status = expand(instance, highest, &expansion);
+  for (size_t i = 0; i < count && status == STATUS_DONE; i++)
+    status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i], function);
+  instance->memory.free(expansion.state);
   return status;
 }
 
-static fmi2Status check_output_derivative(struct Instance *instance, fmi2ValueReference reference, int order) {
-  static const char *const name = "fmi2GetRealOutputDerivatives";
-  const struct ScalarVariable *variable = check_reference(instance, reference, false, name);
-  if (variable == NULL) return fmi2Error;
-  if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", name, variable->name);
-  if (order >= 1 && order <= lagrangian.output_derivative_order) return fmi2OK;
-  return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", name, order, variable->name,
-                   lagrangian.output_derivative_order);
+static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order,
+                                           const char *function) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
+  if (variable == NULL) return STATUS_ERROR;
+  if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", function, variable->name);
+  if (order >= 1 && order <= lagrangian.output_derivative_order) return STATUS_DONE;
+  return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", function, order,
+                   variable->name, lagrangian.output_derivative_order);
 }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                                        const fmi2Integer order[], fmi2Real value[]) {
-  static const char *const name = "fmi2GetRealOutputDerivatives";
-  struct Instance *instance = c;
-  if (instance == NULL) return fmi2Error;
-  if (!check_call(instance, FUNCTION_GET_OUTPUT_DERIVATIVES, name) || !check_array(instance, vr, nvr, name, "vr") ||
-      !check_array(instance, order, nvr, name, "order") || !check_array(instance, value, nvr, name, "value"))
-    return fmi2Error;
-  for (size_t i = 0; i < nvr; i++)
-    if (check_output_derivative(instance, vr[i], order[i]) != fmi2OK) return fmi2Error;
-  fmi2Status status = evaluate_prepare(instance);
-  if (status != fmi2OK) return status;
-  return lagrangian.output_derivative_order == 1 ? derivatives_in_time(instance, vr, nvr, value)
-                                                 : read_from_series(instance, vr, nvr, order, value);
+enum Status output_derivatives(struct Instance *instance, const unsigned *reference, size_t count, const int *order,
+                               double *value, const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_output_derivative(instance, reference[i], order[i], function) != STATUS_DONE) return STATUS_ERROR;
+  enum Status status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  return lagrangian.output_derivative_order == 1 ? derivatives_in_time(instance, reference, count, value, function)
+                                                 : read_from_series(instance, reference, count, order, value, function);
 }

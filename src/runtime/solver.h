@@ -1,31 +1,48 @@
-/* What a solver offers fmi2DoStep. Each method is one file, and an FMU links the one that its system names. */
+/* What a solver offers. Each method is one file of solvers/, and an FMU links the one that its system names. */
 #ifndef SOLVER_H
 #define SOLVER_H
 
 #include "instance.h"
 
-enum StepResult {
-  STEP_DONE,
-  STEP_PARTIAL, /* the state belongs to a time before the end, which *reached tells */
-  STEP_FAILED   /* the state is as it was */
+/* A communication step on its way. */
+struct CommunicationStep {
+  double start, end;
+  double length; /* > 0; end - start but for rounding */
+  long count;    /* steps that the solver has made in it */
 };
 
+/*
+ * Everything that the core knows of a method. A solver makes steps of its own: situation->last_step spans the last one,
+ * which may reach past the communication step, and whose states interpolate() knows. Meanwhile situation->time and
+ * instance->state are those of the start of the communication step.
+ */
 struct Solver {
+  const char *name;   /* in messages */
+  const char *remedy; /* the end of the message that it stopped; NULL for the usual one */
+  /* The library behind the solver has an allocator of its own, and no use for the caller's. */
+  bool allocates_by_itself;
+  /* Every communication step does, so that it depends on nothing that the solver keeps. */
+  bool starts_anew;
   /* Bytes that the solver keeps in the situation, at instance->saved; NULL for none. */
   size_t (*saved_size)(void);
-  /* The library behind the solver has an allocator of its own; canNotUseMemoryManagementFunctions is then true. */
-  bool allocates_by_itself;
   /* Allocates instance->solver_memory. False after logging where that fails. */
   bool (*create)(struct Instance *instance);
   void (*destroy)(struct Instance *instance);
   /*
-   * Integrates instance->state from situation->time over length > 0, and logs what goes wrong. Where
-   * situation->changed or instance->solver_is_stale, the past of the solver no longer counts.
+   * Begins at the start of the communication step, where last_step already is; the past no longer counts. False after
+   * logging where that fails. NULL where there is nothing to do.
    */
-  enum StepResult (*step)(struct Instance *instance, double length, double *reached);
+  bool (*restart)(struct Instance *instance, const struct CommunicationStep *step);
+  /* Goes on after another situation was restored. NULL for a solver that must restart then. */
+  void (*resume)(struct Instance *instance);
+  /*
+   * Makes one step from the end of last_step, which then spans it. NULL, or the reason why there is no step: the end of
+   * last_step, which is then left or moved to where the solver came, is as far as the state can go.
+   */
+  const char *(*advance)(struct Instance *instance, const struct CommunicationStep *step);
+  /* The state at a time in last_step. False where it is not known. */
+  bool (*interpolate)(struct Instance *instance, double time, double *state);
 };
-
-extern const struct Solver solver_erk, solver_bdf, solver_exact, solver_taylor;
 
 /*
  * d state / dt at a time and state that the solver chose, with the inputs of that time; counts the evaluation.
@@ -33,7 +50,18 @@ extern const struct Solver solver_erk, solver_bdf, solver_exact, solver_taylor;
  */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
-/* The point for the generated Jacobian at a time and state that the solver chose. */
+/* The point for generated functions at a time and state that the solver chose. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
+
+/* Logs that the solver has no memory; returns false. */
+bool solver_lacks_memory(const struct Instance *instance);
+
+/* Whether a step is only a few units in the last place of the time. */
+bool solver_rests(double time, double step);
+
+/* What a user reads where a solver rests. */
+extern const char solver_resting[];
+
+enum { STEP_LIMIT = 10000000 }; /* steps of a solver in one communication step */
 
 #endif

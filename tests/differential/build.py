@@ -27,7 +27,9 @@ def runtime():
     """Object files and libraries that every FMU is linked with."""
     cache = (BUILD / "CMakeCache.txt").read_text()
     sundials = re.findall(r"^sundials_\w+:FILEPATH=(.*)$", cache, re.MULTILINE)
-    objects = sorted((BUILD / "CMakeFiles" / "interface.dir").rglob("*.o"))
+    folder = BUILD / "CMakeFiles" / "interface.dir"
+    # Objects of sources that are gone stay in a build folder.
+    objects = sorted(path for path in folder.rglob("*.o") if (ROOT / path.relative_to(folder)).with_suffix("").exists())
     assert objects and sundials, f"{BUILD} is not built"
     return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials, "-Wl,--end-group", "-lm"]
 
@@ -55,7 +57,7 @@ def compile_system(system, folder):
     speed = ["-O2"] if plan.unrolled else ["-O1", "-DSERIES_ROLLED"]
     words = [plan.compiler, *speed, *WARNINGS, "-std=gnu11", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-shared",
              f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(), "-Wl,--exclude-libs,ALL",
-             f"-Wl,--version-script={ROOT}/src/runtime/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
+             f"-Wl,--version-script={ROOT}/src/runtime/fmi2/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
     result = run(words, plan.compiler)
     if result.returncode != 0:
         raise Wrong(f"C that {plan.compiler} refuses: {result.stderr[:1000]}")

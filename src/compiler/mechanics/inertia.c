@@ -182,7 +182,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   elements_free(&elements);
   if (model->graph->overflow) return inertia;
   if (pivots_check(model, inertia, diagnostics)) {
-    bool unroll_all = model->linearized || model->method == SOLVER_EXACT;
+    bool unroll_all = model->linearized || (model->method != NULL && model->method->needs_linear);
     for (size_t b = 0; b < inertia->block_count; b++)
       inertia->blocks[b].is_unrolled = unroll_all || inertia->blocks[b].count <= UNROLL_LIMIT;
     pivots_factor(model->graph, inertia);

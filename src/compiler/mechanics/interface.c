@@ -76,11 +76,10 @@ static void append_bodies(struct Interface *interface, const struct Model *model
 
 static void append_statistics(struct Interface *interface) {
   append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
-  if (interface->method == SOLVER_EXACT) return;
-  append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
-         interface->method == SOLVER_TAYLOR ? "series of the equations of motion"
-                                            : "evaluations of the equations of motion");
-  if (interface->method == SOLVER_BDF)
+  if (interface->method->evaluations != NULL)
+    append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
+           interface->method->evaluations);
+  if (interface->method->needs_jacobian)
     append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
            "evaluations of the Jacobian matrix");
 }
@@ -97,18 +96,18 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
-static enum SolverMethod method_of(const struct Model *model, const struct Equations *equations) {
-  if (model->coordinates.count == 0) return SOLVER_NONE;
-  if (model->method != SOLVER_DEFAULT) return model->method;
-  if (model->linearized) return SOLVER_EXACT;
+static const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
+  if (model->coordinates.count == 0) return NULL;
+  if (model->method != NULL) return model->method;
+  if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  return kink == NULL ? SOLVER_TAYLOR : SOLVER_ERK;
+  return method_named(kink == NULL ? "taylor" : "erk");
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
 static int output_derivative_order(const struct Interface *interface, const struct Model *model,
                                    const struct Equations *equations) {
-  if (interface->method == SOLVER_ERK || interface->method == SOLVER_BDF) return 1;
+  if (interface->method != NULL && interface->method->series == FIRST_TERMS) return 1;
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 

@@ -23,7 +23,7 @@ struct Interface {
   size_t first[VARIABLE_STATISTIC + 1]; /* the place of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
-  enum SolverMethod method; /* the one that is used */
+  const struct Method *method; /* the one that is used; NULL for a system without coordinates */
   int output_derivative_order;
 };
 

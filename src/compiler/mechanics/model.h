@@ -4,6 +4,7 @@
 
 #include "algebra/quantity.h"
 #include "diagnostics.h"
+#include "mechanics/methods.h"
 
 struct Variable {
   char *name, *description;
@@ -27,8 +28,6 @@ struct Body {
   bool has_position[3], has_angle;
   long line;
 };
-
-enum SolverMethod { SOLVER_DEFAULT, SOLVER_ERK, SOLVER_BDF, SOLVER_EXACT, SOLVER_TAYLOR, SOLVER_NONE };
 
 /* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
 struct LinearizationPoint {
@@ -54,8 +53,8 @@ struct Model {
   bool has_forces;                        /* some force or dissipation was given */
   long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
-  struct LinearizationPoint point; /* where linearized */
-  enum SolverMethod method;
+  struct LinearizationPoint point;         /* where linearized */
+  const struct Method *method;             /* NULL for the default */
   double tolerance, max_step;              /* NAN where none was given; max_step in s */
   double start_time, stop_time, step_size; /* NAN where none was given */
   long solver_line;

@@ -96,7 +96,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   const struct Model *model = expressions->model;
   const struct Equations *equations = expressions->equations;
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  bool is_taylor = expressions->interface->method == SOLVER_TAYLOR;
+  bool is_taylor = expressions->interface->method->series == ALL_TERMS;
   if (kink == NULL || !is_taylor)
     expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
   else
@@ -114,13 +114,13 @@ static void create_output_series(struct Expressions *expressions) {
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
-  enum SolverMethod method = interface->method;
+  const struct Method *method = interface->method;
   struct Expressions *expressions = allocate(1, sizeof *expressions);
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
-  if (method == SOLVER_EXACT) create_linear(expressions, diagnostics);
+  if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
   create_directional(expressions);
-  if (method == SOLVER_BDF) expressions->jacobian = jacobian_create(model->graph, equations);
-  if (method == SOLVER_TAYLOR || method == SOLVER_ERK || method == SOLVER_BDF) create_series(expressions, diagnostics);
+  if (method != NULL && method->needs_jacobian) expressions->jacobian = jacobian_create(model->graph, equations);
+  if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
   if (model->graph->overflow)
     report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",

@@ -177,7 +177,7 @@ static void create_results(struct Program *program, struct Values *values) {
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
   if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
-  if (program->series != NULL && program->interface->method != SOLVER_TAYLOR && program->series->limit.count == 0) {
+  if (program->series != NULL && program->interface->method->series != ALL_TERMS && program->series->limit.count == 0) {
     series_program_free(program->series);
     program->series = NULL;
   }

@@ -311,25 +311,12 @@ static void read_definition(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
-bool solver_method(const char *name, enum SolverMethod *method) {
-  static const struct {
-    const char *name;
-    enum SolverMethod method;
-  } methods[] = {{"erk", SOLVER_ERK}, {"bdf", SOLVER_BDF}, {"exact", SOLVER_EXACT}, {"taylor", SOLVER_TAYLOR}};
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    if (strcmp(name, methods[i].name) != 0) continue;
-    *method = methods[i].method;
-    return true;
-  }
-  return false;
-}
-
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
   if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
-  if (method != NULL) solver_method(method, &reader->model->method);
+  if (method != NULL) reader->model->method = method_named(method);
   double *tolerance = &reader->model->tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",

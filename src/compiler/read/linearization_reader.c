@@ -68,7 +68,7 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
   free(model->description);
   model->name = attribute(root, "name");
   model->description = attribute(root, "description");
-  model->method = SOLVER_DEFAULT;
+  model->method = NULL;
   model->max_step = NAN;
   begin_point(model);
   for (xmlNodePtr node = root->children; node != NULL; node = node->next) {

@@ -178,8 +178,12 @@ struct Model *model_read(const char *path, const struct ReaderOptions *options, 
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
   scope_free(scope);
-  if (model == NULL || options->solver == NULL || solver_method(options->solver, &model->method)) return model;
-  report_error(diagnostics, 0, "--solver %s is not known; expected taylor, erk, bdf or exact", options->solver);
+  if (model == NULL || options->solver == NULL) return model;
+  model->method = method_named(options->solver);
+  if (model->method != NULL) return model;
+  char *names = method_names();
+  report_error(diagnostics, 0, "--solver %s is not known; expected %s", options->solver, names);
+  free(names);
   model_free(model);
   return NULL;
 }

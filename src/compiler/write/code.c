@@ -15,7 +15,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   else if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
-  fputs(program->equations->count > 0 ? "#include \"solver.h\"\n\n" : "\n", file);
+  fputs("\n", file);
 }
 
 /* The pattern of each large block's factors, and the numbers of its coordinates, from 1 on. */

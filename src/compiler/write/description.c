@@ -96,26 +96,31 @@ static void write_functions(FILE *file, const struct Program *program) {
   if (program->linear != NULL) fputs("    .linear = linear,\n", file);
 }
 
+/* NULL for a system without coordinates. */
+static const char *solver_of(const struct Program *program) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  if (program->equations->count == 0) return NULL;
+  return method_solver(program->interface->method, program->interface->state_count,
+                       jacobian != NULL ? jacobian->count : 0);
+}
+
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
-  static const char *const solvers[] = {[SOLVER_ERK] = "&solver_erk",
-                                        [SOLVER_BDF] = "&solver_bdf",
-                                        [SOLVER_EXACT] = "&solver_exact",
-                                        [SOLVER_TAYLOR] = "&solver_taylor",
-                                        [SOLVER_NONE] = "NULL"};
   const struct Interface *interface = program->interface;
+  const char *solver = solver_of(program);
+  if (solver != NULL) fprintf(file, "extern const struct Solver %s;\n\n", solver);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n",
           program->model->name);
   write_counts(file, program, work_count);
   fputs("    .variables = variables,\n", file);
-  if (program->equations->count > 0)
-    fputs("    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n", file);
+  if (solver != NULL)
+    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &%s,\n",
+            solver);
   fputs("    .tolerance = ", file);
   write_c_number(file, interface_tolerance(program->model));
   fputs(",\n    .max_step = ", file);
   write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
-  fprintf(file, ",\n    .depends_on_time = %s,\n    .solver = %s,\n    .output_derivative_order = %d,\n",
-          interface->depends_on_time ? "true" : "false", solvers[interface->method],
-          interface->output_derivative_order);
+  fprintf(file, ",\n    .depends_on_time = %s,\n    .output_derivative_order = %d,\n",
+          interface->depends_on_time ? "true" : "false", interface->output_derivative_order);
   write_functions(file, program);
   fputs("};\n", file);
 }

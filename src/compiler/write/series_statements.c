@@ -19,7 +19,7 @@ enum {
 };
 
 bool series_is_unrolled(const struct Program *program) {
-  return program->series != NULL && program->interface->method == SOLVER_TAYLOR && program->blocks.count == 0 &&
+  return program->series != NULL && program->interface->method->series == ALL_TERMS && program->blocks.count == 0 &&
          program->series->recurrences <= UNROLLED_RECURRENCES;
 }
 

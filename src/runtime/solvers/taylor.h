@@ -6,25 +6,31 @@
 
 #include "instance.h"
 
-/* What the situation holds for this solver; it tells all that a step depends on. */
+/* What the situation holds for this solver, beside the span of its last step; they tell all that a step depends on. */
 struct Saved {
-  double origin; /* the time of the series */
-  double reach;  /* how far from there it is right; 0 for no series yet */
+  double reach; /* how far from the origin the series is right, the length of the last step; 0 for no series yet */
   int64_t order;
   /* double low[state_count]: what rounding left of the state at origin; Series x[state_count] */
 };
 
+/* Steps of one kind that hardly move the system; the kind goes on where a thousand of them do not. */
+struct Crawl {
+  int steps;
+  double path;
+};
+
 struct Taylor {
   struct Saved *saved;
+  struct Span *span; /* of the last step; its start is the origin of the series */
   double *low;
   Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
   Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.series */
   /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
   double *term, *derivative;
-  bool is_measured;     /* lagrangian.start was called last for the end of the reach */
-  bool is_limited;      /* the step is short for another reason than the size of its coefficients */
-  bool crosses;         /* the step crosses a point where a function has no series */
-  const char *function; /* an elementary function that made it so; NULL for none */
+  bool is_measured; /* lagrangian.start was called last for the end of the reach */
+  bool is_limited;  /* the step is short for another reason than the size of its coefficients */
+  bool crosses;     /* the step crosses a point where a function has no series */
+  struct Crawl regular, crossing;
 };
 
 /* The size of a state variable at the origin, or its nominal value where that is larger. */

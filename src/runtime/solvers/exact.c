@@ -9,8 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluate.h"
-#include "log.h"
 #include "solver.h"
 
 /* What is kept of the last step: with the same step and parameters, its matrix serves again. */
@@ -37,8 +35,8 @@ static size_t saved_size(void) {
 
 static void destroy(struct Instance *instance) {
   struct Exact *exact = instance->solver_memory;
-  if (exact->generator != NULL) instance->free(exact->generator);
-  instance->free(exact);
+  if (exact->generator != NULL) instance->memory.free(exact->generator);
+  instance->memory.free(exact);
   instance->solver_memory = NULL;
 }
 
@@ -61,19 +59,18 @@ static void lay_out(struct Exact *exact, size_t size) {
 static bool create(struct Instance *instance) {
   size_t states = lagrangian.state_count, size = size_of(1 + INPUT_ORDER);
   size_t doubles = lagrangian.parameter_count + size + states * (size + states + lagrangian.input_count + 4);
-  struct Exact *exact = instance->allocate(1, sizeof *exact);
+  struct Exact *exact = instance->memory.allocate(1, sizeof *exact);
   if (exact != NULL) {
     instance->solver_memory = exact;
-    exact->generator =
-        instance->allocate(1, 4 * size * size * sizeof(long double) + doubles * sizeof(double) + size * sizeof(int));
+    exact->generator = instance->memory.allocate(1, 4 * size * size * sizeof(long double) + doubles * sizeof(double) +
+                                                        size * sizeof(int));
     if (exact->generator != NULL) {
       lay_out(exact, size);
       return true;
     }
     destroy(instance);
   }
-  log_message(instance, fmi2Error, "allocateMemory returned no memory for the solver");
-  return false;
+  return solver_lacks_memory(instance);
 }
 
 /* result = a b for square matrices by rows; zeros of a count as such, whatever they meet. */
@@ -261,12 +258,6 @@ static bool compute_next(struct Instance *instance, struct Exact *exact, double 
   return total == 0.0;
 }
 
-static void take_next(struct Instance *instance, const struct Exact *exact) {
-  memcpy(instance->state, exact->next, lagrangian.state_count * sizeof(double));
-  memcpy(instance->saved, exact->next_low, lagrangian.state_count * sizeof(double));
-  instance->situation->statistics[STATISTIC_STEPS]++;
-}
-
 /* The longest step, to a millionth of this one, whose end is finite. */
 static double longest_step(struct Instance *instance, struct Exact *exact, double length) {
   double possible = 0.0, impossible = length;
@@ -278,20 +269,35 @@ static double longest_step(struct Instance *instance, struct Exact *exact, doubl
   return possible;
 }
 
-static enum StepResult step(struct Instance *instance, double length, double *reached) {
+/* The whole communication step, or the part of it whose end is finite. */
+static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Exact *exact = instance->solver_memory;
-  double time = instance->situation->time;
-  if (compute_next(instance, exact, length)) {
-    take_next(instance, exact);
-    return STEP_DONE;
+  struct Span *span = &instance->situation->last_step;
+  bool is_whole = compute_next(instance, exact, step->length);
+  double possible = is_whole ? step->length : longest_step(instance, exact, step->length);
+  span->end = is_whole ? step->end : span->start + possible;
+  if (!is_whole && (possible == 0.0 || !compute_next(instance, exact, possible))) {
+    memcpy(exact->next, instance->state, lagrangian.state_count * sizeof(double));
+    return "the motion grows beyond all numbers";
   }
-  double possible = longest_step(instance, exact, length);
-  *reached = time + possible;
-  if (possible > 0.0 && compute_next(instance, exact, possible)) take_next(instance, exact);
-  log_message(instance, fmi2Discard,
-              "the motion over a step of %g grows beyond all numbers at time %.15g; try a shorter step", length,
-              *reached);
-  return STEP_PARTIAL;
+  memcpy(instance->saved, exact->next_low, lagrangian.state_count * sizeof(double));
+  instance->situation->statistics[STATISTIC_STEPS]++;
+  return is_whole ? NULL : "the motion grows beyond all numbers";
 }
 
-const struct Solver solver_exact = {.saved_size = saved_size, .create = create, .destroy = destroy, .step = step};
+/* A step has no states inside: its end is all that advance() computes. */
+static bool interpolate(struct Instance *instance, double time, double *state) {
+  const struct Exact *exact = instance->solver_memory;
+  if (time != instance->situation->last_step.end) return false;
+  memcpy(state, exact->next, lagrangian.state_count * sizeof(double));
+  return true;
+}
+
+const struct Solver solver_exact = {.name = "the matrix exponential",
+                                    .remedy = "try a shorter step",
+                                    .starts_anew = true,
+                                    .saved_size = saved_size,
+                                    .create = create,
+                                    .destroy = destroy,
+                                    .advance = advance,
+                                    .interpolate = interpolate};

@@ -112,7 +112,7 @@ static bool right_side(struct Instance *instance, const struct Taylor *taylor, d
     state[i] = taylor->x[i][0] + (taylor->term[i] + taylor->low[i]);
     if (share != 0.0) state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
   }
-  return taylor_start(instance, taylor, taylor->saved->origin + s, derivative) == 0;
+  return taylor_start(instance, taylor, taylor->span->start + s, derivative) == 0;
 }
 
 /*
@@ -172,20 +172,20 @@ static struct SeriesLimit limited(const struct Instance *instance, const struct 
   struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
   if (lagrangian.limit == NULL) return limit;
   struct Point point = evaluate_point(instance);
-  point.time = taylor->saved->origin;
+  point.time = taylor->span->start;
   lagrangian.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x, (const Series *)taylor->work,
                    &limit);
   return limit;
 }
 
 /* Steps below are no steps in a time of so many digits; a motion that asks for them runs into a singular point. */
-static double smallest_step(const struct Saved *saved) {
-  return 8.0 * DBL_EPSILON * fabs(saved->origin);
+static double smallest_step(const struct Taylor *taylor) {
+  return 8.0 * DBL_EPSILON * fabs(taylor->span->start);
 }
 
 /* The next origin is a number, so that the time does not drift. */
-static double exact_reach(const struct Saved *saved, double step) {
-  return saved->origin + step - saved->origin;
+static double exact_reach(const struct Taylor *taylor, double step) {
+  return taylor->span->start + step - taylor->span->start;
 }
 
 /*
@@ -196,14 +196,14 @@ static double exact_reach(const struct Saved *saved, double step) {
  */
 static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step,
                             double length) {
-  double step = crossing_share * communication_step, smallest = 2.0 * smallest_step(taylor->saved);
+  double step = crossing_share * communication_step, smallest = 2.0 * smallest_step(taylor);
   for (size_t i = 0; i < lagrangian.state_count; i++)
     step = fmin(step, crossing_share * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
   step = fmax(step, smallest);
   if (length >= step) return 0.0;
   step = limited(instance, taylor, step, true).step;
   for (int trial = 0; trial < 4 && step > length; trial++) {
-    step = exact_reach(taylor->saved, step);
+    step = exact_reach(taylor, step);
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0 || (step <= 2.0 * smallest && isfinite(size))) return step;
     step = fmax(0.1 * step, fmin(step, smallest));
@@ -224,8 +224,8 @@ static void cut_off(const struct Taylor *taylor) {
 static double shortened(struct Instance *instance, struct Taylor *taylor, double step) {
   double power = 1.0 / (double)(taylor->saved->order + 1);
   for (;;) {
-    step = exact_reach(taylor->saved, step);
-    if (step <= smallest_step(taylor->saved)) return 0.0;
+    step = exact_reach(taylor, step);
+    if (step <= smallest_step(taylor)) return 0.0;
     double size = taylor->is_limited ? defect_over(instance, taylor, step) : defect(instance, taylor, step);
     if (size <= 1.0) return step;
     if (isfinite(size) && size <= rounding_margin * rounding_of_right_side(instance, taylor, step)) return step;
@@ -237,13 +237,14 @@ static double shortened(struct Instance *instance, struct Taylor *taylor, double
 void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step) {
   struct Saved *saved = taylor->saved;
   const struct Situation *situation = instance->situation;
-  double rest = situation->stop_time_defined ? situation->stop_time - saved->origin : horizon * communication_step;
+  double rest =
+      situation->stop_time_defined ? situation->stop_time - taylor->span->start : horizon * communication_step;
   double promised = promised_step(taylor), step = promised;
   if (rest < communication_step) rest = communication_step;
   if (rest < step) step = rest;
   if (lagrangian.max_step < step) step = lagrangian.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
-  taylor->function = limit.function;
+  instance->limited_by = limit.function;
   taylor->is_limited = limit.step < promised;
   double crossing = 0.0;
   if (promised == 0.0) cut_off(taylor);

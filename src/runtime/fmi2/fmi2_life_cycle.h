@@ -1,22 +1,8 @@
 /* Which FMI function is allowed in which state: the tables of FMI 2.0.4, sections 3.2.3 and 4.2.4, in one place. */
-#ifndef LIFE_CYCLE_H
-#define LIFE_CYCLE_H
+#ifndef FMI2_LIFE_CYCLE_H
+#define FMI2_LIFE_CYCLE_H
 
-#include <stdbool.h>
-
-#include "fmi2.h"
-
-enum Mode {
-  MODE_INSTANTIATED,
-  MODE_INITIALIZATION,
-  MODE_EVENT,
-  MODE_CONTINUOUS_TIME,
-  MODE_STEP_COMPLETE,
-  MODE_STEP_FAILED,
-  MODE_TERMINATED,
-  MODE_ERROR,
-  MODE_COUNT
-};
+#include "fmi2_component.h"
 
 enum Function {
   FUNCTION_SET_DEBUG_LOGGING,
@@ -46,9 +32,10 @@ enum Function {
   FUNCTION_COUNT
 };
 
-/* Whether the function may be called in this mode of an instance of this type. */
-bool life_cycle_allows(enum Function function, fmi2Type type, enum Mode mode);
-
-const char *life_cycle_mode_name(enum Mode mode);
+/*
+ * The instance of a component in which the function may be called now; NULL after logging an error under its name where
+ * it may not, and NULL for a component that is NULL.
+ */
+struct Instance *enter(fmi2Component c, enum Function function, const char *name);
 
 #endif

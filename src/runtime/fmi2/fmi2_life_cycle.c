@@ -1,4 +1,4 @@
-#include "life_cycle.h"
+#include "fmi2_life_cycle.h"
 
 #define IN(mode) (1u << (mode))
 
@@ -45,21 +45,15 @@ static const struct {
     [FUNCTION_GET_STATUS] = {FOR_STEPS, STEPS | IN(MODE_TERMINATED)},
 };
 
-bool life_cycle_allows(enum Function function, fmi2Type type, enum Mode mode) {
-  unsigned wanted = type == fmi2ModelExchange ? FOR_EXCHANGE : FOR_STEPS;
-  return (table[function].types & wanted) != 0 && (table[function].modes & IN(mode)) != 0;
-}
-
-const char *life_cycle_mode_name(enum Mode mode) {
-  static const char *const names[MODE_COUNT] = {
-      [MODE_INSTANTIATED] = "instantiated",
-      [MODE_INITIALIZATION] = "initialization mode",
-      [MODE_EVENT] = "event mode",
-      [MODE_CONTINUOUS_TIME] = "continuous-time mode",
-      [MODE_STEP_COMPLETE] = "step complete",
-      [MODE_STEP_FAILED] = "step failed",
-      [MODE_TERMINATED] = "terminated",
-      [MODE_ERROR] = "error",
-  };
-  return names[mode];
+struct Instance *enter(fmi2Component c, enum Function function, const char *name) {
+  struct Component *component = c;
+  if (component == NULL) return NULL;
+  struct Instance *instance = &component->instance;
+  bool exchanges = instance->kind == KIND_MODEL_EXCHANGE;
+  unsigned type = exchanges ? FOR_EXCHANGE : FOR_STEPS;
+  if ((table[function].types & type) != 0 && (table[function].modes & IN(instance->situation->mode)) != 0)
+    return instance;
+  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, instance_mode_name(instance),
+            exchanges ? "model exchange" : "co-simulation");
+  return NULL;
 }

@@ -1,0 +1,45 @@
+/*
+ * The methods of <solver>, as the compiler knows them. A new one has an entry here, a place in fmu/system.xsd and its
+ * file in src/runtime/solvers/.
+ */
+#ifndef METHODS_H
+#define METHODS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* What a method takes of the Taylor series of the motion. */
+enum SeriesUse {
+  NO_SERIES,
+  FIRST_TERMS, /* to see how far a step may go */
+  ALL_TERMS
+};
+
+enum { METHOD_SOURCES = 3 };
+
+struct Method {
+  const char *name;          /* in system.xml and on the command line */
+  const char *solver;        /* the C name of its struct Solver */
+  const char *sparse_solver; /* the one for a large sparse Jacobian; NULL for none */
+  const char *sentence;      /* for the documentation */
+  const char *evaluations;   /* what derivativeEvaluations counts; NULL for nothing */
+  /* Its files for an FMU that carries sources; NULL where a library is behind it, which then allocates by itself. */
+  const char *sources[METHOD_SOURCES];
+  enum SeriesUse series;
+  bool needs_jacobian; /* and counts its evaluations */
+  bool needs_linear;   /* solves linear systems alone, as a whole communication step */
+};
+
+/* NULL where there is no method of this name. */
+const struct Method *method_named(const char *name);
+
+/* "a, b or c". Free with free(). */
+char *method_names(void);
+
+/* Whether a library is behind the method. */
+bool method_uses_library(const struct Method *method);
+
+/* The C name of the solver for a Jacobian with so many rows and elements other than 0. */
+const char *method_solver(const struct Method *method, size_t rows, size_t elements);
+
+#endif

@@ -1,0 +1,59 @@
+/* FMI for Co-Simulation (section 4.2): communication steps. */
+#include "check.h"
+#include "fmi2_life_cycle.h"
+#include "steps.h"
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
+                      fmi2Boolean noSetFMUStatePriorToCurrentPoint) {
+  struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
+  (void)noSetFMUStatePriorToCurrentPoint;
+  if (instance == NULL) return fmi2Error;
+  return fmi2_status(communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__));
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) {
+  enter(c, FUNCTION_CANCEL_STEP, __func__);
+  return fmi2Error;
+}
+
+/* fmi2Discard for what the FMU does not know: a step is never pending. */
+static fmi2Status unknown_status(fmi2Component c, const char *name) {
+  struct Instance *instance = enter(c, FUNCTION_GET_STATUS, name);
+  if (instance == NULL) return fmi2Error;
+  log_message(instance, STATUS_DISCARD, "%s: no step is pending, so there is no such status", name);
+  return fmi2Discard;
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value) {
+  (void)s;
+  (void)value;
+  return unknown_status(c, __func__);
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value) {
+  if (s != fmi2LastSuccessfulTime) return unknown_status(c, __func__);
+  struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
+  if (instance == NULL || !check_array(instance, value, 1, __func__, "value")) return fmi2Error;
+  *value = instance->situation->time;
+  return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value) {
+  (void)s;
+  (void)value;
+  return unknown_status(c, __func__);
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value) {
+  if (s != fmi2Terminated) return unknown_status(c, __func__);
+  struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
+  if (instance == NULL || !check_array(instance, value, 1, __func__, "value")) return fmi2Error;
+  *value = fmi2False;
+  return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value) {
+  (void)s;
+  (void)value;
+  return unknown_status(c, __func__);
+}

@@ -1,0 +1,18 @@
+/* Saved states of an instance: blocks of bytes without pointers, which another process may restore. */
+#ifndef SNAPSHOT_H
+#define SNAPSHOT_H
+
+#include "instance.h"
+
+/* Bytes of a block. */
+size_t snapshot_size(void);
+
+void snapshot_take(const struct Instance *instance, void *block);
+
+/* What is wrong with bytes that claim to be a saved state for this instance; NULL where nothing is. */
+const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size);
+
+/* The block must have no fault. */
+void snapshot_restore(struct Instance *instance, const void *block);
+
+#endif

@@ -1,0 +1,164 @@
+/*
+ * Taylor series of the motion (A. Jorba, M. Zou: A software package for the numerical integration of ODEs by means of
+ * high-order Taylor methods, 2005). The order follows from the tolerance, the step from taylor_reach.c. A step reaches
+ * past the communication point; the series is evaluated there, and goes on to serve the next communication step unless
+ * inputs, parameters or the state were changed. The situation holds all that a step depends on.
+ */
+#include <math.h>
+
+#include "evaluate.h"
+#include "solver.h"
+#include "taylor.h"
+
+enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
+
+static size_t saved_size(void) {
+  return sizeof(struct Saved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
+}
+
+static bool create(struct Instance *instance) {
+  size_t rows = lagrangian.input_count + lagrangian.series_rows;
+  size_t terms = 2 * lagrangian.state_count * sizeof(double);
+  struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
+  if (taylor == NULL) return solver_lacks_memory(instance);
+  taylor->saved = instance->saved;
+  taylor->span = &instance->situation->last_step;
+  taylor->low = (double *)(taylor->saved + 1);
+  taylor->x = (Series *)(taylor->low + lagrangian.state_count);
+  taylor->input = (Series *)(taylor + 1);
+  taylor->work = taylor->input + lagrangian.input_count;
+  taylor->term = (double *)(taylor->work + lagrangian.series_rows);
+  taylor->derivative = taylor->term + lagrangian.state_count;
+  instance->solver_memory = taylor;
+  return true;
+}
+
+static void destroy(struct Instance *instance) {
+  instance->memory.free(instance->solver_memory);
+  instance->solver_memory = NULL;
+}
+
+/*
+ * d state / dt at the origin, and the first coefficients of all series, which are there already where the defect was
+ * measured. False where there are no accelerations.
+ */
+static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
+  if (taylor->is_measured) return true;
+  for (size_t i = 0; i < lagrangian.state_count; i++) instance->work[i] = taylor->x[i][0];
+  instance->singular = taylor_start(instance, taylor, taylor->span->start, taylor->derivative);
+  return instance->singular == 0;
+}
+
+/* The series about the origin, where x[i][0] is the state, and its reach. False where no step can be taken. */
+static bool expand(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+  double origin = taylor->span->start;
+  if (!evaluate_origin(instance, taylor)) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->x[i][1] = taylor->derivative[i];
+  for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
+  struct Point point = evaluate_point(instance);
+  point.time = origin;
+  lagrangian.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
+  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  taylor_choose_reach(instance, taylor, communication_step);
+  taylor->span->end = origin + taylor->saved->reach;
+  return taylor->saved->reach > 0.0;
+}
+
+/*
+ * Moves the origin to the end of the series; what rounding takes from the state is carried along in low. Returns the
+ * largest change in units of the variables' scales.
+ */
+static double move_origin(struct Instance *instance, struct Taylor *taylor) {
+  struct Saved *saved = taylor->saved;
+  double largest = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->reach);
+    double before = taylor->x[i][0], term = change + taylor->low[i];
+    double sum = before + term, part = sum - before, moved = fabs(term) / taylor_scale(taylor, i);
+    if (moved > largest) largest = moved;
+    taylor->low[i] = (before - (sum - part)) + (term - part);
+    taylor->x[i][0] = sum;
+  }
+  taylor->span->start = taylor->span->end;
+  saved->reach = 0.0;
+  instance->situation->statistics[STATISTIC_STEPS]++;
+  return largest;
+}
+
+static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+  struct Taylor *taylor = instance->solver_memory;
+  (void)step;
+  taylor->saved->reach = 0.0;
+  taylor->is_measured = false;
+  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
+  taylor->saved->order = (int64_t)fmin(fmax(order, 4.0), SERIES_LENGTH - 2);
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    taylor->low[i] = 0.0;
+    taylor->x[i][0] = instance->state[i];
+  }
+  return true;
+}
+
+static void resume(struct Instance *instance) {
+  struct Taylor *taylor = instance->solver_memory;
+  taylor->is_measured = false;
+}
+
+static bool interpolate(struct Instance *instance, double time, double *state) {
+  const struct Taylor *taylor = instance->solver_memory;
+  double s = time - taylor->span->start;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    state[i] = taylor->x[i][0] + (taylor_change(taylor, i, s) + taylor->low[i]);
+  return true;
+}
+
+static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
+  crawl->path += moved;
+  if (++crawl->steps < CRAWL_STEPS) return false;
+  bool stays = crawl->path < CRAWL_STEPS * tolerance;
+  *crawl = (struct Crawl){0};
+  return stays;
+}
+
+/*
+ * Why a system that moved by this much is not worth another step; NULL where it is. Where a system is stiff, many steps
+ * hardly move it: none would need to be so short, but that its fast modes must not grow. Where dry friction sticks, one
+ * jump comes after another.
+ */
+static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
+  if (!taylor->crosses) taylor->crossing.path += moved;
+  else if (crawls(&taylor->crossing, moved, 1e-9))
+    return "a function jumps to and fro there, as dry friction that sticks; write it with tanh, or choose "
+           "<solver method=\"erk\"/> in system.xml";
+  if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
+    return "the system is stiff there, which asks for <solver method=\"bdf\"/> in system.xml";
+  return NULL;
+}
+
+/* There is no series about the origin: the state is that of the origin. */
+static void cut_series(struct Taylor *taylor) {
+  taylor->saved->reach = 0.0;
+  taylor->span->end = taylor->span->start;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    for (int k = 1; k < SERIES_LENGTH; k++) taylor->x[i][k] = 0.0;
+}
+
+static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
+  struct Taylor *taylor = instance->solver_memory;
+  if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
+  double moved = taylor->saved->reach > 0.0 ? move_origin(instance, taylor) : 0.0;
+  const char *problem = reason_to_stop(instance, taylor, moved);
+  if (problem == NULL && !expand(instance, taylor, step->length))
+    problem = "the motion has a singularity there, or grows beyond all numbers";
+  if (problem != NULL) cut_series(taylor);
+  return problem;
+}
+
+const struct Solver solver_taylor = {.name = "the Taylor series",
+                                     .saved_size = saved_size,
+                                     .create = create,
+                                     .destroy = destroy,
+                                     .restart = restart,
+                                     .resume = resume,
+                                     .advance = advance,
+                                     .interpolate = interpolate};

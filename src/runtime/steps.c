@@ -1,0 +1,166 @@
+/* The way from one communication point to the next, for every solver. */
+#include "steps.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluate.h"
+#include "solver.h"
+
+enum StepResult {
+  STEP_DONE,
+  STEP_PARTIAL, /* the state belongs to a time before the end */
+  STEP_FAILED   /* the state is as it was */
+};
+
+/* Steps too short to change the time are a singularity, which a solver could pass through. */
+enum { RESTING_STEP_LIMIT = 20 };
+
+const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
+
+static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
+                                   "parameters or other coordinates";
+
+bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
+  struct Point point = solver_point(instance, time, state);
+  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  return evaluate_derivatives(instance, &point, derivative);
+}
+
+struct Point solver_point(struct Instance *instance, double time, const double *state) {
+  struct Point point = evaluate_point(instance);
+  point.time = time;
+  point.state = state;
+  if (instance->situation->input_derivatives_set) {
+    evaluate_inputs(instance, time, instance->work);
+    point.input = instance->work;
+  }
+  return point;
+}
+
+bool solver_lacks_memory(const struct Instance *instance) {
+  log_message(instance, STATUS_ERROR, "there is no memory for the solver");
+  return false;
+}
+
+bool solver_rests(double time, double step) {
+  return step <= 8 * DBL_EPSILON * fabs(time);
+}
+
+/* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
+static bool make_ready(struct Instance *instance, const struct CommunicationStep *step) {
+  const struct Solver *solver = lagrangian.solver;
+  struct Situation *situation = instance->situation;
+  if (instance->solver_memory == NULL && !solver->create(instance)) return false;
+  bool goes_on = !solver->starts_anew && !situation->changed && step->start >= situation->last_step.start &&
+                 step->start <= situation->last_step.end && (!instance->solver_is_stale || solver->resume != NULL);
+  if (!goes_on) {
+    situation->last_step = (struct Span){step->start, step->start};
+    if (solver->restart != NULL && !solver->restart(instance, step)) return false;
+  } else if (instance->solver_is_stale) solver->resume(instance);
+  instance->solver_is_stale = false;
+  situation->changed = 0;
+  return true;
+}
+
+/* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
+static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
+  const struct Span *last = &instance->situation->last_step;
+  int resting = 0;
+  for (; last->end < step->end; step->count++) {
+    if (step->count == STEP_LIMIT) return "too many steps";
+    const char *problem = lagrangian.solver->advance(instance, step);
+    if (problem != NULL) return problem;
+    resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
+    if (resting == RESTING_STEP_LIMIT) return solver_resting;
+  }
+  return NULL;
+}
+
+/* False where the state is not known or not finite. */
+static bool take_state(struct Instance *instance, double time) {
+  if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
+  double sum = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) sum += instance->state[i] - instance->state[i];
+  return sum == 0.0; /* infinities and NaN leave a NaN */
+}
+
+/* The state becomes that of the time which the solver came to, and says why it is not the end. */
+static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
+                            double reached) {
+  const struct Solver *solver = lagrangian.solver;
+  const char *function = instance->limited_by;
+  if (!take_state(instance, reached)) return STEP_FAILED;
+  if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
+  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s", solver->name, reached,
+              step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
+              solver->remedy != NULL ? solver->remedy : usual_remedy);
+  instance->situation->changed = 1;
+  return STEP_PARTIAL;
+}
+
+static enum StepResult advance(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+  const struct Span *last = &instance->situation->last_step;
+  *reached = step->end;
+  if (lagrangian.solver == NULL) return STEP_DONE;
+  if (!make_ready(instance, step)) return STEP_FAILED;
+  const char *problem = reach(instance, step);
+  if (problem == NULL && take_state(instance, step->end)) return STEP_DONE;
+  *reached = problem != NULL ? last->end : last->start;
+  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
+}
+
+/* The polynomials of the inputs, continued from the end of the step. */
+static void advance_inputs(struct Instance *instance, double end) {
+  if (!instance->situation->input_derivatives_set) return;
+  size_t n = lagrangian.input_count;
+  for (size_t i = 0; i < n; i++) {
+    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
+    expand_input(instance, i, end, coefficient);
+    instance->input[i] = coefficient[0];
+    derivative[0] = coefficient[1];
+    derivative[n] = 2.0 * coefficient[2];
+  }
+  instance->situation->changed = 1;
+}
+
+/* What is wrong with a communication step. */
+static enum Status check_step(struct Instance *instance, double time, double size, const char *function) {
+  const struct Situation *situation = instance->situation;
+  if (!isfinite(time) || !isfinite(size) || size <= 0.0)
+    return log_error(instance, "%s: step %g at time %g; expected a finite step larger than 0", function, size, time);
+  double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
+  if (fabs(time - situation->time) > rounding)
+    return log_error(instance, "%s: currentCommunicationPoint is %.15g; expected %.15g, where the instance is",
+                     function, time, situation->time);
+  if (time + size <= time)
+    return log_error(instance, "%s: step %g does not advance the time %g; expected a larger one", function, size, time);
+  if (!isfinite(time + size))
+    return log_error(instance, "%s: step %g from time %g ends beyond all numbers; expected a shorter one", function,
+                     size, time);
+  if (situation->stop_time_defined && time + size > situation->stop_time + rounding)
+    return log_error(instance, "%s: the step ends at %.15g; expected none past stopTime %.15g", function, time + size,
+                     situation->stop_time);
+  return STATUS_DONE;
+}
+
+enum Status communication_step(struct Instance *instance, double time, double size, const char *function) {
+  struct Situation *situation = instance->situation;
+  if (check_step(instance, time, size, function) != STATUS_DONE) return STATUS_ERROR;
+  if (evaluate_prepare(instance) != STATUS_DONE)
+    return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
+  situation->time = time;
+  if (!situation->input_derivatives_set)
+    memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
+  struct CommunicationStep step = {.start = time, .end = time + size, .length = size};
+  double reached;
+  enum StepResult result = advance(instance, &step, &reached);
+  if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
+  advance_inputs(instance, reached);
+  situation->input_derivatives_set = 0;
+  situation->time = reached;
+  if (result == STEP_DONE) return STATUS_DONE;
+  situation->mode = MODE_STEP_FAILED;
+  return STATUS_DISCARD;
+}

@@ -1,0 +1,13 @@
+/* Communication steps. */
+#ifndef STEPS_H
+#define STEPS_H
+
+#include "instance.h"
+
+/*
+ * Goes on from time by size; messages come under the name of the function that the caller called. Discards after
+ * logging where the solver came to a part of the step alone, which situation->time then tells.
+ */
+enum Status communication_step(struct Instance *instance, double time, double size, const char *function);
+
+#endif

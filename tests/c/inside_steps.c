@@ -1,0 +1,46 @@
+/*
+ * Lets the solver of a generated system, which is linked in, go to a time by steps of its own, and prints them: start,
+ * end, then at a third of the step and at its end whether the solver knows the state, and the first state variable.
+ * inside_steps END
+ */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "simulation.h"
+#include "solver.h"
+
+static void write_message(void *receiver, enum Status status, const char *message) {
+  (void)receiver;
+  (void)status;
+  fprintf(stderr, "%s\n", message);
+}
+
+int main(int count, char **words) {
+  const struct Solver *solver = lagrangian.solver;
+  const struct Allocator memory = {calloc, free};
+  const struct Log log = {.write = write_message, .wanted = 1u << STATUS_ERROR};
+  const struct Experiment experiment = {.tolerance = 1e-9, .has_tolerance = true};
+  double end = count == 2 ? strtod(words[1], NULL) : 0.0;
+  struct Instance instance;
+  if (!(end > 0.0) || !instance_create(&instance, KIND_CO_SIMULATION, &memory, &log)) return 2;
+  struct CommunicationStep step = {.end = end, .length = end};
+  struct Span *last = &instance.situation->last_step;
+  double *state = calloc(lagrangian.state_count, sizeof *state);
+  if (state == NULL || simulation_set_up(&instance, &experiment, "test") != STATUS_DONE ||
+      simulation_start(&instance, "test") != STATUS_DONE || !solver->create(&instance) ||
+      (solver->restart != NULL && !solver->restart(&instance, &step)))
+    return 1;
+  for (; last->end < end; step.count++) {
+    if (solver->advance(&instance, &step) != NULL) return 1;
+    const double times[] = {last->start + (last->end - last->start) / 3.0, last->end};
+    printf("%.17g %.17g", last->start, last->end);
+    for (int i = 0; i < 2; i++) {
+      bool is_known = solver->interpolate(&instance, times[i], state);
+      printf(" %d %.17g", is_known, state[0]);
+    }
+    putchar('\n');
+  }
+  free(state);
+  instance_destroy(&instance);
+  return 0;
+}

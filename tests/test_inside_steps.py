@@ -1,0 +1,38 @@
+"""What every solver offers the core of the runtime: steps of its own, and the states inside of the last one."""
+
+import subprocess
+
+import numpy as np
+import pytest
+
+import fmu
+from differential.build import runtime
+from fmu import ROOT
+
+TEXT = """<system name="Oscillator">
+  <coordinate name="x" velocity="v" start="1"/>
+  <particle name="p" mass="1" x="x"/>
+  <potential>x^2/2</potential>
+</system>
+"""
+END = 5.0
+# A third of the way into a step, against the tolerance of 1e-9: erk has cubic polynomials there, exact has no states.
+ERRORS = {"taylor": 1e-9, "erk": 1e-5, "bdf": 1e-8, "exact": None}
+
+
+@pytest.mark.parametrize("method", ERRORS)
+def test_steps(method, tmp_path):
+    (tmp_path / "system.xml").write_text(TEXT)
+    assert fmu.lagc("system.xml", "-o", "out", "--solver", method, cwd=tmp_path).returncode == 0
+    program = tmp_path / "inside_steps"
+    words = ["gcc", "-O1", f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", ROOT / "tests" / "c" / "inside_steps.c",
+             tmp_path / "out" / "system.c", *runtime(), "-o", program]  # fmt: skip
+    subprocess.run(list(map(str, words)), check=True)
+    output = subprocess.run([program, str(END)], capture_output=True, text=True, check=True).stdout
+    start, end, known_inside, inside, known, last = np.array([line.split() for line in output.splitlines()], float).T
+    assert start[0] == 0.0 and np.all(start < end) and np.all(start[1:] == end[:-1])
+    assert start[-1] < END <= end[-1] and (end[-1] == END or method in ("taylor", "bdf"))
+    assert np.all(known == 1) and last == pytest.approx(np.cos(end), abs=3e-8)
+    assert np.all(known_inside == (method != "exact"))
+    if method != "exact":
+        assert inside == pytest.approx(np.cos(start + (end - start) / 3), abs=ERRORS[method])
