@@ -161,8 +161,24 @@ static void write_solver(const struct Page *page) {
             "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");
 }
 
-bool documentation_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
-                         const struct Interface *interface, const struct Summary *summary) {
+/* Small systems are compiled, large ones interpreted: see program.h. */
+static void write_form(xmlTextWriterPtr writer, const struct Program *program) {
+  size_t count = instruction_count(program);
+  char *text =
+      program->is_table
+          ? format_text("The equations are %zu instructions in tables, which the FMU carries out: as C code they "
+                        "would take a compiler too long.",
+                        count)
+          : format_text("The equations are %zu instructions of compiled C code.", count);
+  element(writer, "h2", "Code");
+  element(writer, "p", text);
+  free(text);
+}
+
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary) {
+  const struct Model *model = program->model;
+  const struct Equations *equations = program->equations;
+  const struct Interface *interface = program->interface;
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
   if (writer == NULL) return false;
   xmlTextWriterWriteDTD(writer, BAD_CAST "html", NULL, NULL, NULL);
@@ -181,6 +197,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Model *model, const s
   if (equations->count > 0) write_mechanics(&page);
   write_outputs(&page);
   write_solver(&page);
+  write_form(writer, program);
   write_variables(writer, interface);
   xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);

@@ -4,10 +4,9 @@
 
 #include <libxml/tree.h>
 
-#include "mechanics/interface.h"
 #include "mechanics/summary.h"
+#include "program/program.h"
 
-bool documentation_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
-                         const struct Interface *interface, const struct Summary *summary);
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary);
 
 #endif

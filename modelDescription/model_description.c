@@ -21,21 +21,22 @@ static void write_file(xmlTextWriterPtr writer, const char *name) {
 }
 
 /* FMUs without SUNDIALS are complete in C. */
-static void write_sources(xmlTextWriterPtr writer, const struct Equations *equations,
-                          const struct Interface *interface) {
-  const struct Method *method = interface->method;
+static void write_sources(xmlTextWriterPtr writer, const struct Program *program) {
+  const struct Method *method = program->interface->method;
   if (method_uses_library(method)) return;
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
   write_file(writer, "system.c");
   for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
   for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
     write_file(writer, method->sources[i]);
-  if (has_loops(equations)) write_file(writer, "ldlt.c");
+  if (program->is_table) write_file(writer, "instructions.c");
+  if (program->is_table || program->blocks.count > 0) write_file(writer, "ldlt.c");
   xmlTextWriterEndElement(writer);
 }
 
-static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
-                             const struct Interface *interface) {
+static void write_interfaces(xmlTextWriterPtr writer, const struct Program *program) {
+  const struct Model *model = program->model;
+  const struct Interface *interface = program->interface;
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
   bool uses_library = method_uses_library(interface->method);
@@ -45,7 +46,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
   /* SUNDIALS allocates with malloc, so that these FMUs have no use for the caller's functions. */
   if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
-  write_sources(writer, equations, interface);
+  write_sources(writer, program);
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
   write_attribute(writer, "modelIdentifier", model->name);
@@ -56,7 +57,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Model *model,
                                     interface->output_derivative_order);
   if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
-  write_sources(writer, equations, interface);
+  write_sources(writer, program);
   xmlTextWriterEndElement(writer);
 }
 
@@ -175,8 +176,10 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
   xmlTextWriterEndElement(writer);
 }
 
-bool model_description_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
-                             const struct Interface *interface, const char *guid) {
+bool model_description_write(xmlBufferPtr buffer, const struct Program *program, const char *guid) {
+  const struct Model *model = program->model;
+  const struct Equations *equations = program->equations;
+  const struct Interface *interface = program->interface;
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
   if (writer == NULL) return false;
   xmlTextWriterSetIndent(writer, 1);
@@ -190,7 +193,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Model *model, con
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", "structured");
   write_attribute(writer, "numberOfEventIndicators", "0");
-  write_interfaces(writer, model, equations, interface);
+  write_interfaces(writer, program);
   write_units(writer, interface);
   write_log_categories(writer);
   write_experiment(writer, model);

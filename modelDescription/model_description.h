@@ -4,10 +4,9 @@
 
 #include <libxml/tree.h>
 
-#include "mechanics/interface.h"
+#include "program/program.h"
 
 /* Appends the file's text to buffer. Returns false where libxml2 reports an error. */
-bool model_description_write(xmlBufferPtr buffer, const struct Model *model, const struct Equations *equations,
-                             const struct Interface *interface, const char *guid);
+bool model_description_write(xmlBufferPtr buffer, const struct Program *program, const char *guid);
 
 #endif

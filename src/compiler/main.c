@@ -13,7 +13,7 @@
 #include "read/reader.h"
 
 static const char usage[] =
-    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [-D NAME=VALUE ...]\n"
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "\n"
     "Writes system.c, modelDescription.xml and documentation/index.html into DIR, or prints the\n"
@@ -22,6 +22,7 @@ static const char usage[] =
     "  -o DIR           the directory for the files\n"
     "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
+    "  --form FORM      statements or tables, in which the code is written; else by the system's size\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
 
 struct Arguments {
@@ -30,6 +31,7 @@ struct Arguments {
   size_t definition_count;
   char **point;
   size_t point_count;
+  enum CodeForm form;
   bool linearize, help;
 };
 
@@ -47,13 +49,15 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   for (int i = 1; i < count; i++) {
     const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
     bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
-                       strcmp(word, "--at") == 0;
+                       strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0;
     if (takes_value && i + 1 == count) return false;
     if (takes_value) i++;
     if (strcmp(word, "-o") == 0) arguments->directory = next;
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
+    else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
+    else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
     else if (strcmp(word, "-D") == 0) arguments->definitions[arguments->definition_count++] = next;
     else if (word[0] == '-' || arguments->system != NULL) return false;
@@ -77,13 +81,13 @@ static struct Equations *derive(const struct Model *model, struct Diagnostics *d
   return equations;
 }
 
-static void compile(struct Model *model, const struct Equations *equations, const char *directory,
+static void compile(struct Model *model, const struct Equations *equations, const struct Arguments *arguments,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
   struct Summary *summary = summary_create(model, equations);
   struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
-  struct Program *program = expressions != NULL ? program_create(expressions) : NULL;
-  if (program != NULL) output_write(program, summary, directory, diagnostics);
+  struct Program *program = expressions != NULL ? program_create(expressions, arguments->form) : NULL;
+  if (program != NULL) output_write(program, summary, arguments->directory, diagnostics);
   program_free(program);
   expressions_free(expressions);
   summary_free(summary);
@@ -108,7 +112,7 @@ static int run(const struct Arguments *arguments) {
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
   struct Equations *equations = model != NULL ? derive(model, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
-  else if (diagnostics.errors == 0) compile(model, equations, arguments->directory, &diagnostics);
+  else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
   equations_free(equations);
   model_free(model);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);

@@ -70,14 +70,13 @@ static void write_all(const char *directory, const char *const *texts, struct Di
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
                   struct Diagnostics *diagnostics) {
   xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), documentation = xmlBufferCreate();
-  const struct Model *model = program->model;
   char guid[GUID_LENGTH];
   char *code = code_text(program);
-  bool written = model_description_write(anonymous, model, program->equations, program->interface, "");
+  bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
-  written = written && model_description_write(description, model, program->equations, program->interface, guid) &&
-            documentation_write(documentation, model, program->equations, program->interface, summary);
+  written = written && model_description_write(description, program, guid) &&
+            documentation_write(documentation, program, summary);
   if (written)
     write_all(directory,
               (const char *const[]){file, (const char *)xmlBufferContent(description),

@@ -188,7 +188,7 @@ static size_t count_of(const struct Routine *routine) {
   return routine != NULL ? routine->count : 0;
 }
 
-static size_t instruction_count(const struct Program *program) {
+size_t instruction_count(const struct Program *program) {
   size_t count = count_of(program->prepare) + count_of(program->derivatives) + count_of(program->directional) +
                  count_of(program->jacobian);
   for (size_t i = 0; i < program->interface->result_count; i++)
@@ -199,7 +199,7 @@ static size_t instruction_count(const struct Program *program) {
   return count;
 }
 
-struct Program *program_create(const struct Expressions *expressions) {
+struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {
   struct Program *program = allocate(1, sizeof *program);
   *program = (struct Program){.model = expressions->model,
                               .equations = expressions->equations,
@@ -220,7 +220,7 @@ struct Program *program_create(const struct Expressions *expressions) {
   create_results(program, values);
   create_series(program, values);
   values_free(values);
-  program->is_table = instruction_count(program) > STATEMENT_LIMIT;
+  program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
   return program;
 }
 

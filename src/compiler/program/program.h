@@ -6,6 +6,9 @@
 #include "program/expressions.h"
 #include "program/series_program.h"
 
+/* How the instructions are written; BY_SIZE: small systems as statements, large ones as tables. */
+enum CodeForm { BY_SIZE, STATEMENTS, TABLES };
+
 struct Program {
   const struct Model *model;
   const struct Equations *equations;
@@ -21,7 +24,11 @@ struct Program {
   bool is_table; /* too large for statements, which a C compiler takes long for */
 };
 
-struct Program *program_create(const struct Expressions *expressions);
+struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
+
+/* How many instructions all routines have together. */
+size_t instruction_count(const struct Program *program);
+
 void program_free(struct Program *program);
 
 #endif
