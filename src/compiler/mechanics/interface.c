@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
-#include "program/series_plan.h"
+#include "algebra/kinks.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "algebra/differentiate.h"
+#include "algebra/kinks.h"
 #include "algebra/simplify.h"
 #include "memory.h"
 #include "program/accelerations.h"

@@ -56,7 +56,7 @@ static void append(struct CheckList *list, struct Check check) {
   size_t number = list->count + 1;
   *end = number;
   if (list->count == list->capacity) {
-    list->capacity = 2 * list->capacity + 16;
+    list->capacity *= 2;
     list->items = reallocate(list->items, list->capacity, sizeof *list->items);
   }
   list->items[list->count++] = check;
@@ -166,7 +166,10 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
 }
 
 struct LimitChecks limits_of(struct SeriesBuilder *builder) {
-  struct CheckList list = {.builder = builder, .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct CheckList list = {.builder = builder,
+                           .capacity = 16,
+                           .items = allocate(16, sizeof *list.items),
+                           .first = allocate(builder->graph->count, sizeof(size_t))};
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
     struct Form form = form_of(builder->needs, node);

@@ -78,21 +78,21 @@ static struct Routine *directional_routine(const struct Program *program, struct
   return routine;
 }
 
-/* Where the coordinates stand in large blocks: 1 + the block's number, 0 for none, and the row in it. */
+/* Where the coordinates stand in large blocks: 1 + the block's number, 0 for none, and the place of the right side. */
 struct BlockRows {
-  size_t *number, *row;
+  size_t *number;
+  Place *side;
   size_t *solved; /* of each block: 1 + the column of the Jacobian that its right side holds the solution for */
 };
 
-static struct BlockRows block_rows_create(const struct Program *program) {
-  size_t n = program->equations->count;
-  struct BlockRows rows = {allocate(n, sizeof(size_t)), allocate(n, sizeof(size_t)),
-                           allocate(program->blocks.count, sizeof(size_t))};
-  for (size_t b = 0; b < program->blocks.count; b++) {
-    const struct InertiaBlock *block = program->blocks.items[b].block;
-    for (size_t i = 0; i < block->count; i++) {
-      rows.number[block->coordinates[i]] = b + 1;
-      rows.row[block->coordinates[i]] = i;
+static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t coordinates) {
+  struct BlockRows rows = {allocate(coordinates, sizeof(size_t)), allocate(coordinates, sizeof(Place)),
+                           allocate(blocks->count, sizeof(size_t))};
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct LoopedBlock *looped = &blocks->items[b];
+    for (size_t i = 0; i < looped->block->count; i++) {
+      rows.number[looped->block->coordinates[i]] = b + 1;
+      rows.side[looped->block->coordinates[i]] = place_in(SPACE_SIDE, looped->first_side + i);
     }
   }
   return rows;
@@ -100,7 +100,7 @@ static struct BlockRows block_rows_create(const struct Program *program) {
 
 static void block_rows_free(struct BlockRows *rows) {
   free(rows->number);
-  free(rows->row);
+  free(rows->side);
   free(rows->solved);
 }
 
@@ -108,30 +108,25 @@ static void block_rows_free(struct BlockRows *rows) {
 static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
                                    struct BlockRows *rows) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
-  size_t n = program->equations->count;
-  for (int solving = 0; solving <= 1; solving++) {
-    for (size_t e = jacobian->start[column]; e < jacobian->start[column + 1]; e++) {
-      size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
-      if (number == 0) {
-        if (!solving) values_copy(values, target(e), jacobian->value[e]);
-        continue;
-      }
-      Place side = place_in(SPACE_SIDE, program->blocks.items[number - 1].first_side + rows->row[row - n]);
-      if (!solving) {
-        values_copy(values, side, jacobian->value[e]);
-        continue;
-      }
-      if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
-      rows->solved[number - 1] = column + 1;
-      copy_place(values, target(e), side);
-    }
+  size_t n = program->equations->count, first = jacobian->start[column], end = jacobian->start[column + 1];
+  for (size_t e = first; e < end; e++) {
+    size_t row = jacobian->row[e];
+    bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
+    values_copy(values, in_block ? rows->side[row - n] : target(e), jacobian->value[e]);
+  }
+  for (size_t e = first; e < end; e++) {
+    size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
+    if (number == 0) continue;
+    if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
+    rows->solved[number - 1] = column + 1;
+    copy_place(values, target(e), rows->side[row - n]);
   }
 }
 
 static struct Routine *jacobian_routine(const struct Program *program, struct Values *values) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   struct Routine *routine = values_begin(values);
-  struct BlockRows rows = block_rows_create(program);
+  struct BlockRows rows = block_rows_create(&program->blocks, program->equations->count);
   append_needed_accelerations(program, values, jacobian->value, jacobian->count);
   values_compute(values, jacobian->value, jacobian->count, false);
   for (size_t column = 0; column < program->interface->state_count; column++)
@@ -226,9 +221,11 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
 
 void program_free(struct Program *program) {
   if (program == NULL) return;
-  struct Routine *const routines[] = {program->prepare, program->derivatives, program->directional, program->jacobian,
-                                      program->linear};
-  for (size_t i = 0; i < sizeof routines / sizeof *routines; i++) routine_free(routines[i]);
+  routine_free(program->prepare);
+  routine_free(program->derivatives);
+  routine_free(program->directional);
+  routine_free(program->jacobian);
+  routine_free(program->linear);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     routine_free(program->result[i]);
     routine_free(program->result_along[i]);

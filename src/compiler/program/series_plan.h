@@ -16,15 +16,6 @@ struct SeriesPlan {
   Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */
 };
 
-/*
- * The name of a function with a kink or a jump, such as "min", below the nodes; NULL for none. Its pieces have series,
- * which end where the next piece begins.
- */
-const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
-
-/* The same for a kink that no series sees, as that of asin(sin(x)). */
-const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);
-
 /* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
 

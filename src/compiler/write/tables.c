@@ -40,9 +40,11 @@ struct TableContext *table_context_create(const struct Program *program) {
   struct TableContext *context = allocate(1, sizeof *context);
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
-  const struct Routine *const routines[] = {program->prepare, program->derivatives, program->directional,
-                                            program->jacobian, program->linear};
-  for (size_t i = 0; i < sizeof routines / sizeof *routines; i++) note(context, routines[i]);
+  note(context, program->prepare);
+  note(context, program->derivatives);
+  note(context, program->directional);
+  note(context, program->jacobian);
+  note(context, program->linear);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     note(context, program->result[i]);
     note(context, program->result_along[i]);

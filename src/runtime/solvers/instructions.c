@@ -50,8 +50,8 @@ static void solve(const struct Frame *frame, size_t number) {
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
 
 /* The instructions of a run; R, A, B and C are the result and the operands. */
-#define EACH(size, statement)                                                                                          \
-  for (; count > 0; count--, code += (size)) statement;                                                                \
+#define EACH(size, ...)                                                                                                \
+  for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                              \
   break
 
 #define R r[code[0]]
@@ -124,36 +124,36 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
 #define ROW_C (row_c + code[3])
 
 /* With code of its own for each order. */
-#define EACH_OF_ORDER(size, order, statement)                                                                          \
-  case order: {                                                                                                        \
-    enum { K = order };                                                                                                \
-    for (; count > 0; count--, code += (size)) statement;                                                              \
+#define EACH_OF_ORDER(size, order, ...)                                                                                \
+  case (order): {                                                                                                      \
+    enum { K = (order) };                                                                                              \
+    for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                            \
     break;                                                                                                             \
   }
-#define EACH_UNROLLED(size, statement)                                                                                 \
+#define EACH_UNROLLED(size, ...)                                                                                       \
   switch (k) {                                                                                                         \
-    EACH_OF_ORDER(size, 1, statement)                                                                                  \
-    EACH_OF_ORDER(size, 2, statement)                                                                                  \
-    EACH_OF_ORDER(size, 3, statement)                                                                                  \
-    EACH_OF_ORDER(size, 4, statement)                                                                                  \
-    EACH_OF_ORDER(size, 5, statement)                                                                                  \
-    EACH_OF_ORDER(size, 6, statement)                                                                                  \
-    EACH_OF_ORDER(size, 7, statement)                                                                                  \
-    EACH_OF_ORDER(size, 8, statement)                                                                                  \
-    EACH_OF_ORDER(size, 9, statement)                                                                                  \
-    EACH_OF_ORDER(size, 10, statement)                                                                                 \
-    EACH_OF_ORDER(size, 11, statement)                                                                                 \
-    EACH_OF_ORDER(size, 12, statement)                                                                                 \
-    EACH_OF_ORDER(size, 13, statement)                                                                                 \
-    EACH_OF_ORDER(size, 14, statement)                                                                                 \
-    EACH_OF_ORDER(size, 15, statement)                                                                                 \
-    EACH_OF_ORDER(size, 16, statement)                                                                                 \
-    EACH_OF_ORDER(size, 17, statement)                                                                                 \
-    EACH_OF_ORDER(size, 18, statement)                                                                                 \
-    EACH_OF_ORDER(size, 19, statement)                                                                                 \
-    EACH_OF_ORDER(size, 20, statement)                                                                                 \
-    EACH_OF_ORDER(size, 21, statement)                                                                                 \
-    EACH_OF_ORDER(size, 22, statement)                                                                                 \
+    EACH_OF_ORDER(size, 1, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 2, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 3, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 4, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 5, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 6, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 7, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 8, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 9, __VA_ARGS__)                                                                                \
+    EACH_OF_ORDER(size, 10, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 11, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 12, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 13, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 14, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 15, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 16, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 17, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 18, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 19, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 20, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 21, __VA_ARGS__)                                                                               \
+    EACH_OF_ORDER(size, 22, __VA_ARGS__)                                                                               \
   default: break;                                                                                                      \
   }                                                                                                                    \
   break
