@@ -1,14 +1,70 @@
-"""Time of derivation and operations of the right side for ChainPendulum: lagc beside SymPy's LagrangesMethod with cse."""
+"""
+What it costs to make an FMU: lagc beside SymPy's LagrangesMethod with cse, whole FMUs with C compiler and packing, and a
+step of a large stiff system. All have a limit of time, and the table says so where it is reached.
+"""
 
+import math
 import multiprocessing
+import os
 import re
+import signal
 import subprocess
 import tempfile
 import time
 from pathlib import Path
 
-SYMPY_LIMIT = 60  # seconds
-COUNTS = (1, 2, 4, 8, 16, 32)
+from fmu import ROOT
+from numerics.driver import step
+
+LIMIT = 60  # seconds
+BUILD = ROOT / "build" / "cost"
+SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
+CHAINS, LATTICES = (1, 2, 4, 8, 16, 32), (100, 1000, 10000)
+WHOLE = [("ChainPendulum", 8), ("ChainPendulum", 32), ("ChainPendulum", 128), ("Lattice", 100), ("Lattice", 1000), ("Arm7", None)]
+STIFF = (10, 30, 100, 300)
+
+
+def seconds_of(words):
+    """The time of a command, or None beyond the limit; what it started ends with it."""
+    start = time.perf_counter()
+    process = subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL, start_new_session=True)
+    try:
+        status = process.wait(LIMIT)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return None
+    if status != 0:
+        raise subprocess.CalledProcessError(status, words)
+    return time.perf_counter() - start
+
+
+def in_seconds(value):
+    return f"> {LIMIT} s" if value is None else f"{value:.3g} s"
+
+
+def ratio(ours, theirs):
+    if ours is None:
+        return ""
+    return f"> {LIMIT / ours:.0f}" if theirs is None else f"{theirs / ours:.0f}"
+
+
+def source(name):
+    folder = SYSTEMS if (SYSTEMS / name).exists() else ROOT / "fmu"
+    return folder / name / "system.xml"
+
+
+def lagc(name, n=None, repeats=5):
+    """(seconds, operations) with all files written, the best of several runs; None and None beyond the limit."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [ROOT / "build/bin/lagc", source(name), "-o", folder, *(["-D", f"N={n}"] if n else [])]
+        times = [seconds_of(words)]
+        while times[0] is not None and times[0] < 1 and len(times) < repeats:
+            times.append(seconds_of(words))
+        if None in times:
+            return None, None
+        code = (Path(folder) / "system.c").read_text()
+    return min(times), int(re.search(r"d state / dt; (\d+) operations", code).group(1))
 
 
 def factorization(n):
@@ -16,32 +72,46 @@ def factorization(n):
     return 1 if n == 1 else n * (n * n - 1) // 3 + n * (n - 1) + 2 * n * (n - 1) + n
 
 
-def lagc(n):
-    """(seconds, operations): the best of five runs, writing of all files included."""
-    times = []
-    with tempfile.TemporaryDirectory() as folder:
-        for _ in range(5):
-            start = time.perf_counter()
-            subprocess.run(
-                ["build/bin/lagc", "fmu/ChainPendulum/system.xml", "-o", folder, "-D", f"N={n}"], check=True
-            )
-            times.append(time.perf_counter() - start)
-        code = (Path(folder) / "system.c").read_text()
-    return min(times), int(re.search(r"d state / dt; (\d+) operations", code).group(1))
-
-
-def derive_with_sympy(n, queue):
-    import sympy as sp
-    from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
-
-    start = time.perf_counter()
-    m, l, g, t = *sp.symbols("m l g"), dynamicsymbols._t
-    q = dynamicsymbols(f"q1:{n + 1}")
+def chain_in_sympy(sp, q, t):
+    m, l, g = sp.symbols("m l g")
     kinetic = potential = x = y = sp.Integer(0)
     for angle in q:
         x, y = x + l * sp.sin(angle), y - l * sp.cos(angle)
         kinetic += m * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2
         potential += m * g * y
+    return kinetic, potential
+
+
+def lattice_in_sympy(sp, q, t):
+    m, k, a = sp.symbols("m k a")
+    stretches = [right - left for left, right in zip([0, *q], [*q, 0])]
+    return sum(m * x.diff(t) ** 2 / 2 for x in q), sum(k * s**2 / 2 + a * s**4 / 4 for s in stretches)
+
+
+def arm_in_sympy(sp, q, t):
+    m, l, J, Ja, g = sp.symbols("m l J Ja g")
+    turn, spin, end = sp.eye(3), sp.zeros(3, 1), sp.zeros(3, 1)
+    kinetic = potential = sp.Integer(0)
+    for i, angle in enumerate(q):
+        axis = 2 if i % 2 == 0 else 1
+        turn = turn * (sp.rot_ccw_axis3(angle) if axis == 2 else sp.rot_ccw_axis2(angle))
+        spin = spin + turn[:, axis] * angle.diff(t)
+        centre, end = end + turn[:, 2] * l / 2, end + turn[:, 2] * l
+        kinetic += (m * centre.diff(t).dot(centre.diff(t)) + J * spin.dot(spin) + (Ja - J) * spin.dot(turn[:, 2]) ** 2) / 2
+        potential += m * g * centre[2]
+    return kinetic, potential
+
+
+IN_SYMPY = {"ChainPendulum": chain_in_sympy, "Lattice": lattice_in_sympy, "Arm7": arm_in_sympy}
+
+
+def derive_with_sympy(name, n, queue):
+    import sympy as sp
+    from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
+
+    start = time.perf_counter()
+    q = dynamicsymbols(f"q1:{n + 1}")
+    kinetic, potential = IN_SYMPY[name](sp, q, dynamicsymbols._t)
     method = LagrangesMethod(kinetic - potential, q)
     method.form_lagranges_equations()
     assignments, reduced = sp.cse([method.mass_matrix, method.forcing])
@@ -50,27 +120,90 @@ def derive_with_sympy(n, queue):
     queue.put((time.perf_counter() - start, operations + factorization(n)))
 
 
-def sympy(n):
-    """The same for SymPy, or None where it takes longer than the limit. M and f by SymPy, M factored numerically."""
+def sympy(name, n):
+    """The same for SymPy, or None and None. M and f by SymPy, M factored numerically, as if it were full."""
     queue = multiprocessing.Queue()
-    process = multiprocessing.Process(target=derive_with_sympy, args=(n, queue))
+    process = multiprocessing.Process(target=derive_with_sympy, args=(name, n, queue))
     process.start()
-    process.join(SYMPY_LIMIT)
+    process.join(LIMIT)
     if process.is_alive():
         process.kill()
-        return None
+        return None, None
     return queue.get()
 
 
+def compare_derivation(name, counts, argument=True):
+    """A row for each count; the exponent is that of the time's growth since the row above."""
+    print(f"\n{name}\n\n| N | lagc, time | exponent | lagc, operations | SymPy, time | ratio | SymPy, operations |\n|{' ---: |' * 7}")
+    before, slow, theirs = None, False, (None, None)
+    for n in counts:
+        ours = lagc(name, n if argument else None)
+        theirs = (None, None) if slow else sympy(name, n)
+        slow = theirs[0] is None
+        grows = before is not None and before[1] is not None and ours[0] is not None
+        exponent = f"{math.log(ours[0] / before[1]) / math.log(n / before[0]):.1f}" if grows else ""
+        before = n, ours[0]
+        print(f"| {n} | {in_seconds(ours[0])} | {exponent} | {ours[1] or ''} | {in_seconds(theirs[0])} "
+              f"| {ratio(ours[0], theirs[0])} | {theirs[1] or ''} |", flush=True)  # fmt: skip
+        if ours[0] is None:
+            break
+
+
+def prepare_build(cases):
+    """A build of these systems, each as NAMEn, with all that they share built already."""
+    for name, n in cases:
+        own = f"{name}{n or ''}"
+        folder = BUILD / "systems" / own
+        folder.mkdir(parents=True, exist_ok=True)
+        text = source(name).read_text().replace(f'system name="{name}"', f'system name="{own}"')
+        if n:
+            text = re.sub(r'(name="N" value=)"\d+"', rf'\1"{n}"', text)
+        (folder / "system.xml").write_text(text)
+    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, f"-DSYSTEMS={BUILD / 'systems'}", "--log-level=ERROR"],
+                   check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+    shared = [word for target in ("lagc", "icon", "interface", "solvers") for word in ("--target", target)]
+    subprocess.run(["cmake", "--build", BUILD, "--parallel", "2", *shared], check=True, stdout=subprocess.DEVNULL)
+
+
+def build_fmu(name):
+    """Seconds from system.xml to the archive, from nothing; None beyond the limit."""
+    (BUILD / "systems" / name / "system.xml").touch()
+    for path in (BUILD / "fmu" / f"{name}.fmu", BUILD / "systems" / name / "system.c"):
+        path.unlink(missing_ok=True)
+    return seconds_of(["cmake", "--build", BUILD, "--target", f"{name}_fmu"])
+
+
+def compare_whole_fmus():
+    print("\nWhole FMUs, with the C compiler and packing\n\n| system | time | lagc alone | archive |\n| --- | ---: | ---: | ---: |")
+    for name, n in WHOLE:
+        own = f"{name}{n or ''}"
+        taken, alone = build_fmu(own), lagc(name, n, 1)[0]
+        size = "" if taken is None else f"{(BUILD / 'fmu' / f'{own}.fmu').stat().st_size / 1000:.0f} kB"
+        print(f"| {own} | {in_seconds(taken)} | {in_seconds(alone)} | {size} |", flush=True)
+
+
+def compare_stiff_steps(end=1.0, tolerance=1e-6):
+    print("\nStiffLattice, bdf: 1 s at tolerance 1e-6\n\n| N | FMU | steps | a step | exponent |\n|" + " ---: |" * 5)
+    before = None
+    for n in STIFF:
+        taken = build_fmu(f"StiffLattice{n}")
+        run = step("cost", f"StiffLattice{n}", {}, end, tolerance, 1, 3, 1, LIMIT) if taken is not None else None
+        if run is None:
+            print(f"| {n} | {in_seconds(taken)} | | {'' if taken is None else in_seconds(None)} | |", flush=True)
+            break
+        microseconds = 1e6 * run.seconds / run.steps
+        exponent = f"{math.log(microseconds / before[1]) / math.log(n / before[0]):.1f}" if before else ""
+        before = n, microseconds
+        print(f"| {n} | {in_seconds(taken)} | {run.steps} | {microseconds:.0f} us | {exponent} |", flush=True)
+
+
 def main():
-    print("| N | lagc, time | lagc, operations | SymPy, time | SymPy, operations |")
-    print("| ---: | ---: | ---: | ---: | ---: |")
-    slow = False
-    for n in COUNTS:
-        ours, theirs = lagc(n), None if slow else sympy(n)
-        slow = theirs is None
-        other = ("> 60 s", "") if slow else (f"{theirs[0]:.2g} s", theirs[1])
-        print(f"| {n} | {ours[0]:.3f} s | {ours[1]} | {other[0]} | {other[1]} |", flush=True)
+    compare_derivation("ChainPendulum", CHAINS)
+    compare_derivation("Lattice", LATTICES)
+    compare_derivation("Arm7", [7], argument=False)
+    prepare_build([*WHOLE, *(("StiffLattice", n) for n in STIFF)])
+    compare_whole_fmus()
+    compare_stiff_steps()
 
 
 if __name__ == "__main__":

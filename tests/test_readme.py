@@ -54,12 +54,6 @@ def test_every_system_is_in_the_table():
     assert set(re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b", table)) >= set(all_names())
 
 
-def test_every_element_is_described():
-    schema = (ROOT / "fmu" / "system.xsd").read_text()
-    for element in re.findall(r'<xs:element name="(\w+)"', schema):
-        assert f"<{element}" in README, element
-
-
 def test_table_of_features():
     """scripts/features brings it up to date."""
     sys.path.insert(0, str(ROOT / "scripts"))

@@ -1,0 +1,136 @@
+"""fmu/README.md: its systems are built and move as the closed forms say, and its messages are those of lagc."""
+
+import re
+
+import numpy as np
+import pytest
+
+from closed_forms import pendulum_angle
+from fmu import ROOT, Instance, build_systems, lagc
+
+REFERENCE = (ROOT / "fmu" / "README.md").read_text()
+EXAMPLES = {
+    re.search(r' name="(\w+)"', text).group(1): text
+    for text in re.findall(r"```xml\n(<(?:system|linearization) .*?)```", REFERENCE, re.S)
+}
+
+
+def wall(t):
+    """Free to x = 0 at 0.5 s, half a period on the spring, and back."""
+    rate, contact = 10.0, np.pi / 10
+    if t < 0.5:
+        return 1 - 2 * t
+    if t < 0.5 + contact:
+        return -2 / rate * np.sin(rate * (t - 0.5))
+    return 2 * (t - 0.5 - contact)
+
+
+def damped(t):
+    d, w = 1.0, np.sqrt(24.0)
+    swing, slope = np.cos(w * t) + d / w * np.sin(w * t), -(w + d * d / w) * np.sin(w * t)
+    x, v = 0.3 * np.exp(-d * t) * swing, 0.3 * np.exp(-d * t) * slope
+    return {"x": x, "v": v, "nonConservativeWork": (v * v + 25 * x * x) / 2 - 25 * 0.3**2 / 2}
+
+
+def stiff(t):
+    root = np.sqrt(1e8 - 4e4)
+    slow, fast = -2e4 / (1e4 + root), -(1e4 + root) / 2  # the first one without cancellation
+    return {"x": (slow * np.exp(fast * t) - fast * np.exp(slow * t)) / (slow - fast)}
+
+
+def chain(t):
+    w = 2 * np.sqrt(10) * np.sin(np.pi / 6)
+    return {f"x[{i}]": 0.1 * np.sin(np.pi * i / 3) * np.cos(w * t) for i in range(1, 6)}
+
+
+def block(t):
+    stop = 2 / (0.3 * 9.81)
+    moving = min(t, stop)
+    return {"x": 2 * moving - 0.3 * 9.81 * moving**2 / 2, "v": 2 - 0.3 * 9.81 * moving}
+
+
+# What each example says, at any time: variables by name, and the largest error.
+MOTIONS = {
+    "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
+    "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
+    "RollingDisk": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
+    "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
+    "Hoist": (lambda t: {"x": 5 * 9.81 * t**2 / (2 * (5 + 0.04 * 9 / 0.04))}, 1e-9),
+    "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
+    "Wall": (lambda t: {"x": wall(t)}, 1e-6),
+    "DampedOscillator": (damped, 1e-6),
+    "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
+    "SlidingBlock": (block, 1e-4),
+    "MassChain": (chain, 1e-6),
+    "LimitedGain": (lambda t: {"F": -4.0}, 0.0),
+    "StiffDamper": (stiff, 1e-5),
+    "LinearPendulum": (lambda t: {"theta": np.pi + (1 - np.pi) * np.cosh(np.sqrt(9.81 / 0.5) * t)}, 1e-8),
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def examples():
+    build_systems("reference", EXAMPLES)
+
+
+def test_every_example_is_checked():
+    assert set(MOTIONS) == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_example_moves_as_it_says(name, open_fmu):
+    motion, allowed = MOTIONS[name]
+    instance = open_fmu(name).initialize()
+    stop = float(re.search(r'stopTime="([\d.]+)"', EXAMPLES[name]).group(1)) if "stopTime" in EXAMPLES[name] else 1.0
+    for time in np.linspace(stop / 7, stop, 7):
+        instance.step(time - instance.time)
+        for variable, expected in motion(time).items():
+            assert abs(instance.get(variable) - expected) <= allowed, (variable, time)
+
+
+def test_limited_gain_at_its_limits(open_fmu):
+    instance = open_fmu("LimitedGain").initialize()
+    for value, expected in [(3.0, -10.0), (-3.0, 10.0), (0.25, -1.0)]:
+        instance.set(e=value)
+        assert instance.get("F") == expected
+
+
+def test_every_element_and_attribute_is_described():
+    schema = (ROOT / "fmu" / "system.xsd").read_text()
+    for element in re.findall(r'<xs:element name="(\w+)"', schema):
+        assert f"<{element}" in REFERENCE, element
+    for attribute in re.findall(r'<xs:attribute name="(\w+)"', schema):
+        assert re.search(rf"\b{attribute}\b", REFERENCE), attribute
+
+
+def test_variables_that_come_out(open_fmu):
+    table = REFERENCE[REFERENCE.index("## What comes out") : REFERENCE.index("## Limits")]
+    variables = {v.name: v.causality for v in open_fmu("Pendulum").description.modelVariables}
+    assert all(f"`{name}`" in table for name in variables if name not in ("l", "g"))
+    for name, causality in [("theta", "output"), ("der(omega)", "local"), ("tau", "input"), ("m", "parameter"),
+                            ("height", "output"), ("bob.x", "local"), ("totalEnergy", "local")]:  # fmt: skip
+        assert variables[name] == causality
+
+
+def rows(title):
+    """Pairs of (line, message) of a table."""
+    part = REFERENCE[REFERENCE.index(title) :]
+    table = re.search(r"\| line \| message \|\n.*?\n((?:\|.*\n)+)", part).group(1)
+    return re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)
+
+
+def compile_with(line, folder):
+    (folder / "system.xml").write_text(EXAMPLES["Pendulum"].replace("</system>", f"  {line}\n</system>"))
+    return lagc("system.xml", "-o", "out", cwd=folder)
+
+
+@pytest.mark.parametrize("line, message", rows("is\nrefused with"))
+def test_refused_as_it_says(line, message, tmp_path):
+    result = compile_with(line, tmp_path)
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
+@pytest.mark.parametrize("line, message", rows("give a warning:"))
+def test_warned_as_it_says(line, message, tmp_path):
+    result = compile_with(line, tmp_path)
+    assert result.returncode == 0 and "warning" in result.stderr and message in result.stderr, result.stderr
