@@ -163,13 +163,12 @@ static void write_solver(const struct Page *page) {
 
 /* Small systems are compiled, large ones interpreted: see program.h. */
 static void write_form(xmlTextWriterPtr writer, const struct Program *program) {
-  size_t count = instruction_count(program);
-  char *text =
-      program->is_table
-          ? format_text("The equations are %zu instructions in tables, which the FMU carries out: as C code they "
-                        "would take a compiler too long.",
-                        count)
-          : format_text("The equations are %zu instructions of compiled C code.", count);
+  bool only_series = program->is_table && program->series != NULL && !program->series_is_table;
+  const char *form = only_series ? "those of the Taylor series as compiled C code, the others in tables, which the "
+                                   "FMU carries out"
+                     : program->is_table ? "in tables, which the FMU carries out: a C compiler would take long for them"
+                                         : "as compiled C code";
+  char *text = format_text("The equations are %zu instructions, %s.", instruction_count(program), form);
   element(writer, "h2", "Code");
   element(writer, "p", text);
   free(text);

@@ -34,7 +34,7 @@ def guid(system, folder):
     description = (folder / "out" / "modelDescription.xml").read_text()
     code = (folder / "out" / "system.c").read_text()
     found = re.search(r'guid="(\{[0-9a-f-]{36}\})"', description).group(1)
-    assert f'.guid = "{found}"' in code
+    assert f'#define GUID "{found}"' in code
     return found
 
 

@@ -53,7 +53,7 @@ def block(t):
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
     "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
-    "RollingDisk": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
+    "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
     "Hoist": (lambda t: {"x": 5 * 9.81 * t**2 / (2 * (5 + 0.04 * 9 / 0.04))}, 1e-9),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),

@@ -5,10 +5,11 @@
 #include "memory.h"
 
 /*
- * A C compiler takes more than proportionally long for long functions: for this many instructions some seconds, where a
- * table takes a fraction of one.
+ * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
+ * table takes a fraction of one. The series of the motion may be as long by itself: as statements, it takes three
+ * quarters of the time.
  */
-enum { STATEMENT_LIMIT = 6000 };
+enum { STATEMENT_LIMIT = 6000, SERIES_STATEMENT_LIMIT = 8000 };
 
 static Place target(size_t index) {
   return place_in(SPACE_TARGET, index);
@@ -194,6 +195,13 @@ size_t instruction_count(const struct Program *program) {
   return count;
 }
 
+static void choose_form(struct Program *program, enum CodeForm form) {
+  const struct SeriesProgram *series = program->series;
+  size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
+  program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
+  program->series_is_table = form == TABLES || (program->is_table && length > SERIES_STATEMENT_LIMIT);
+}
+
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {
   struct Program *program = allocate(1, sizeof *program);
   *program = (struct Program){.model = expressions->model,
@@ -215,7 +223,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   create_results(program, values);
   create_series(program, values);
   values_free(values);
-  program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
+  choose_form(program, form);
   return program;
 }
 

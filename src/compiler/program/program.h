@@ -21,7 +21,8 @@ struct Program {
   struct Routine *jacobian, *linear;         /* NULL unless the solver asks */
   struct Routine **result, **result_along;   /* of each result; along is NULL unless it is an output */
   struct SeriesProgram *series, *output_series;
-  bool is_table; /* too large for statements, which a C compiler takes long for */
+  bool is_table;        /* as a whole too large for statements, which a C compiler takes long for */
+  bool series_is_table; /* so is the series of the motion, where a simulation spends its time */
 };
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);

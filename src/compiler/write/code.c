@@ -10,11 +10,11 @@
 
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
-  if (program->series != NULL && !program->is_table && !series_is_unrolled(program))
+  if (program->series != NULL && !program->series_is_table && !series_is_unrolled(program))
     fputs("#define SERIES_ROLLED 1\n", file);
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
-  else if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
+  if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
   fputs("\n", file);
 }
 
@@ -68,7 +68,8 @@ static void write_as_tables(FILE *file, const struct Program *program) {
   struct TableContext *tables = table_context_create(program);
   tables_shared(file, tables);
   write_routines(file, program, tables);
-  if (program->series != NULL) tables_series(file, tables);
+  if (program->series != NULL && program->series_is_table) tables_series(file, tables);
+  else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) tables_output_series(file, tables);
   tables_results(file, tables);
   description_write(file, program, tables_work_count(tables));

@@ -49,7 +49,7 @@ struct TableContext *table_context_create(const struct Program *program) {
     note(context, program->result[i]);
     note(context, program->result_along[i]);
   }
-  note_series(context, program->series);
+  if (program->series_is_table) note_series(context, program->series);
   note_series(context, program->output_series);
   size_t count[3] = {0};
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
