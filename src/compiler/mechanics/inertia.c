@@ -99,12 +99,65 @@ static size_t *sort_by_components(struct Elements *elements, const struct Compon
   return start;
 }
 
+struct ColumnPart {
+  size_t column, element;
+};
+
+static int compare_columns(const void *first, const void *second) {
+  const struct ColumnPart *a = first, *b = second;
+  if (a->column != b->column) return a->column < b->column ? -1 : 1;
+  return (a->element > b->element) - (a->element < b->element);
+}
+
+/* The elements at these positions column by column, which gives other expressions of the same values. */
+static void differentiate_columns(const struct Model *model, const Node *momentum, const struct ColumnPart *parts,
+                                  const struct Position *positions, size_t count, Node *nodes) {
+  struct Graph *graph = model->graph;
+  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
+  Node *targets = allocate(count, sizeof *targets), *column = allocate(count, sizeof *column);
+  for (size_t first = 0, end = 0; first < count && !graph->overflow; first = end) {
+    for (end = first; end < count && parts[end].column == parts[first].column; end++)
+      targets[end - first] = momentum[positions[parts[end].element].row];
+    Node *seed = &seeds[graph->vertices[model->velocities.items[parts[first].column].node].left];
+    *seed = ONE;
+    derivative_along(graph, targets, end - first, seeds, column);
+    *seed = ZERO;
+    for (size_t k = first; k < end; k++) nodes[parts[k].element] = column[k - first];
+  }
+  free(seeds);
+  free(targets);
+  free(column);
+}
+
+/*
+ * Takes the elements of a component by columns where that makes them shorter. The cost is that of all its momenta for
+ * each column, so that only components with most of their elements are worth it.
+ */
+static void try_columns(const struct Model *model, const Node *momentum, const struct Position *positions, size_t count,
+                        Node *nodes) {
+  struct ColumnPart *parts = allocate(count, sizeof *parts);
+  size_t columns = 0;
+  for (size_t k = 0; k < count; k++) parts[k] = (struct ColumnPart){positions[k].column, k};
+  if (count > 0) qsort(parts, count, sizeof *parts, compare_columns);
+  for (size_t k = 0; k < count; k++) columns += k == 0 || parts[k].column != parts[k - 1].column;
+  if (columns > 1 && 4 * count >= columns * columns) {
+    Node *others = allocate(count, sizeof *others);
+    differentiate_columns(model, momentum, parts, positions, count, others);
+    take_shorter(model->graph, count, nodes, others);
+    free(others);
+  }
+  free(parts);
+}
+
 /* Multiplies the elements of each component out where that makes them shorter, and drops those that vanish so. */
-static void shorten_elements(struct Graph *graph, size_t count, struct Elements *elements) {
-  struct Components components = find_components(count, elements);
+static void shorten_elements(const struct Model *model, const Node *momentum, struct Elements *elements) {
+  struct Components components = find_components(model->coordinates.count, elements);
   size_t *start = sort_by_components(elements, &components), kept = 0;
-  for (size_t component = 0; component < components.count; component++)
-    shorten(graph, start[component + 1] - start[component], elements->nodes + start[component]);
+  for (size_t component = 0; component < components.count; component++) {
+    size_t first = start[component], count = start[component + 1] - first;
+    try_columns(model, momentum, elements->positions + first, count, elements->nodes + first);
+    shorten(model->graph, count, elements->nodes + first);
+  }
   for (size_t k = 0; k < elements->count; k++) {
     if (elements->nodes[k] == ZERO) continue;
     elements->positions[kept] = elements->positions[k];
@@ -177,7 +230,7 @@ static struct Inertia *create_blocks(size_t count, struct Elements *elements) {
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   struct Elements elements = differentiate_momenta(model->graph, momentum, count);
-  shorten_elements(model->graph, count, &elements);
+  shorten_elements(model, momentum, &elements);
   struct Inertia *inertia = create_blocks(count, &elements);
   elements_free(&elements);
   if (model->graph->overflow) return inertia;

@@ -12,6 +12,9 @@ static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   if (program->series != NULL && !program->series_is_table && !series_is_unrolled(program))
     fputs("#define SERIES_ROLLED 1\n", file);
+  /* Long statements of series take a compiler half the time so, and the processor not more. */
+  if (program->is_table && !program->series_is_table)
+    fputs("#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize(\"O1\")\n#endif\n", file);
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
