@@ -46,8 +46,8 @@ static size_t later(size_t first, size_t second) {
 }
 
 /* A block's instruction reads and writes its whole part of the spaces. */
-static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors) {
-  size_t level = 0;
+static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors,
+                             size_t level) {
   struct Access *mass = accesses->of[SPACE_MASS] + looped->first_mass;
   struct Access *side = accesses->of[SPACE_SIDE] + looped->first_side;
   size_t elements = looped->block->start[looped->block->count];
@@ -64,13 +64,12 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
   return level;
 }
 
-/* One after the last writing of all operands, and after all uses of what the result replaces. */
+/* One after this level, after the last writing of all operands, and after all uses of what the result replaces. */
 static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
-                       const struct LoopedBlocks *blocks) {
+                       const struct LoopedBlocks *blocks, size_t level) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
   if (facts->result == BLOCK)
-    return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR);
-  size_t level = 0;
+    return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
     if (facts->operands[j] != ROW_OF_PAST) level = later(level, access_of(accesses, instruction->operands[j])->written);
   if (has_result(facts)) {
@@ -84,6 +83,11 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
   }
   if (has_result(facts)) access_of(accesses, instruction->result)->written = level;
   return level;
+}
+
+/* Of several checks that fail, the first one tells why: they keep their order. */
+static bool may_return(enum Opcode opcode) {
+  return opcode == FACTOR || opcode_facts(opcode)->result == NUMBER;
 }
 
 struct Turn {
@@ -113,9 +117,13 @@ size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks
   struct Accesses accesses = accesses_create(routine, blocks);
   struct Turn *turns = allocate(routine->count, sizeof *turns);
   size_t *order = allocate(routine->count, sizeof *order);
+  size_t last_check = 0;
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
-    turns[i] = (struct Turn){level_of(&accesses, instruction, blocks), i, spaces_of(instruction), instruction};
+    bool checks = may_return(instruction->opcode);
+    size_t level = level_of(&accesses, instruction, blocks, checks ? last_check : 0);
+    if (checks) last_check = level;
+    turns[i] = (struct Turn){level, i, spaces_of(instruction), instruction};
   }
   if (routine->count > 0) qsort(turns, routine->count, sizeof *turns, compare);
   for (size_t i = 0; i < routine->count; i++) order[i] = turns[i].number;
