@@ -44,6 +44,7 @@ def number(value):
 FUNCTIONS = {name: on_series(name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")}
 FUNCTIONS |= {name: on_exponentials(name) for name in ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh")}
 FUNCTIONS |= {"atan2": lambda y, x: FUNCTIONS["atan"](y / x), "mpf": number}
+FUNCTIONS |= {"Raised": lambda base, exponent: FUNCTIONS["exp"](exponent * FUNCTIONS["log"](base))}
 
 
 @contextmanager

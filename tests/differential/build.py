@@ -46,7 +46,7 @@ def compile_system(system, folder):
     source = folder / "system.xml"
     source.write_text(system.xml())
     target = folder / "fmu"
-    result = run([fmu.LAGC, source, "-o", target], "lagc")
+    result = run([fmu.LAGC, source, "-o", target, "--form", system.plan.form], "lagc")
     if result.returncode == 1 and re.search(r"system\.xml(:\d+)?: \S", result.stderr):
         raise Refused("lagc: " + re.sub(r"^.*?system\.xml(:\d+)?: ", "", result.stderr.splitlines()[0]))
     if result.returncode != 0:

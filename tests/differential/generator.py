@@ -30,7 +30,8 @@ def plan(draw):
     start = draw.choice([0.0, 0.0, 0.0, 1.0, -2.0, 100.0])
     length = draw.choice([0.5, 1.0, 2.0, 5.0, 5.0, 10.0])
     return Plan(start, length, [Action() for _ in range(steps)], draw.choice(TOLERANCES), packed=draw.chance(0.05),
-                compiler=draw.choice(["gcc", "gcc", "gcc", "clang"]), unrolled=draw.chance(0.03))  # fmt: skip
+                compiler=draw.choice(["gcc", "gcc", "gcc", "clang"]), unrolled=draw.chance(0.03),
+                form=draw.choice(["statements", "statements", "tables"]))  # fmt: skip
 
 
 def nonlinear(draw):

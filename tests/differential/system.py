@@ -42,6 +42,7 @@ class Plan:
     packed: bool = False  # through the packed FMU
     compiler: str = "gcc"
     unrolled: bool = False  # as users build it, which takes long to compile
+    form: str = "statements"  # of the generated code
 
     @property
     def times(self):
