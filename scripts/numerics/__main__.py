@@ -111,7 +111,7 @@ def main():
     systems = list(dict.fromkeys(s.system for s in samples))
     verdicts, stability = stability_section(stability_rows(progress))
     energies = energy_section(quick, progress)
-    left_out_header = ["FMU", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
+    left_out_header = ["FMU", "form", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
                        "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
     left_out = footprint.rows()
     write_csv(FOLDER / "left_out.csv", left_out_header, left_out)

@@ -27,11 +27,23 @@ def heap():
     return info.uordblks + info.hblkhd
 
 
+def code_of(name):
+    return (fmu.BUILD / "systems" / name / "system.c").read_text()
+
+
+def form(name):
+    """How the equations are written, see src/compiler/program/program.h."""
+    code = code_of(name)
+    if "InstructionTables tables" not in code:
+        return "statements"
+    return "tables" if "series_code[]" in code or "void series(" not in code else "tables, series as statements"
+
+
 def absent_features(name, members):
-    code = (fmu.BUILD / "systems" / name / "system.c").read_text()
+    code = code_of(name)
     present = {
-        "input": "point->input" in code, "time": "point->time" in code, "loops": "ldlt_factor(" in code,
-        "jacobian": "int jacobian(" in code, "series": "int series(" in code, "linear": "void linear(" in code,
+        "input": "point->input" in code, "time": "point->time" in code, "loops": any("ldlt.c" in m for m in members),
+        "jacobian": "int jacobian(" in code, "series": "void series(" in code, "linear": "void linear(" in code,
         "sundials": any("sundials" in m for m in members), "solver": any(m.startswith("libsolvers.a") for m in members),
     }  # fmt: skip
     return [text for feature, text in FEATURES.items() if not present[feature]]
@@ -70,13 +82,13 @@ def exported_symbols(name):
 
 
 def rows():
-    """A row for each FMU: name, bytes of archive, library, equations, runtime, SUNDIALS; memory, time, symbols, absent."""
+    """A row for each FMU: name, form, bytes of archive, library, equations, runtime, SUNDIALS; memory, time, symbols, absent."""
     table = []
     for name in fmu.all_names():
         members = linked_members(name)
         equations = sum(size for member, size in members.items() if "system.c.o" in member)
         sundials = sum(size for member, size in members.items() if "sundials" in member and ".c.o" in member and "libsundials" in member)
         runtime = sum(members.values()) - equations - sundials
-        table.append([name, fmu.archive(name).stat().st_size, fmu.library(name).stat().st_size, equations, runtime, sundials,
+        table.append([name, form(name), fmu.archive(name).stat().st_size, fmu.library(name).stat().st_size, equations, runtime, sundials,
                       *instance_costs(name), exported_symbols(name), ", ".join(absent_features(name, members))])  # fmt: skip
     return table
