@@ -31,18 +31,28 @@ static bool find_reference(xmlXPathContextPtr context, const char *path, fmi2Val
   return true;
 }
 
+#define VARIABLES "/fmiModelDescription/ModelVariables/ScalarVariable"
+
 /* derivative="i" of a ScalarVariable names its state; the first is of a coordinate, and its value is a velocity. */
 static bool find_shown(xmlXPathContextPtr context, struct Description *description) {
-  static const char *const coordinate =
-      "//ScalarVariable[position() = //ScalarVariable/Real[@derivative][1]/@derivative]/@valueReference";
-  static const char *const solver_steps = "//ScalarVariable[@name='solverSteps']/@valueReference";
-  static const char *const velocity = "//ScalarVariable[Real/@derivative][1]/@valueReference";
-  description->has_states = find_reference(context, coordinate, &description->shown[0]) &&
-                            find_reference(context, velocity, &description->shown[1]) &&
-                            find_reference(context, solver_steps, &description->solver_steps);
+  char coordinate[sizeof VARIABLES + 60];
+  double place = 0.0;
+  find_number(context, "(" VARIABLES "/Real/@derivative)[1]", &place);
+  snprintf(coordinate, sizeof coordinate, VARIABLES "[%.0f]/@valueReference", place);
+  description->has_states =
+      find_reference(context, coordinate, &description->shown[0]) &&
+      find_reference(context, "(" VARIABLES "[Real/@derivative])[1]/@valueReference", &description->shown[1]) &&
+      find_reference(context, VARIABLES "[@name='solverSteps']/@valueReference", &description->solver_steps);
   return description->has_states ||
-         (find_reference(context, "//ScalarVariable[@causality='input'][1]/@valueReference", &description->shown[0]) &&
-          find_reference(context, "//ScalarVariable[@causality='output'][1]/@valueReference", &description->shown[1]));
+         (find_reference(context, "(" VARIABLES "[@causality='input'])[1]/@valueReference", &description->shown[0]) &&
+          find_reference(context, "(" VARIABLES "[@causality='output'])[1]/@valueReference", &description->shown[1]));
+}
+
+static double count_states(xmlXPathContextPtr context) {
+  xmlXPathObjectPtr found = xmlXPathEvalExpression((const xmlChar *)"count(" VARIABLES "/Real/@derivative)", context);
+  double count = found != NULL ? found->floatval : 0.0;
+  xmlXPathFreeObject(found);
+  return count;
 }
 
 bool description_read(const char *path, struct Description *description) {
@@ -54,7 +64,8 @@ bool description_read(const char *path, struct Description *description) {
     xmlChar *guid = find(context, "/fmiModelDescription/@guid");
     if (guid != NULL) description->guid = strdup((const char *)guid);
     xmlFree(guid);
-    find_number(context, "//DefaultExperiment/@stopTime", &description->stop_time);
+    find_number(context, "/fmiModelDescription/DefaultExperiment/@stopTime", &description->stop_time);
+    description->states = count_states(context);
     found = find_shown(context, description) && description->guid != NULL;
   }
   if (!found)

@@ -66,10 +66,11 @@ static void append(struct Curve *curve, double x, double y) {
 /* A step of the FMU. False where it fails, or where the solver has taken too many steps, as for a stiff system. */
 static bool advance(const struct Library *fmu, fmi2Component c, const struct Description *description, double from,
                     double to) {
-  enum { SOLVER_STEP_LIMIT = 200000 };
+  /* The work of a step grows as the states do, or as their square. */
+  double limit = fmin(200000.0, fmax(300.0, 4e6 / (description->states * description->states)));
   fmi2Integer steps = 0;
   return fmu->do_step(c, from, to - from, fmi2True) == fmi2OK &&
-         fmu->get_integer(c, &description->solver_steps, 1, &steps) == fmi2OK && steps <= SOLVER_STEP_LIMIT;
+         fmu->get_integer(c, &description->solver_steps, 1, &steps) == fmi2OK && steps <= limit;
 }
 
 /* The first step, in parts that double from a tiny one: the work for a part tells that for the next. */
