@@ -32,6 +32,16 @@ static const struct Method methods[] = {
      .evaluations = "evaluations of the equations of motion",
      .series = FIRST_TERMS,
      .needs_jacobian = true},
+    {.name = "radau",
+     .solver = "solver_radau",
+     .sentence =
+         "Co-simulation integrates with Radau IIA methods of order 5, 9 or 13, by the tolerance; they are implicit, "
+         "for stiff systems. A step depends only on the state that the FMU saves, so that a repeated step gives "
+         "the same bits.",
+     .evaluations = "evaluations of the equations of motion",
+     .sources = {"radau.c", "radau_systems.c", "first_terms.c", "series_limit.c"},
+     .series = FIRST_TERMS,
+     .needs_jacobian = true},
     {.name = "exact",
      .solver = "solver_exact",
      .sentence = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of time "

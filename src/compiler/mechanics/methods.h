@@ -15,7 +15,7 @@ enum SeriesUse {
   ALL_TERMS
 };
 
-enum { METHOD_SOURCES = 3 };
+enum { METHOD_SOURCES = 4 };
 
 struct Method {
   const char *name;          /* in system.xml and on the command line */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluate.h"
+#include "first_terms.h"
 
 static bool allocate(struct Instance *instance, struct Sundials *sundials) {
   sunindextype states = (sunindextype)lagrangian.state_count;
@@ -13,8 +13,8 @@ static bool allocate(struct Instance *instance, struct Sundials *sundials) {
     sundials->inside = N_VNew_Serial(states, sundials->context);
     sundials->tolerance = N_VNew_Serial(states, sundials->context);
   }
-  bool limits = lagrangian.limit != NULL;
-  size_t rows = lagrangian.state_count + lagrangian.input_count + lagrangian.series_rows;
+  size_t rows = first_terms_rows();
+  bool limits = rows > 0;
   if (limits) sundials->series = instance->memory.allocate(rows, sizeof(Series));
   if (sundials->state != NULL && sundials->inside != NULL && sundials->tolerance != NULL &&
       (!limits || sundials->series != NULL))
@@ -62,29 +62,9 @@ void sundials_copy(N_Vector vector, double *state) {
   memcpy(state, N_VGetArrayPointer(vector), lagrangian.state_count * sizeof(double));
 }
 
-/*
- * Two terms beside the first: where the system is stiff, higher ones belong to fast modes that the method damps. Kinks,
- * roots and jumps are left to its error estimate.
- */
 double sundials_longest_step(struct Instance *instance, double time, double bound) {
-  enum { ORDER = 3 };
   const struct Sundials *sundials = instance->solver_memory;
-  if (sundials->series == NULL) return bound;
-  size_t states = lagrangian.state_count;
-  Series *x = sundials->series, *input = x + states, *work = input + lagrangian.input_count;
-  const double *state = N_VGetArrayPointer(sundials->state);
-  double *derivative = instance->work + lagrangian.input_count;
-  struct Point point = solver_point(instance, time, state);
-  if (lagrangian.start(&point, derivative, work) != 0) return bound;
-  for (size_t i = 0; i < states; i++) {
-    x[i][0] = state[i];
-    x[i][1] = derivative[i];
-  }
-  for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, time, input[i]);
-  lagrangian.series(&point, ORDER, (const Series *)input, x, work);
-  struct SeriesLimit limit = {.order = ORDER - 1, .step = bound, .crosses = true};
-  lagrangian.limit(&point, (const Series *)input, (const Series *)x, (const Series *)work, &limit);
-  return limit.step;
+  return first_terms_step(instance, sundials->series, time, N_VGetArrayPointer(sundials->state), bound);
 }
 
 bool sundials_succeeded(const struct Instance *instance, int flag, const char *call) {

@@ -1,0 +1,355 @@
+/*
+ * Radau IIA of orders 5, 9 and 13 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and
+ * IV.8; Stiff differential equations solved by Radau methods, 1999). The stages z_i = Y_i - y0 are found by Newton's
+ * method in the coordinates w of the eigenvectors of A^-1, z = V w, where the linear systems fall apart. A step depends on
+ * nothing but what the situation holds: the state at its start, the stages, and a few numbers of the control.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluate.h"
+#include "first_terms.h"
+#include "radau.h"
+#include "radau_tables.h"
+
+/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+static const double safety = 0.05;
+
+enum { ITERATION_LIMIT = 12, ATTEMPT_LIMIT = 60 };
+
+/* What the situation keeps; the state at the start of the last step and its stages follow. */
+struct Saved {
+  double step;        /* of the last step; 0 for none: there is no polynomial */
+  double next;        /* the step that the control would take */
+  double error;       /* of the last step, in units of the tolerance */
+  double contraction; /* of Newton's method in the last step */
+  int64_t method;     /* of the last step: its place among the methods */
+};
+
+struct Radau {
+  struct Saved *saved;
+  double *start, *stages; /* in the situation: states, STAGE_LIMIT x states */
+  struct RadauSystems systems;
+  double *state, *scale, *first; /* states: where the step being made starts, what an error of 1 is there, f there */
+  double *trial;                 /* states: workspace */
+  double *z, *rates;             /* STAGE_LIMIT x states: of the step being made */
+  struct Complex *w;             /* SYSTEM_LIMIT x states */
+  Series *series;                /* of first_terms.h */
+};
+
+static size_t saved_size(void) {
+  return sizeof(struct Saved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
+}
+
+static bool create(struct Instance *instance) {
+  size_t states = lagrangian.state_count;
+  size_t numbers = (4 + 2 * STAGE_LIMIT + 2 * SYSTEM_LIMIT) * states + 1 + radau_systems_size();
+  size_t rows = first_terms_rows() * SERIES_LENGTH;
+  struct Radau *radau = instance->memory.allocate(1, sizeof *radau + (numbers + rows) * sizeof(double));
+  if (radau == NULL) return solver_lacks_memory(instance);
+  radau->saved = instance->saved;
+  radau->start = (double *)(radau->saved + 1);
+  radau->stages = radau->start + states;
+  radau->w = (struct Complex *)(radau + 1);
+  radau->state = (double *)(radau->w + SYSTEM_LIMIT * states);
+  radau->scale = radau->state + states;
+  radau->first = radau->scale + states;
+  radau->trial = radau->first + states;
+  radau->z = radau->trial + states;
+  radau->rates = radau->z + STAGE_LIMIT * states;
+  double *rest = radau->rates + STAGE_LIMIT * states;
+  radau->series = (Series *)rest;
+  radau_systems_place(&radau->systems, rest + rows);
+  instance->solver_memory = radau;
+  return true;
+}
+
+static void destroy(struct Instance *instance) {
+  instance->memory.free(instance->solver_memory);
+  instance->solver_memory = NULL;
+}
+
+/* The share of the tolerance that a step may err by. */
+static double relative_tolerance(const struct Instance *instance) {
+  return fmax(safety * instance->situation->tolerance, 4 * DBL_EPSILON);
+}
+
+static int64_t method_for(double tolerance) {
+  return tolerance >= 1e-4 ? 0 : tolerance >= 1e-7 ? 1 : 2;
+}
+
+static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+  struct Radau *radau = instance->solver_memory;
+  struct Saved *saved = radau->saved;
+  (void)step;
+  memcpy(radau->start, instance->state, lagrangian.state_count * sizeof(double));
+  memset(radau->stages, 0, STAGE_LIMIT * lagrangian.state_count * sizeof(double));
+  saved->step = saved->error = 0.0;
+  saved->contraction = 1.0;
+  saved->method = method_for(instance->situation->tolerance);
+  return true;
+}
+
+static void resume(struct Instance *instance) {
+  (void)instance; /* all that counts is in the situation */
+}
+
+/* The collocation polynomial less the state at its start, at this share of the step. */
+static void evaluate_polynomial(const struct RadauMethod *method, const double *stages, double share, double *change) {
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) change[k] = 0.0;
+  for (int i = 0; i < method->stages; i++) {
+    double weight = share / method->node[i];
+    for (int j = 0; j < method->stages; j++)
+      if (j != i) weight *= (share - method->node[j]) / (method->node[i] - method->node[j]);
+    for (size_t k = 0; k < states; k++) change[k] += weight * stages[(size_t)i * states + k];
+  }
+}
+
+static bool interpolate(struct Instance *instance, double time, double *state) {
+  const struct Radau *radau = instance->solver_memory;
+  const struct Saved *saved = radau->saved;
+  const struct RadauMethod *method = &methods[saved->method];
+  const struct Span *last = &instance->situation->last_step;
+  size_t states = lagrangian.state_count;
+  const double *end = radau->stages + (size_t)(method->stages - 1) * states;
+  if (saved->step == 0.0) memset(radau->trial, 0, states * sizeof(double));
+  else if (time == last->end) memcpy(radau->trial, end, states * sizeof(double));
+  else evaluate_polynomial(method, radau->stages, (time - last->start) / saved->step, radau->trial);
+  for (size_t k = 0; k < states; k++) state[k] = radau->start[k] + radau->trial[k];
+  return true;
+}
+
+static double norm(const struct Radau *radau, const double *vector) {
+  size_t states = lagrangian.state_count;
+  double sum = 0.0;
+  for (size_t k = 0; k < states; k++) sum += vector[k] / radau->scale[k] * (vector[k] / radau->scale[k]);
+  return sqrt(sum / (double)states);
+}
+
+/* Newton's starting values: the polynomial of the last step, continued; without one, no change. */
+static void predict(struct Radau *radau, const struct RadauMethod *method, double step) {
+  const struct Saved *saved = radau->saved;
+  const struct RadauMethod *last = &methods[saved->method];
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    double *z = radau->z + (size_t)i * states;
+    memset(z, 0, states * sizeof *z);
+    if (saved->step == 0.0) continue;
+    evaluate_polynomial(last, radau->stages, 1.0 + method->node[i] * step / saved->step, z);
+    const double *end = radau->stages + (size_t)(last->stages - 1) * states;
+    for (size_t k = 0; k < states; k++) z[k] -= end[k];
+  }
+}
+
+/* w = V^-1 z for the eigenvalues that are kept. */
+static void to_eigenvectors(const struct RadauMethod *method, const double *z, struct Complex *w) {
+  size_t states = lagrangian.state_count;
+  for (int j = 0; j <= method->stages / 2; j++) {
+    for (size_t k = 0; k < states; k++) {
+      struct Complex sum = {0.0, 0.0};
+      for (int i = 0; i < method->stages; i++) {
+        sum.real += method->back_real[j][i] * z[(size_t)i * states + k];
+        sum.imaginary += method->back_imaginary[j][i] * z[(size_t)i * states + k];
+      }
+      w[(size_t)j * states + k] = sum;
+    }
+  }
+}
+
+/* z = V w; of conjugate pairs, one is kept. */
+static void from_eigenvectors(const struct RadauMethod *method, const struct Complex *w, double *z) {
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++) {
+      double sum = method->vector_real[i][0] * w[k].real;
+      for (int j = 1; j <= method->stages / 2; j++) {
+        const struct Complex part = w[(size_t)j * states + k];
+        sum += 2.0 * (method->vector_real[i][j] * part.real - method->vector_imaginary[i][j] * part.imaginary);
+      }
+      z[(size_t)i * states + k] = sum;
+    }
+  }
+}
+
+/* f at the stages. False where it does not exist. */
+static bool evaluate_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
+                            double time, double step) {
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++) radau->trial[k] = radau->state[k] + radau->z[(size_t)i * states + k];
+    if (!solver_derivatives(instance, time + method->node[i] * step, radau->trial, radau->rates + (size_t)i * states))
+      return false;
+  }
+  return true;
+}
+
+/* One iteration of Newton's method; returns the norm of the change of z. */
+static double iterate(struct Radau *radau, const struct RadauMethod *method) {
+  size_t states = lagrangian.state_count;
+  struct RadauSystems *systems = &radau->systems;
+  for (int j = 0; j <= method->stages / 2; j++) {
+    struct Complex *w = radau->w + (size_t)j * states, mu = systems->mu[j];
+    for (size_t k = 0; k < states; k++) {
+      struct Complex rate = {0.0, 0.0};
+      for (int i = 0; i < method->stages; i++) {
+        rate.real += method->back_real[j][i] * radau->rates[(size_t)i * states + k];
+        rate.imaginary += method->back_imaginary[j][i] * radau->rates[(size_t)i * states + k];
+      }
+      systems->right_side[k].real = rate.real - (mu.real * w[k].real - mu.imaginary * w[k].imaginary);
+      systems->right_side[k].imaginary = rate.imaginary - (mu.real * w[k].imaginary + mu.imaginary * w[k].real);
+    }
+    radau_systems_solve(systems, j);
+    for (size_t k = 0; k < states; k++) {
+      w[k].real += systems->solution[k].real;
+      w[k].imaginary += systems->solution[k].imaginary;
+    }
+  }
+  memcpy(radau->rates, radau->z, (size_t)method->stages * states * sizeof(double));
+  from_eigenvectors(method, radau->w, radau->z);
+  double sum = 0.0;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++)
+      radau->trial[k] = radau->z[(size_t)i * states + k] - radau->rates[(size_t)i * states + k];
+    double change = norm(radau, radau->trial);
+    sum += change * change;
+  }
+  return sqrt(sum / method->stages);
+}
+
+/* Solves for the stages; the number of iterations, or 0 where Newton's method does not converge. */
+static int solve_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
+                        double step, double *contraction) {
+  double relative = relative_tolerance(instance);
+  double enough = fmax(10 * DBL_EPSILON / relative, fmin(0.01, sqrt(relative))), before = 0.0;
+  double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
+  predict(radau, method, step);
+  to_eigenvectors(method, radau->z, radau->w);
+  *contraction = 0.0;
+  for (int iteration = 1; iteration <= ITERATION_LIMIT; iteration++) {
+    if (!evaluate_stages(instance, radau, method, time, step)) return 0;
+    double change = iterate(radau, method);
+    if (!isfinite(change)) return 0;
+    if (iteration > 1) {
+      double theta = change / before;
+      *contraction = iteration == 2 ? theta : sqrt(theta * *contraction);
+      bool rounds = change <= 20 * DBL_EPSILON / relative; /* rounding alone changes the iterates */
+      if (*contraction >= 0.99 && !rounds) return 0;
+      expected = rounds ? 0.0 : *contraction / (1.0 - *contraction);
+      if (expected * change * pow(*contraction, ITERATION_LIMIT - 1 - iteration) > enough && !rounds) return 0;
+    }
+    before = change;
+    if (expected * change <= enough || change == 0.0) return iteration;
+  }
+  return 0;
+}
+
+/* (mu - J)^-1 (f + the error's weights times the stages / step); the estimate is left in trial. */
+static double estimate(struct Radau *radau, const struct RadauMethod *method, const double *rate, double step) {
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) {
+    double sum = 0.0;
+    for (int i = 0; i < method->stages; i++) sum += method->error[i] * radau->z[(size_t)i * states + k];
+    radau->systems.right_side[k] = (struct Complex){rate[k] + sum / step, 0.0};
+  }
+  radau_systems_solve(&radau->systems, 0);
+  for (size_t k = 0; k < states; k++) radau->trial[k] = radau->systems.solution[k].real;
+  return norm(radau, radau->trial);
+}
+
+/* A second filtering with f at the state moved by the estimate takes what is stiff out of it. */
+static double estimate_error(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
+                             double time, double step) {
+  double error = estimate(radau, method, radau->first, step);
+  if (error < 1.0) return fmax(error, 1e-10);
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) radau->trial[k] += radau->state[k];
+  if (!solver_derivatives(instance, time, radau->trial, radau->rates)) return error;
+  return fmax(estimate(radau, method, radau->rates, step), 1e-10);
+}
+
+/* What the step is multiplied by; the last two errors tell where they go. */
+static double factor_of_step(const struct Saved *saved, const struct RadauMethod *method, double step, double error,
+                             int iterations) {
+  double power = 1.0 / (method->stages + 1);
+  double caution = 0.9 * (2.0 * ITERATION_LIMIT + 1.0) / (2.0 * ITERATION_LIMIT + iterations);
+  double factor = caution * pow(error, -power);
+  if (saved->step > 0.0 && saved->error > 0.0 && error < 1.0)
+    factor = fmin(factor, factor * step / saved->step * pow(saved->error / error, power));
+  return fmin(8.0, fmax(0.2, factor));
+}
+
+/* A first step that moves the state by a small share of its scale. */
+static double first_step(const struct Instance *instance, const struct Radau *radau, double length) {
+  double rate = norm(radau, radau->first) * relative_tolerance(instance);
+  double step = rate > 0.0 ? 1e-3 / rate : length;
+  return fmin(step, length);
+}
+
+/* Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. */
+static bool begin(struct Instance *instance, struct Radau *radau, double time) {
+  double relative = relative_tolerance(instance);
+  interpolate(instance, time, radau->state);
+  for (size_t k = 0; k < lagrangian.state_count; k++)
+    radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.nominal[k]);
+  return solver_derivatives(instance, time, radau->state, radau->first) &&
+         radau_systems_evaluate(instance, &radau->systems, time, radau->state);
+}
+
+/* The step to try: what the control says, at first no more than the communication step. */
+static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
+  const struct Saved *saved = radau->saved;
+  double step = saved->next;
+  if (saved->step == 0.0) step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
+  double longest = fmin(lagrangian.max_step, 2.0 * step);
+  return fmin(step, first_terms_step(instance, radau->series, time, radau->state, longest));
+}
+
+static void accept(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
+                   double step) {
+  struct Situation *situation = instance->situation;
+  size_t states = lagrangian.state_count;
+  memcpy(radau->start, radau->state, states * sizeof(double));
+  memcpy(radau->stages, radau->z, (size_t)method->stages * states * sizeof(double));
+  radau->saved->method = method - methods;
+  radau->saved->step = step;
+  situation->last_step = (struct Span){time, time + step};
+  situation->statistics[STATISTIC_STEPS]++;
+}
+
+static const char *advance(struct Instance *instance, const struct CommunicationStep *communication) {
+  struct Radau *radau = instance->solver_memory;
+  struct Saved *saved = radau->saved;
+  double time = instance->situation->last_step.end;
+  if (!begin(instance, radau, time)) return "the equations have no solution there";
+  const struct RadauMethod *method = &methods[method_for(instance->situation->tolerance)];
+  double step = trial_step(instance, radau, time, communication->end - time);
+  for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
+    if (solver_rests(time, step)) return solver_resting;
+    double contraction = saved->contraction, error = 1.0;
+    int iterations = 0;
+    if (radau_systems_factor(&radau->systems, method, step))
+      iterations = solve_stages(instance, radau, method, time, step, &contraction);
+    if (iterations > 0) error = estimate_error(instance, radau, method, time, step);
+    double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
+    if (error < 1.0) {
+      accept(instance, radau, method, time, step);
+      saved->next = next;
+      saved->error = fmax(error, 1e-2);
+      saved->contraction = contraction;
+      return NULL;
+    }
+    step = fmin(next, 0.9 * step);
+  }
+  return "no step is short enough";
+}
+
+const struct Solver solver_radau = {.name = "Radau",
+                                    .saved_size = saved_size,
+                                    .create = create,
+                                    .destroy = destroy,
+                                    .restart = restart,
+                                    .resume = resume,
+                                    .advance = advance,
+                                    .interpolate = interpolate};
