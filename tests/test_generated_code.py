@@ -42,7 +42,7 @@ def compiles(folder):
 @pytest.mark.parametrize("expression", EXPRESSIONS)
 @pytest.mark.parametrize("place", PLACES)
 def test_powers(place, expression, tmp_path):
-    for method in ("taylor", "erk", "bdf"):
+    for method in ("taylor", "erk", "bdf", "radau"):
         (tmp_path / "system.xml").write_text(SYSTEM.format(PLACES[place].format(expression), method))
         result = lagc("system.xml", "-o", "out", cwd=tmp_path)
         assert (result.returncode, result.stderr) == (0, "")

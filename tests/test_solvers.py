@@ -1,4 +1,4 @@
-"""Where the methods with error estimates, erk and bdf, are in danger of going astray."""
+"""Where the methods with error estimates, erk, bdf and radau, are in danger of going astray."""
 
 import io
 import math
@@ -12,7 +12,7 @@ import pytest
 import fmu
 from fmu import DISCARD
 
-METHODS = ("erk", "bdf")
+METHODS = ("erk", "bdf", "radau")
 
 # A unit mass at x with velocity v: its force, and where it starts.
 FORCES = {
@@ -40,7 +40,7 @@ def text(name, force, x, v, solver):
 
 @pytest.fixture(scope="module", autouse=True)
 def systems():
-    """Every force with both methods: PulseErk, PulseBdf, ..."""
+    """Every force with each method: PulseErk, PulseBdf, ..."""
     texts = {}
     for name, (force, x, v, solver) in FORCES.items():
         for method in METHODS:
@@ -49,7 +49,7 @@ def systems():
     fmu.build_systems("solver-systems", texts)
 
 
-@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+@pytest.mark.parametrize("method", ["Erk", "Bdf", "Radau"])
 def test_the_longest_step_finds_a_pulse(method, open_fmu):
     """A pulse of 0.01 s in one communication step of 10 s; its integral is 0.01 sqrt(pi)."""
     instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
@@ -69,7 +69,7 @@ def collision_time(name, a):
 
 
 @pytest.mark.parametrize("name", ["Collision", "Logarithm", "Tangent"])
-@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+@pytest.mark.parametrize("method", ["Erk", "Bdf", "Radau"])
 def test_no_step_passes_through_a_singularity(name, method, open_fmu):
     instance, end = open_fmu(name + method, logging=True), 4.0
     for a in (0.5, 1.0, 1.3):
@@ -82,7 +82,7 @@ def test_no_step_passes_through_a_singularity(name, method, open_fmu):
                 assert instance.fmu.getRealStatus(2) == pytest.approx(last, abs=max(1e-6, 20 * tolerance))
 
 
-@pytest.mark.parametrize("method", ["Erk", "Bdf"])
+@pytest.mark.parametrize("method", ["Erk", "Bdf", "Radau"])
 def test_a_trial_stage_may_fail(method, open_fmu):
     """Steps grow before the wall, so that a trial overflows behind it; the energy stays, and x returns to the start."""
     instance = open_fmu(f"Wall{method}").initialize({"a": 1.0}, tolerance=1e-9)

@@ -1,0 +1,115 @@
+"""Radau IIA against closed forms of stiff motions, and what a one-step method promises."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import fmu
+
+TEXTS = {
+    # x'' = -b v - k x, overdamped by up to twelve decades
+    "Damper": '<parameter name="b" start="1e6"/><parameter name="k" start="1"/><coordinate name="x" velocity="v" start="1"/>'
+    '<particle mass="1" x="x"/><force coordinate="x">-b*v - k*x + u</force><input name="u"/><work/>',
+    # van der Pol's oscillator as a mass on a spring with negative damping
+    "VanDerPol": '<parameter name="mu" start="1e3"/><coordinate name="x" velocity="v" start="2"/><particle mass="1" x="x"/>'
+    '<force coordinate="x">mu*(1 - x^2)*v - x</force>',
+    # two masses, one of them on a spring that is nearly a rod: a full mass matrix and a sparse Jacobian
+    "Pair": '<parameter name="k" start="1e8"/><coordinate name="x" velocity="v"/><coordinate name="s" velocity="w" start="1e-3"/>'
+    '<particle mass="1" x="x"/><particle mass="2" x="x + s"/><potential>k*s^2/2 + x^2/2</potential>'
+    '<dissipation>1e5*w^2/2</dissipation>',
+    "Oscillator": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>x^2/2</potential>',
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    names = {f"Radau{name}": body for name, body in TEXTS.items()}
+    fmu.build_systems("radau-systems", {
+        name: f'<system name="{name}">{body}<solver method="radau"/><experiment stopTime="0.1"/></system>' for name, body in names.items()
+    })  # fmt: skip
+
+
+def overdamped(b, k, t):
+    """x and the work of the damper, from x = 1 at rest."""
+    b, k = mpmath.mpf(b), mpmath.mpf(k)
+    root = mpmath.sqrt(b * b / 4 - k)
+    fast, slow = -b / 2 - root, -k / (b / 2 + root)
+    one, other = -fast / (slow - fast), slow / (slow - fast)
+    x = one * mpmath.exp(slow * t) + other * mpmath.exp(fast * t)
+    return float(x)
+
+
+@pytest.mark.parametrize("b", [10.0, 1e3, 1e6, 1e9, 1e12])
+@pytest.mark.parametrize("step", [10.0, 0.01])
+def test_overdamped(b, step, open_fmu):
+    instance = open_fmu("RadauDamper")
+    with mpmath.workdps(50):
+        for tolerance in (1e-4, 1e-7, 1e-10, 1e-13):
+            instance.reset().initialize({"b": b}, tolerance)
+            instance.run(10.0, step)
+            assert instance.get("x") == pytest.approx(overdamped(b, 1, 10), abs=max(20 * tolerance, 1e-12))
+
+
+def test_orders(open_fmu):
+    """The error follows the tolerance down to rounding, and steps stay few: the order grows."""
+    instance, steps = open_fmu("RadauOscillator"), []
+    for tolerance in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13):
+        instance.reset().initialize(tolerance=tolerance)
+        instance.step(10.0)
+        assert instance.get("x") == pytest.approx(math.cos(10.0), abs=50 * tolerance)
+        steps.append(instance.fmu.getInteger(instance.vr("solverSteps"))[0])
+    assert steps[-1] < 400
+
+
+@pytest.mark.parametrize("mu, end, x", [(1e3, 1.0, None), (1e2, 80.0, None)])
+def test_van_der_pol(mu, end, x, open_fmu):
+    """Against mpmath's Taylor method on the slow branch, and against itself at a tight tolerance past the jumps."""
+    instance = open_fmu("RadauVanDerPol")
+    results = []
+    for tolerance in (1e-12, 1e-9, 1e-6):
+        instance.reset().initialize({"mu": mu}, tolerance)
+        instance.step(end)
+        results.append(instance.get("x"))
+    assert results[1] == pytest.approx(results[0], abs=1e-6) and results[2] == pytest.approx(results[0], abs=1e-3)
+    if mu * end <= 1e3:
+        # On the slow branch, time follows from x in closed form up to terms in 1/mu^2: log x - x^2/2 = (t - t0)/mu.
+        slow = mpmath.findroot(lambda y: mpmath.log(y / 2) - (y * y - 4) / 2 - end / mu, 2)
+        assert results[0] == pytest.approx(float(slow), abs=1e-5)
+
+
+def test_inputs_that_change_cost_no_more(open_fmu):
+    """A step for each communication step once the fast part has died away."""
+    instance = open_fmu("RadauDamper").initialize({"b": 1e6, "k": 1e6}, tolerance=1e-6)
+    for i in range(200):
+        instance.set({"u": 1.0 + 0.01 * (i % 5)})
+        instance.step(0.01)
+    assert instance.fmu.getInteger(instance.vr("solverSteps"))[0] < 1000
+
+
+def test_repeated_steps_give_the_same_bits(open_fmu):
+    """From a serialized state, in another instance: also between the solver's own steps."""
+    for name in ("RadauDamper", "RadauVanDerPol", "RadauPair"):
+        first, second = open_fmu(name).initialize(), open_fmu(name).initialize()
+        first.run(0.3, 0.03)
+        second.fmu.setFMUstate(second.fmu.deSerializeFMUstate(first.fmu.serializeFMUstate(first.fmu.getFMUstate())))
+        second.time = first.time
+        for instance in (first, second):
+            instance.run(1.0, 0.07)
+        assert [first.get(v) for v in ("x", "v")] == [second.get(v) for v in ("x", "v")]
+
+
+def test_a_spring_that_is_nearly_a_rod(open_fmu):
+    """The pair moves as one mass of 3 on the spring of stiffness 1; what is fast dies away."""
+    instance = open_fmu("RadauPair").initialize({"x": 1.0, "s": 0.0}, tolerance=1e-9)
+    instance.run(5.0, 0.5)
+    assert instance.get("x") == pytest.approx(math.cos(5.0 / math.sqrt(3)), abs=1e-7)
+
+
+def test_work_of_a_stiff_damper(open_fmu):
+    """What the damper takes is what the spring had, which nothing but the damper changes."""
+    instance = open_fmu("RadauDamper").initialize({"b": 1e6, "k": 1e6}, tolerance=1e-9)
+    instance.run(20.0, 1.0)
+    x, v, work = (instance.get(name) for name in ("x", "v", "nonConservativeWork"))
+    assert np.isfinite([x, v, work]).all() and work == pytest.approx(v * v / 2, abs=1e-6)
