@@ -62,3 +62,13 @@ def test_inertia_of_many_long_names(tmp_path):
     text = (tmp_path / "out" / "system.c").read_text()
     table = text[text.index("inertia_depends_on[] = {") :].split("};")[0]
     assert f'"a, x, {name}[1], ' not in table and f"{name}[1], {name}[2]" in table and ', ..."' in table
+
+
+@pytest.mark.parametrize("form", ["statements", "tables"])
+@pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau"])
+def test_coupled_masses(method, form, tmp_path):
+    """A constant M of three coordinates, whose accelerations are in no derivative of the equations."""
+    elements = '<for index="i" from="1" to="3"><coordinate name="q[i]" velocity="w[i]"/><particle mass="a" x="q[i]"/></for>'
+    (tmp_path / "system.xml").write_text(SYSTEM.format(elements + "<kinetic>(w[1] + w[2] + w[3])^2</kinetic>", method))
+    assert lagc("system.xml", "-o", "out", "--form", form, cwd=tmp_path).returncode == 0
+    compiles(tmp_path)

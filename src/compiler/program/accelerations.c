@@ -68,6 +68,24 @@ static size_t factor_operations(const struct InertiaBlock *block) {
   return operations;
 }
 
+/* Factors a large block, whose elements of M are computed. */
+static void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
+  const struct LoopedBlock *looped = &blocks->items[number];
+  const struct InertiaBlock *block = looped->block;
+  for (size_t i = 0; i < block->start[block->count]; i++)
+    values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+  routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
+  values->routine->operation_count += factor_operations(block);
+}
+
+void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct InertiaBlock *block = blocks->items[b].block;
+    values_compute(values, block->mass, block->start[block->count], false);
+    append_factor(values, blocks, b);
+  }
+}
+
 /* Factors a large block and solves it for its accelerations. */
 static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                          size_t number) {
@@ -75,14 +93,11 @@ static void append_block(struct Values *values, const struct Equations *equation
   const struct InertiaBlock *block = looped->block;
   Node *right_side = allocate(block->count, sizeof *right_side);
   for (size_t i = 0; i < block->count; i++) right_side[i] = equations->right_side[block->coordinates[i]];
-  for (size_t i = 0; i < block->start[block->count]; i++)
-    values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
-  routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
+  append_factor(values, blocks, number);
   append_solution(values, blocks, number, right_side);
   for (size_t i = 0; i < block->count; i++)
     routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-  values->routine->operation_count += factor_operations(block);
   free(right_side);
 }
 

@@ -32,6 +32,9 @@ void append_pivot_check(struct Values *values, const struct Pivot *pivot);
 /* Computes the accelerations and copies them to their space; the factors of large blocks stay in theirs. */
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks);
 
+/* Leaves the factors of large blocks in their space, where the accelerations themselves are not needed. */
+void append_factors(struct Values *values, const struct LoopedBlocks *blocks);
+
 /* Solves a large block, whose factors are there, for computed right sides; the solution is in its right side. */
 void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side);
 

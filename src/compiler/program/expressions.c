@@ -92,6 +92,17 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
                  "<work/> is not linear in the state; expected another method than 'exact'");
 }
 
+static void create_jacobian(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  expressions->jacobian = jacobian_create(model->graph, expressions->equations);
+  if (expressions->jacobian == NULL)
+    report_error(
+        diagnostics, model->solver_line,
+        "the Jacobian matrix of the method '%s' would have more than %d elements, as the mass matrix couples the "
+        "coordinates; expected the method 'taylor', or a smaller system",
+        expressions->interface->method->name, JACOBIAN_LIMIT);
+}
+
 /* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
 static void create_series(struct Expressions *expressions, struct Diagnostics *diagnostics) {
   const struct Model *model = expressions->model;
@@ -120,7 +131,7 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
   if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
   create_directional(expressions);
-  if (method != NULL && method->needs_jacobian) expressions->jacobian = jacobian_create(model->graph, equations);
+  if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
   if (model->graph->overflow)

@@ -61,7 +61,7 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
     append_gradient(&residual, graph, equations->count, equations->residual[block->coordinates[i]], i);
   if (residual.count > 0) qsort(residual.items, residual.count, sizeof *residual.items, compare);
   Node *right = allocate(block->count, sizeof *right);
-  for (size_t first = 0, next = 0; first < residual.count; first = next) {
+  for (size_t first = 0, next = 0; first < residual.count && list->count <= JACOBIAN_LIMIT; first = next) {
     size_t column = residual.items[first].column;
     for (size_t i = 0; i < block->count; i++) right[i] = ZERO;
     for (; next < residual.count && residual.items[next].column == column; next++)
@@ -97,7 +97,8 @@ struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Eq
   for (size_t i = 0; !equations->explicit_form && i < equations->inertia->block_count; i++)
     append_block(&list, graph, equations, &equations->inertia->blocks[i]);
   if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
-  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->has_work);
+  struct JacobianExpressions *jacobian =
+      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->has_work);
   free(list.items);
   return jacobian;
 }

@@ -4,7 +4,10 @@
 
 #include "program/expressions.h"
 
-/* Free with jacobian_free(). */
+/* More elements than this are refused: where M couples all coordinates, each depends on all others. */
+enum { JACOBIAN_LIMIT = 2500000 };
+
+/* NULL where there are more than JACOBIAN_LIMIT elements. Free with jacobian_free(). */
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations);
 void jacobian_free(struct JacobianExpressions *jacobian);
 

@@ -50,9 +50,10 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
 /* Where differentiated equations hold accelerations, or blocks must be factored. */
 static void append_needed_accelerations(const struct Program *program, struct Values *values, const Node *nodes,
                                         size_t count) {
-  bool needed = program->blocks.count > 0;
+  bool needed = false;
   for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(values->graph, nodes[i], ACCELERATION);
   if (needed) append_accelerations(values, program->equations, &program->blocks);
+  else append_factors(values, &program->blocks);
 }
 
 static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
