@@ -54,3 +54,15 @@ def test_sources_are_plain_c11(compiler, tmp_path):
         result = subprocess.run([*words, "-shared", "-fPIC", "-O1", *sources, "-o", library, "-lm"], capture_output=True, text=True)
         assert result.returncode == 0, result.stderr
     assert str(ROOT) not in (fmu.unpacked("SimplePendulum") / "sources" / "system.c").read_text()
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("option", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
+def test_fast_math_is_refused(compiler, option):
+    """It takes away the checks for what is not finite, and the sums that carry their rounding along."""
+    sources = sorted((fmu.unpacked("ChainPendulum") / "sources").glob("*.c"))
+    assert len(sources) > 20
+    for source in sources:
+        words = [compiler, "-std=c11", "-O2", "-E", "-o", "/dev/null", source, option]
+        result = subprocess.run(words, capture_output=True, text=True)
+        assert result.returncode != 0 and "-ffast-math makes results wrong" in result.stderr, source.name
