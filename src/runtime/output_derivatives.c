@@ -54,10 +54,7 @@ static enum Status expand(struct Instance *instance, int order, const struct Exp
   if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);
   if (lagrangian.series != NULL) {
     instance->singular = lagrangian.start(&point, instance->work, expansion->work);
-    if (instance->singular != 0) {
-      log_singularity(instance, STATUS_DISCARD, point.time);
-      return STATUS_DISCARD;
-    }
+    if (instance->singular != 0) return discard_for_singularity(instance);
     for (size_t i = 0; i < lagrangian.state_count; i++) {
       expansion->state[i][0] = instance->state[i];
       expansion->state[i][1] = instance->work[i];

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "snapshot.h"
 #include "solver.h"
 
 /* What is kept of the last step: with the same step and parameters, its matrix serves again. */
@@ -31,6 +32,11 @@ static size_t size_of(size_t order) {
 
 static size_t saved_size(void) {
   return lagrangian.state_count * sizeof(double); /* what rounding left of the state */
+}
+
+static bool could_save(const struct Situation *situation, const void *saved) {
+  (void)situation;
+  return snapshot_is_finite(saved, lagrangian.state_count);
 }
 
 static void destroy(struct Instance *instance) {
@@ -297,6 +303,7 @@ const struct Solver solver_exact = {.name = "the matrix exponential",
                                     .remedy = "try a shorter step",
                                     .starts_anew = true,
                                     .saved_size = saved_size,
+                                    .could_save = could_save,
                                     .create = create,
                                     .destroy = destroy,
                                     .advance = advance,
