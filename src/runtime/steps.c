@@ -100,7 +100,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   return STEP_PARTIAL;
 }
 
-static enum StepResult advance(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+static enum StepResult advance_to_end(struct Instance *instance, struct CommunicationStep *step, double *reached) {
   const struct Span *last = &instance->situation->last_step;
   *reached = step->end;
   if (lagrangian.solver == NULL) return STEP_DONE;
@@ -173,7 +173,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
-  enum StepResult result = advance(instance, &step, &reached);
+  enum StepResult result = advance_to_end(instance, &step, &reached);
   if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
   advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;

@@ -71,7 +71,8 @@ static bool can_instantiate(const struct Log *log, const char *name, fmi2Type ty
 }
 
 /* A component with its core, name and messages; NULL, and nothing is allocated, where there is no memory. */
-static struct Component *create(const struct Component *description, enum Kind kind, const struct Allocator *memory) {
+static struct Component *component_create(const struct Component *description, enum Kind kind,
+                                          const struct Allocator *memory) {
   size_t name_size = strlen(description->name) + 1;
   struct Component *component = memory->allocate(1, sizeof *component);
   char *name = memory->allocate(name_size, 1);
@@ -104,7 +105,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
   if (!loggingOn) description.categories = CATEGORIES_WITHOUT_DEBUGGING;
   enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
-  struct Component *component = create(&description, kind, &memory);
+  struct Component *component = component_create(&description, kind, &memory);
   if (component == NULL) log_write(&log, STATUS_ERROR, "fmi2Instantiate: allocateMemory returned no memory");
   else log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);
   return component;

@@ -47,7 +47,7 @@ static void destroy(struct Instance *instance) {
 }
 
 /* Divides one block of memory among the arrays. */
-static void lay_out(struct Exact *exact, size_t size) {
+static void divide_block(struct Exact *exact, size_t size) {
   size_t states = lagrangian.state_count, square = size * size;
   exact->term = exact->generator + square;
   exact->product = exact->term + square;
@@ -71,7 +71,7 @@ static bool create(struct Instance *instance) {
     exact->generator = instance->memory.allocate(1, 4 * size * size * sizeof(long double) + doubles * sizeof(double) +
                                                         size * sizeof(int));
     if (exact->generator != NULL) {
-      lay_out(exact, size);
+      divide_block(exact, size);
       return true;
     }
     destroy(instance);
