@@ -19,7 +19,7 @@ OSCILLATOR = """<system name="{name}">
   <coordinate name="x" velocity="v" start="1"/>
   <particle name="p" mass="m" x="x"/>
   <potential>k*x^2/2</potential><force coordinate="x">{force}</force>
-  <output name="y">{output}</output>
+  <output name="y">{output}</output><output name="z">x*sqrt(k/m)</output>
   <solver method="{method}"/>
 </system>"""
 DRIVEN = dict(drift='<parameter name="c" start="0.7"/>', force="u + c*time", output="x*time + 2*u + der(v)")
@@ -93,6 +93,8 @@ def test_parameters_before_each_call_that_needs_them(name, open_fmu):
     assert instance.get("der(v)") == pytest.approx(-0.5)
     instance.set(m=1.0)
     assert instance.get("y") - (0 if drift_of(name) else 1) == pytest.approx(-3.0)
+    instance.set(m=0.75)
+    assert instance.get("z") == pytest.approx(2.0)
     exchange = open_fmu(name, kind=FMU2Model).initialize()
     exchange.set(m=8.0)
     derivatives = (c_double * 2)()
