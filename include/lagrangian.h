@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "arithmetic.h"
 #include "series.h"
 #include "series_limit.h"
 

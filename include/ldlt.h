@@ -9,6 +9,8 @@
 
 #include <stddef.h>
 
+#include "arithmetic.h"
+
 /* Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the row in which M is not definite. */
 size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *m);
 

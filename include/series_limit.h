@@ -13,6 +13,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "arithmetic.h"
+
 struct SeriesLimit {
   int order;            /* of the polynomials */
   double step;          /* what the functions below shorten */

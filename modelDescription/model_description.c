@@ -11,26 +11,13 @@
 #include "model_structure.h"
 #include "xml_output.h"
 
-/* The runtime's files but for solvers, NULL at the end; the build writes it. */
-extern const char *const runtime_sources[];
-
-static void write_file(xmlTextWriterPtr writer, const char *name) {
-  xmlTextWriterStartElement(writer, BAD_CAST "File");
-  write_attribute(writer, "name", name);
-  xmlTextWriterEndElement(writer);
-}
-
-/* FMUs without SUNDIALS are complete in C. */
+/* FMUs without SUNDIALS are complete in C, as one file that the build makes of system.c and the runtime. */
 static void write_sources(xmlTextWriterPtr writer, const struct Program *program) {
-  const struct Method *method = program->interface->method;
-  if (method_uses_library(method)) return;
+  if (method_uses_library(program->interface->method)) return;
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
-  write_file(writer, "system.c");
-  for (const char *const *name = runtime_sources; *name != NULL; name++) write_file(writer, *name);
-  for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
-    write_file(writer, method->sources[i]);
-  if (program->is_table) write_file(writer, "instructions.c");
-  if (program->is_table || program->blocks.count > 0) write_file(writer, "ldlt.c");
+  xmlTextWriterStartElement(writer, BAD_CAST "File");
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "name", "%s.c", program->model->name);
+  xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);
 }
 

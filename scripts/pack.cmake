@@ -1,5 +1,6 @@
-# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SOURCE=... -D ICON=... -D ZIP=... -P pack.cmake
-# FOLDER holds what lagc wrote.
+# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SOURCE=... -D ICON=... -D ZIP=... -D NAMES=...
+#                     -P pack.cmake
+# FOLDER holds what lagc wrote; NAMES lists the global names of the compiled runtime.
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
 
@@ -11,24 +12,12 @@ file(COPY ${FOLDER}/documentation/index.html DESTINATION ${content}/documentatio
 file(COPY ${LIBRARY} DESTINATION ${content}/binaries/linux64)
 run(${ICON} ${LIBRARY} ${FOLDER}/modelDescription.xml model.png)
 
-# Where modelDescription.xml lists sources, these and all headers go with it, in one folder: their names are unique.
-file(STRINGS ${FOLDER}/modelDescription.xml files REGEX "<File name=")
-if(files)
-  file(GLOB headers ${SOURCE}/include/*.h ${SOURCE}/src/runtime/*.h ${SOURCE}/src/runtime/*/*.h)
-  list(FILTER headers EXCLUDE REGEX "(sundials|bdf)_support")
-  foreach(part instructions taylor radau first_terms)
-    if(NOT files MATCHES "${part}.c")
-      list(FILTER headers EXCLUDE REGEX "/${part}[a-z_]*\\.h$")
-    endif()
-  endforeach()
-  file(COPY ${headers} ${FOLDER}/system.c DESTINATION ${content}/sources)
-  foreach(file ${files})
-    string(REGEX REPLACE ".*name=\"([^\"]*)\".*" "\\1" file "${file}")
-    if(NOT file STREQUAL system.c)
-      file(GLOB source ${SOURCE}/src/runtime/${file} ${SOURCE}/src/runtime/*/${file})
-      file(COPY ${source} DESTINATION ${content}/sources)
-    endif()
-  endforeach()
+# Where modelDescription.xml lists a source, it is one file: all that system.c includes, once each.
+file(STRINGS ${FOLDER}/modelDescription.xml source REGEX "<File name=" LIMIT_COUNT 1)
+if(source)
+  string(REGEX REPLACE ".*name=\"(.*)\\.c\".*" "\\1" name "${source}")
+  include(${CMAKE_CURRENT_LIST_DIR}/one_file.cmake)
+  one_file(${FOLDER}/system.c ${name} ${content}/sources/${name}.c)
 endif()
 
 archive(${FMU} modelDescription.xml)

@@ -69,7 +69,7 @@ def points(variations, random, seed):
     return np.array(list(itertools.product(*axes)))
 
 
-opened = {}  # in a worker: the FMU's instance by the digest of its archive
+opened = {}  # in a worker: the FMU's instance, and what it logs, by the digest of its archive
 
 
 def open_instance(archive):
@@ -77,8 +77,14 @@ def open_instance(archive):
     import hashlib
     import tempfile
 
-    from fmpy import extract, read_model_description
-    from fmpy.fmi2 import FMU2Slave
+    from fmpy import calloc, extract, free, read_model_description
+    from fmpy.fmi2 import (
+        FMU2Slave,
+        fmi2CallbackAllocateMemoryTYPE,
+        fmi2CallbackFreeMemoryTYPE,
+        fmi2CallbackFunctions,
+        fmi2CallbackLoggerTYPE,
+    )
 
     digest = hashlib.sha256(archive).hexdigest()
     if digest not in opened:
@@ -88,9 +94,14 @@ def open_instance(archive):
         description = read_model_description(unzipped)
         slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, instanceName="sweep",
                           modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
-        slave.instantiate()
-        opened[digest] = slave, description, folder  # which goes with the worker
-    return opened[digest][:2]
+        messages = []
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        slave.instantiate(callbacks=callbacks)
+        opened[digest] = slave, description, messages, callbacks, folder  # which go with the worker
+    return opened[digest][:3]
 
 
 def run_chunk(archive, numbers, rows, names, settings):
@@ -99,7 +110,7 @@ def run_chunk(archive, numbers, rows, names, settings):
 
     from fmpy.fmi1 import FMICallException
 
-    slave, description = open_instance(archive)
+    slave, description, messages = open_instance(archive)
     references = {v.name: v.valueReference for v in description.modelVariables}
     states = [unknown.variable.derivative.name for unknown in description.derivatives]
     energies = [n for n in ("totalEnergy", "kineticEnergy", "nonConservativeWork") if n in references]
@@ -110,6 +121,7 @@ def run_chunk(archive, numbers, rows, names, settings):
     results = {f"{state}_end": [] for state in states} | {"energyError": [], "runTime": [], "problem": []}
     for row in rows:
         begin, end, problem, error = time.perf_counter(), [np.nan] * len(states), None, np.nan
+        messages.clear()
         try:
             slave.reset()
             slave.setupExperiment(tolerance=settings["tolerance"], startTime=0.0)
@@ -127,7 +139,7 @@ def run_chunk(archive, numbers, rows, names, settings):
                 scale = max(abs(before[0]), before[1], after[1]) or 1.0
                 error = (after[0] - before[0] - work) / scale
         except FMICallException as exception:
-            problem = str(exception)
+            problem = "; ".join([str(exception), *messages])
         results["energyError"].append(error)
         results["runTime"].append(time.perf_counter() - begin)
         results["problem"].append(problem)

@@ -1,6 +1,8 @@
 """Our FMUs coupled with one another and with those of others, by masters of ours and of others."""
 
 import subprocess
+import zipfile
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -65,6 +67,25 @@ def test_players_of_the_archive(by, initial, start):
 def test_archive_is_valid_and_complete():
     structure = read_ssd(str(balance.SSP), validate=True)
     assert [component.name for component in structure.system.elements] == ["cart", "feedback"]
+
+
+def test_the_archive_names_a_master_for_omsimulator():
+    """
+    Its command line takes the master from its own annotation of the system, in SSP 1.0 by the literal prefixes. It gives
+    the tolerance to the FMUs.
+    """
+    spaces = {"ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+              "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+              "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"}  # fmt: skip
+    with zipfile.ZipFile(balance.SSP) as archive:
+        text = archive.read("SystemStructure.ssd").decode()
+    root = ElementTree.fromstring(text)
+    assert root.get("version") == "1.0"
+    (annotation,) = root.findall("ssd:System/ssd:Annotations/ssc:Annotation[@type='org.openmodelica']", spaces)
+    (master,) = annotation.findall("oms:Annotations/oms:SimulationInformation/oms:FixedStepMaster", spaces)
+    assert "<oms:FixedStepMaster" in text
+    assert master.get("description") == "oms-ma" and float(master.get("stepSize")) == 0.005
+    assert 0 < float(master.get("absoluteTolerance")) <= 1e-6 and 0 < float(master.get("relativeTolerance")) <= 1e-6
 
 
 def test_push():

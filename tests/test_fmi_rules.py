@@ -7,6 +7,7 @@ import subprocess
 from ctypes import byref
 
 import fmpy
+import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave
@@ -27,7 +28,10 @@ def test_functions_of_the_other_interface_return_an_error(open_fmu):
 
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_reading_in_initialization_mode(name, open_fmu):
-    """Rule 2: outputs and InitialUnknowns can be read then. The rest comes with a warning: libcosim reads it all."""
+    """
+    Rule 2: outputs and InitialUnknowns can be read then. The rest can too, as libcosim reads it all and MasterSim stops
+    at a warning; the log tells it once.
+    """
     instance = open_fmu(name)
     with instance.fails(ERROR, "not allowed in the state 'instantiated'"):
         instance.fmu.getReal([0])
@@ -38,9 +42,19 @@ def test_reading_in_initialization_mode(name, open_fmu):
     instance.fmu.getReal(unknowns + instance.vr(*fmu.names_of(name, "output")))
     assert not [m for m in instance.messages[2:] if m[0] == WARNING]
     parameter = fmu.names_of(name, "parameter")[0]
-    instance.get(parameter)
+    vr, value, raw = (ctypes.c_uint * 1)(*instance.vr(parameter)), (ctypes.c_double * 1)(), instance.fmu.dll.fmi2GetReal
+    assert raw(ctypes.c_void_p(instance.fmu.component), vr, ctypes.c_size_t(1), value) == OK
+    assert value[0] == fmu.start_values(name)[parameter]
     assert re.search(f"'{parameter}' was read in initialization mode", instance.messages[-1][2])
     assert instance.messages[-1][:2] == (WARNING, "logStatusWarning")
+    count = len(instance.messages)
+    steps = (ctypes.c_int * 1)(-1)
+    if "solverSteps" in instance.references:
+        vr = (ctypes.c_uint * 1)(*instance.vr("solverSteps"))
+        raw = instance.fmu.dll.fmi2GetInteger
+        assert raw(ctypes.c_void_p(instance.fmu.component), vr, ctypes.c_size_t(1), steps) == OK and steps[0] == 0
+    instance.get(parameter)
+    assert len(instance.messages) == count
 
 
 def test_setting_by_state(open_fmu):
@@ -113,6 +127,53 @@ def test_steps_end_where_they_say(name, open_fmu):
             time = math.nextafter(time, 10)  # a caller that rounds otherwise
     with instance.fails(ERROR, "currentCommunicationPoint"):
         instance.fmu.doStep(time + 0.1, 0.1)
+
+
+def test_the_tolerance_of_the_communication_point(open_fmu):
+    """Rule 5: rounding is tolerated, a part of a step is not."""
+    instance = open_fmu("SimplePendulum")
+    for share, message in ((0.5, "expected 0.25"), (-0.5, "expected 0.25"), (1e-5, "expected 0.25")):
+        instance.reset().initialize(start_time=0.25)
+        with instance.fails(ERROR, message):
+            instance.fmu.doStep(0.25 + share * 0.1, 0.1)
+    instance.reset().initialize(start_time=0.25)
+    instance.fmu.doStep(0.25 + 1e-8, 0.1)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulumLinear", "StateFeedback"])
+@pytest.mark.parametrize("size", [0.1, 0.01, 0.001])
+@pytest.mark.parametrize("count", [10, 1000, 10**5, 10**6, 10**7])
+def test_a_sum_of_steps_ends_at_the_stop_time(count, size, name, open_fmu):
+    """Rule 6: t += h, rounded at each of the steps, may miss the stop time by far more than one rounding."""
+    start = 3.0
+    times = np.add.accumulate(np.concatenate([[start], np.full(count, size)]))
+    stop = start + count * size
+    instance = open_fmu(name).initialize(start_time=start, stop_time=stop)
+    before = float(times[-2])
+    instance.fmu.doStep(start, before - start)
+    instance.time = instance.fmu.getRealStatus(2)
+    instance.fmu.doStep(before, size)
+    assert instance.fmu.getRealStatus(2) == min(before + size, stop)
+    for excess in (0.6, 1.0):
+        instance.reset().initialize(start_time=start, stop_time=stop)
+        instance.fmu.doStep(start, before - start)
+        with instance.fails(ERROR, "past stopTime"):
+            instance.fmu.doStep(before, stop - before + excess * size)
+
+
+def test_the_last_step_is_as_long_as_it_says(open_fmu):
+    """The state belongs to the stop time, where the sum of the steps leads past it."""
+    size, count = 0.01, 10**6
+    before = float(np.add.accumulate(np.full(count - 1, size))[-1])
+    stop = before + 0.9 * size
+    instance = open_fmu("SimplePendulumLinear").initialize(dict(theta=0.3), stop_time=stop)
+    instance.fmu.doStep(0.0, before)
+    theta, omega = instance.get("theta", "omega")
+    instance.fmu.doStep(before, (stop - before) * (1 + 1e-7))
+    w = math.sqrt(9.81 / fmu.start_values("SimplePendulumLinear")["l"])
+    phase = w * (stop - before)
+    assert instance.fmu.getRealStatus(2) == stop
+    assert instance.get("theta") == pytest.approx(theta * math.cos(phase) + omega / w * math.sin(phase), abs=1e-12)
 
 
 def test_steps_past_the_end(name, open_fmu):
@@ -199,6 +260,30 @@ def test_resources_may_come_in_any_form(open_fmu):
         instance.fmu.fmi2FreeInstance(component)
 
 
+def test_velocities_are_read_where_there_are_no_accelerations(open_fmu):
+    """Where an explicit method of an importer diverges: der(theta) is the finite omega, and the log has one line."""
+    name, speed = "ParticleSpherical", 3.0
+    instance = open_fmu(name, kind=FMU2Model).initialize()
+    instance.fmu.enterContinuousTimeMode()
+    states = fmu.states_of(name)
+    values = dict.fromkeys(states, 1.0) | {states[0]: 0.0, states[3]: speed}  # at the centre: no accelerations
+    instance.fmu.setContinuousStates((ctypes.c_double * 6)(*values.values()), 6)
+    count = len(instance.messages)
+    assert instance.get(f"der({states[0]})") == speed
+    for _ in range(3):
+        for state in states[3:]:
+            with pytest.raises(FMICallException) as raised:
+                instance.get(f"der({state})")
+            assert raised.value.status == DISCARD
+        with pytest.raises(FMICallException):
+            instance.fmu.getDerivatives((ctypes.c_double * 6)(), 6)
+    assert [m[:2] for m in instance.messages[count:]] == [(DISCARD, "logStatusDiscard")]
+    assert "mass matrix is singular" in instance.messages[-1][2]
+    instance.fmu.setTime(0.5)
+    with instance.fails(DISCARD, "time 0.5: the mass matrix is singular"):
+        instance.get(f"der({states[3]})")
+
+
 # --- The log ---
 
 
@@ -216,10 +301,31 @@ def provoke(instance):
     instance.reset()
 
 
-def test_quiet_when_off(open_fmu):
+def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
+    """loggingOn is for debug messages: without it events are left out, and nothing else."""
+    everything = open_fmu("ParticlePolar")
+    provoke(everything)
     instance = open_fmu("ParticlePolar", logging=False)
     provoke(instance)
-    assert instance.messages == []
+    assert instance.messages == [entry for entry in everything.messages if entry[1] != "logEvents"]
+    assert {entry[0] for entry in instance.messages} == {WARNING, DISCARD, ERROR}
+    instance.fmu.setDebugLogging(True, [])
+    provoke(instance)
+    instance.fmu.setDebugLogging(False, [])
+    before = len(instance.messages)
+    provoke(instance)
+    assert {entry[0] for entry in instance.messages[before:]} == {WARNING, DISCARD, ERROR}
+    instance.fmu.setDebugLogging(False, CATEGORIES)
+    before = len(instance.messages)
+    provoke(instance)
+    assert len(instance.messages) == before
+
+
+def test_a_simulation_that_cannot_start_tells_why(capfd):
+    """FMPy's short form leaves debug logging off and prints what the logger gets."""
+    with pytest.raises(FMICallException):
+        fmpy.simulate_fmu(str(fmu.archive("SimplePendulum")), start_values={"l": 0})
+    assert "mass matrix is singular" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize("category", CATEGORIES)
@@ -236,7 +342,7 @@ def test_only_what_is_enabled(category, open_fmu):
     if category in ("logEvents", "logAll"):
         expected = expected[1:]  # that it was instantiated was before
     assert instance.messages == expected
-    instance.fmu.setDebugLogging(False, [])
+    instance.fmu.setDebugLogging(False, [category])
     before = len(instance.messages)
     provoke(instance)
     assert len(instance.messages) == before

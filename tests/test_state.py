@@ -167,6 +167,122 @@ def test_truncated_and_foreign_bytes_are_refused(open_fmu):
         instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(exchange))
 
 
+# --- States written by hand, with the right checksum ---
+
+HEADER = 64  # bytes; the last eight are the checksum of the situation, which follows
+# The situation: six integers, the statistics, seven numbers, and then values.
+MODE, CHANGED, STATISTICS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 48
+NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end"]
+VALUES = TIME + 8 * len(NUMBERS)
+
+
+def forged(data, form, place, value):
+    """The bytes with another value at the place, and the checksum that fits: FNV-1a."""
+    data = bytearray(data)
+    struct.pack_into(form, data, place, value)
+    checksum = 0xCBF29CE484222325
+    for byte in data[HEADER:]:
+        checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
+    struct.pack_into("=Q", data, HEADER - 8, checksum)
+    return bytes(data)
+
+
+def place_of_saved(name):
+    """Where the solver's own part begins."""
+    count = {cause: len(fmu.names_of(name, cause)) for cause in ("input", "parameter")}
+    return VALUES + 8 * (len(fmu.states_of(name)) + 4 * count["input"] + count["parameter"])
+
+
+def test_forging_nothing_is_no_forgery(open_fmu):
+    instance = open_fmu("SimplePendulum").initialize()
+    instance.step(0.1)
+    data = serialized(instance)
+    time = struct.unpack_from("=d", data, TIME)[0]
+    assert time == 0.1 and forged(data, "=d", TIME, time) == data
+    assert instance.get("theta") == struct.unpack_from("=d", data, VALUES)[0]
+
+
+FORGERIES = [("=i", MODE, mode) for mode in (-1, 2, 3, 8, 2**31 - 1)]
+FORGERIES += [("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
+FORGERIES += [("=d", TIME + 8 * i, value) for i in range(len(NUMBERS)) for value in (np.nan, np.inf)]
+FORGERIES += [("=d", TIME + 8 * NUMBERS.index("tolerance"), value) for value in (0.0, -1e-6, 1.0)]
+FORGERIES += [("=d", TIME + 8 * NUMBERS.index("suggested_step"), -1.0)]
+FORGERIES += [("=d", TIME + 8 * NUMBERS.index("last_start"), 1e3)]
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop", "StateFeedback"])
+def test_forged_states_are_refused(name, open_fmu):
+    """Whatever the solver, and all values that a state holds."""
+    instance = open_fmu(name).initialize()
+    instance.step(0.1)
+    data = serialized(instance)
+    parameter = VALUES + 8 * (len(fmu.states_of(name)) + len(fmu.names_of(name, "input")))
+    places = [VALUES] * bool(fmu.states_of(name)) + [parameter]
+    for forgery in FORGERIES + [("=d", place, value) for place in places for value in (np.nan, -np.inf)]:
+        with instance.fails(ERROR, "no instance can have saved"):
+            instance.fmu.deSerializeFMUstate(forged(data, *forgery))
+        instance.reset()
+
+
+def test_forged_modes_of_the_other_kind_are_refused(open_fmu):
+    instance = open_fmu("SimplePendulum", kind=FMU2Model).initialize()
+    data = serialized(instance)
+    for mode in (4, 5):
+        with instance.fails(ERROR, "no instance can have saved"):
+            instance.fmu.deSerializeFMUstate(forged(data, "=i", MODE, mode))
+        instance.reset()
+
+
+def test_forged_series_are_refused(open_fmu):
+    """The order counts coefficients, and would be an index outside of the series."""
+    name = "SimplePendulum"
+    instance = open_fmu(name).initialize()
+    instance.step(0.1)
+    data, saved = serialized(instance), place_of_saved(name)
+    reach, order = struct.unpack_from("=dq", data, saved)
+    assert 0 < reach < 10 and 4 <= order <= 22
+    orders = [-(2**63), -1, 0, 1, 3, 23, 24, 10**6, 2**63 - 1]
+    reaches = [np.nan, np.inf, -reach, 2 * reach]
+    numbers = range(saved + 16, len(data), 8)  # what rounding left, and the coefficients
+    assert len(numbers) == 2 + 2 * 24
+    forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in reaches]
+    for forgery in forgeries + [("=d", place, np.nan) for place in numbers]:
+        with instance.fails(ERROR, "no instance can have saved"):
+            instance.fmu.deSerializeFMUstate(forged(data, *forgery))
+        instance.reset()
+
+
+def test_forged_rounding_is_refused(open_fmu):
+    """What the matrix exponential carries along of the state."""
+    name = "SimplePendulumLinear"
+    instance = open_fmu(name).initialize()
+    instance.step(0.1)
+    data, saved = serialized(instance), place_of_saved(name)
+    assert len(data) == saved + 16
+    for place in (saved, saved + 8):
+        with instance.fails(ERROR, "no instance can have saved"):
+            instance.fmu.deSerializeFMUstate(forged(data, "=d", place, np.inf))
+        instance.reset()
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop"])
+def test_statistics_do_not_overflow(name, open_fmu):
+    """Integers end at 2^31 - 1, which an instance of long standing passes."""
+    instance = open_fmu(name).initialize()
+    instance.step(0.1)
+    data = serialized(instance)
+    state = instance.fmu.deSerializeFMUstate(forged(data, "=q", STATISTICS, 2**31 - 2))
+    instance.fmu.setFMUstate(state)
+    steps = [instance.fmu.getInteger(instance.vr("solverSteps"))[0]]
+    for _ in range(20):
+        instance.step(0.5)
+        steps += instance.fmu.getInteger(instance.vr("solverSteps"))
+    assert steps[0] == 2**31 - 2 and steps == sorted(steps) and steps[-1] == 2**31 - 1
+    later = serialized(instance)
+    assert struct.unpack_from("=q", later, STATISTICS)[0] > 2**31 - 1
+    instance.free_state(state)
+
+
 def test_serialize_with_a_wrong_size(open_fmu):
     instance = open_fmu("SimplePendulum").initialize()
     component = c_void_p(instance.fmu.component)

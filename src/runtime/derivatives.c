@@ -28,10 +28,7 @@ static struct Direction direction_create(struct Instance *instance) {
 /* Fills derivative and derivative_along at the point. */
 static enum Status follow(struct Instance *instance, const struct Point *point, struct Direction *direction) {
   if (lagrangian.derivatives == NULL) return STATUS_DONE;
-  if (!evaluate_derivatives(instance, point, direction->derivative)) {
-    log_singularity(instance, STATUS_DISCARD, point->time);
-    return STATUS_DISCARD;
-  }
+  if (!evaluate_derivatives(instance, point, direction->derivative)) return discard_for_singularity(instance);
   instance->singular = lagrangian.directional(point, &direction->seed, direction->derivative_along);
   return instance->singular == 0 ? STATUS_DONE : STATUS_DISCARD;
 }
@@ -100,10 +97,8 @@ enum Status derivatives_in_time(struct Instance *instance, const unsigned *refer
   struct Direction direction = direction_create(instance);
   direction.seed.time = 1.0;
   direction.seed.input = instance->input_derivatives;
-  if (lagrangian.derivatives != NULL && !evaluate_derivatives(instance, &point, direction.state)) {
-    log_singularity(instance, STATUS_DISCARD, point.time);
-    return STATUS_DISCARD;
-  }
+  if (lagrangian.derivatives != NULL && !evaluate_derivatives(instance, &point, direction.state))
+    return discard_for_singularity(instance);
   enum Status status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
   return read_along(instance, &point, &direction, reference, count, value, function);

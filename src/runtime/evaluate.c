@@ -22,13 +22,17 @@ void log_singularity(const struct Instance *instance, enum Status status, double
               time, name, name, instance->state[coordinate], lagrangian.inertia_depends_on[coordinate]);
 }
 
+enum Status discard_for_singularity(struct Instance *instance) {
+  uint64_t situation = situation_checksum(instance->situation);
+  if (situation != instance->told_singularity) log_singularity(instance, STATUS_DISCARD, instance->situation->time);
+  instance->told_singularity = situation;
+  return STATUS_DISCARD;
+}
+
 enum Status evaluate_prepare(struct Instance *instance) {
   if (!instance->prepared_is_stale) return STATUS_DONE;
   instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
-  if (instance->singular != 0) {
-    log_singularity(instance, STATUS_DISCARD, instance->situation->time);
-    return STATUS_DISCARD;
-  }
+  if (instance->singular != 0) return discard_for_singularity(instance);
   instance->prepared_is_stale = false;
   return STATUS_DONE;
 }
@@ -55,8 +59,7 @@ enum Status evaluate_situation(struct Instance *instance, double *derivative) {
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
   if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
-  log_singularity(instance, STATUS_DISCARD, point.time);
-  return STATUS_DISCARD;
+  return discard_for_singularity(instance);
 }
 
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
@@ -87,6 +90,17 @@ static enum Status evaluate_result(struct Instance *instance, const struct Scala
   return STATUS_DONE;
 }
 
+/* Those of the coordinates are the velocities, also where there are no accelerations. */
+static enum Status evaluate_state_derivative(struct Instance *instance, size_t state, double *value) {
+  if (state < lagrangian.coordinate_count) {
+    *value = instance->state[lagrangian.coordinate_count + state];
+    return STATUS_DONE;
+  }
+  enum Status status = evaluate_situation(instance, instance->work);
+  if (status == STATUS_DONE) *value = instance->work[state];
+  return status;
+}
+
 enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   double result = 0.0;
   enum Status status = STATUS_DONE;
@@ -95,10 +109,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_STATE: result = instance->state[variable->index]; break;
   case VARIABLE_INPUT: result = instance->input[variable->index]; break;
   case VARIABLE_PARAMETER: result = instance->parameter[variable->index]; break;
-  case VARIABLE_DERIVATIVE:
-    status = evaluate_situation(instance, instance->work);
-    if (status == STATUS_DONE) result = instance->work[variable->index];
-    break;
+  case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
   case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
   case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
   }

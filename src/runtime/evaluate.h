@@ -22,6 +22,9 @@ enum Status evaluate_situation(struct Instance *instance, double *derivative);
 /* Logs why evaluate_derivatives() returned false, as a message of this status. */
 void log_singularity(const struct Instance *instance, enum Status status, double time);
 
+/* The same where a value or derivative is asked for at the situation: logs once for each situation. Discards. */
+enum Status discard_for_singularity(struct Instance *instance);
+
 /* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
 

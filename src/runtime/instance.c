@@ -13,6 +13,14 @@ size_t situation_size(void) {
   return sizeof(struct Situation) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
+/* FNV-1a */
+uint64_t situation_checksum(const void *situation) {
+  const unsigned char *bytes = situation;
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (size_t i = 0; i < situation_size(); i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  return hash;
+}
+
 void instance_reset(struct Instance *instance) {
   memset(instance->situation, 0, situation_size());
   instance->situation->mode = MODE_INSTANTIATED;
@@ -26,6 +34,8 @@ void instance_reset(struct Instance *instance) {
   }
   instance->situation->changed = 1;
   instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->told_early_reading = false;
+  instance->told_singularity = 0;
 }
 
 /* Divides the blocks of memory among the arrays. */

@@ -40,8 +40,8 @@ struct Situation {
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the step to come */
   int32_t changed;               /* state, inputs or parameters were, since the last step */
-  int32_t statistics[STATISTIC_COUNT];
-  double time, stop_time;
+  int64_t statistics[STATISTIC_COUNT];
+  double time, start_time, stop_time;
   double tolerance;
   double suggested_step; /* of a solver that starts anew, not clipped by the communication step; 0 for none */
   struct Span last_step; /* of the solver, which may end after time */
@@ -62,11 +62,13 @@ struct Instance {
   void *saved;                                           /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
-  bool solver_is_stale;   /* the situation was replaced: what the solver keeps outside of it no longer counts */
-  int singular;           /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
-  const char *limited_by; /* the elementary function that shortened the solver's last step; NULL for none */
-  double *work;           /* 3 state_count + 2 input_count + parameter_count, for evaluations */
-  double *point_work;     /* lagrangian.work_count, for generated functions */
+  bool solver_is_stale;      /* the situation was replaced: what the solver keeps outside of it no longer counts */
+  bool told_early_reading;   /* that a variable was read before it should be, since the last reset */
+  uint64_t told_singularity; /* the checksum of the situation whose lack of accelerations was logged last */
+  int singular;              /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  const char *limited_by;    /* the elementary function that shortened the solver's last step; NULL for none */
+  double *work;              /* 3 state_count + 2 input_count + parameter_count, for evaluations */
+  double *point_work;        /* lagrangian.work_count, for generated functions */
   void *solver_memory;
 };
 
@@ -82,5 +84,8 @@ const char *instance_mode_name(const struct Instance *instance);
 
 /* Bytes of the situation of this system. */
 size_t situation_size(void);
+
+/* Of so many bytes that are a situation, which tells different ones apart. */
+uint64_t situation_checksum(const void *situation);
 
 #endif

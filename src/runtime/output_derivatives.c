@@ -47,17 +47,14 @@ static void expand_linear(const struct Instance *instance, int order, const stru
     }
 }
 
-static enum Status expand(struct Instance *instance, int order, const struct Expansion *expansion) {
+static enum Status fill_expansion(struct Instance *instance, int order, const struct Expansion *expansion) {
   struct Point point = evaluate_point(instance);
   const Series *input = (const Series *)expansion->input;
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
   if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);
   if (lagrangian.series != NULL) {
     instance->singular = lagrangian.start(&point, instance->work, expansion->work);
-    if (instance->singular != 0) {
-      log_singularity(instance, STATUS_DISCARD, point.time);
-      return STATUS_DISCARD;
-    }
+    if (instance->singular != 0) return discard_for_singularity(instance);
     for (size_t i = 0; i < lagrangian.state_count; i++) {
       expansion->state[i][0] = instance->state[i];
       expansion->state[i][1] = instance->work[i];
@@ -91,7 +88,7 @@ static enum Status read_from_series(struct Instance *instance, const unsigned *r
   int highest = 0;
   for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
   if (!expansion_create(instance, &expansion)) return STATUS_ERROR;
-  enum Status status = expand(instance, highest, &expansion);
+  enum Status status = fill_expansion(instance, highest, &expansion);
   for (size_t i = 0; i < count && status == STATUS_DONE; i++)
     status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i], function);
   instance->memory.free(expansion.state);

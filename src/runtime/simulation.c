@@ -15,7 +15,7 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
   struct Situation *situation = instance->situation;
   situation->experiment_defined = 1;
   situation->stop_time_defined = experiment->has_stop_time ? 1 : 0;
-  situation->time = start;
+  situation->time = situation->start_time = start;
   situation->stop_time = experiment->has_stop_time ? stop : 0.0;
   situation->tolerance = experiment->has_tolerance ? tolerance : lagrangian.tolerance;
   return STATUS_DONE;

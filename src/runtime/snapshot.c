@@ -1,6 +1,9 @@
 #include "snapshot.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "solver.h"
 
 /* Comes before the situation in the block. */
 struct Header {
@@ -12,26 +15,59 @@ struct Header {
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
-enum { VERSION = 2 };
+enum { VERSION = 3 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + situation_size();
-}
-
-/* FNV-1a */
-static uint64_t checksum_of(const void *data, size_t size) {
-  const unsigned char *bytes = data;
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-  return hash;
 }
 
 static struct Header header_of(const void *situation) {
   struct Header header = {.version = VERSION, .size = (uint32_t)situation_size()};
   memcpy(header.magic, magic, sizeof magic);
   strncpy(header.guid, lagrangian.guid, sizeof header.guid - 1);
-  header.checksum = checksum_of(situation, situation_size());
+  header.checksum = situation_checksum(situation);
   return header;
+}
+
+bool snapshot_is_finite(const void *numbers, size_t count) {
+  const char *bytes = numbers;
+  for (size_t i = 0; i < count; i++) {
+    double number;
+    memcpy(&number, bytes + i * sizeof number, sizeof number);
+    if (!isfinite(number)) return false;
+  }
+  return true;
+}
+
+/* Whether an instance of this kind can come to the mode. */
+static bool has_mode(int32_t kind, int32_t mode) {
+  bool of_exchange = mode == MODE_EVENT || mode == MODE_CONTINUOUS_TIME;
+  bool of_steps = mode == MODE_STEP_COMPLETE || mode == MODE_STEP_FAILED;
+  return mode >= 0 && mode < MODE_COUNT && !(kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
+}
+
+static bool are_counts(const int64_t *statistics) {
+  for (size_t i = 0; i < STATISTIC_COUNT; i++)
+    if (statistics[i] < 0 || statistics[i] > INT64_MAX / 2) return false;
+  return true;
+}
+
+/*
+ * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
+ * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
+ */
+static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
+  const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,    fixed->tolerance,
+                            fixed->suggested_step, fixed->last_step.start, fixed->last_step.end};
+  size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
+  size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
+  return has_mode(fixed->kind, fixed->mode) && are_counts(fixed->statistics) &&
+         snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
+         fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
+         snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count) &&
+         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) &&
+         (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
+          lagrangian.solver->could_save(fixed, situation + saved));
 }
 
 const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size) {
@@ -46,9 +82,9 @@ const char *snapshot_fault(const struct Instance *instance, const void *block, s
   struct Header expected = header_of(situation);
   struct Situation fixed;
   memcpy(&fixed, situation, sizeof fixed);
-  if (memcmp(&header, &expected, sizeof header) != 0 || fixed.mode < 0 || fixed.mode >= MODE_COUNT)
-    return "they are damaged";
-  return fixed.kind == (int32_t)instance->kind ? NULL : "they are of the other kind of instance";
+  if (memcmp(&header, &expected, sizeof header) != 0) return "they are damaged";
+  if (fixed.kind != (int32_t)instance->kind) return "they are of the other kind of instance";
+  return is_possible(instance, &fixed, situation) ? NULL : "no instance can have saved what they hold";
 }
 
 void snapshot_take(const struct Instance *instance, void *block) {
@@ -60,4 +96,5 @@ void snapshot_take(const struct Instance *instance, void *block) {
 void snapshot_restore(struct Instance *instance, const void *block) {
   memcpy(instance->situation, (const char *)block + sizeof(struct Header), situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->told_singularity = 0;
 }

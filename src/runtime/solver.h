@@ -25,6 +25,11 @@ struct Solver {
   bool starts_anew;
   /* Bytes that the solver keeps in the situation, at instance->saved; NULL for none. */
   size_t (*saved_size)(void);
+  /*
+   * Whether the solver could have kept these bytes, at any address, in a situation that begins like this one. NULL where
+   * it keeps nothing.
+   */
+  bool (*could_save)(const struct Situation *situation, const void *saved);
   /* Allocates instance->solver_memory. False after logging where that fails. */
   bool (*create)(struct Instance *instance);
   void (*destroy)(struct Instance *instance);

@@ -100,7 +100,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   return STEP_PARTIAL;
 }
 
-static enum StepResult advance(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+static enum StepResult advance_to_end(struct Instance *instance, struct CommunicationStep *step, double *reached) {
   const struct Span *last = &instance->situation->last_step;
   *reached = step->end;
   if (lagrangian.solver == NULL) return STEP_DONE;
@@ -125,6 +125,15 @@ static void advance_inputs(struct Instance *instance, double end) {
   instance->situation->changed = 1;
 }
 
+/*
+ * How far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at each of
+ * them. Half a step is more than rounding.
+ */
+static double rounding_of_sum(const struct Situation *situation, double end, double size) {
+  double steps = (end - situation->start_time) / size + 1.0;
+  return fmin(0.5 * DBL_EPSILON * steps * fmax(fabs(end), fabs(situation->start_time)), 0.5 * size);
+}
+
 /* What is wrong with a communication step. */
 static enum Status check_step(struct Instance *instance, double time, double size, const char *function) {
   const struct Situation *situation = instance->situation;
@@ -139,10 +148,19 @@ static enum Status check_step(struct Instance *instance, double time, double siz
   if (!isfinite(time + size))
     return log_error(instance, "%s: step %g from time %g ends beyond all numbers; expected a shorter one", function,
                      size, time);
-  if (situation->stop_time_defined && time + size > situation->stop_time + rounding)
+  double excess = fmax(rounding, rounding_of_sum(situation, time + size, size));
+  if (situation->stop_time_defined && time + size - situation->stop_time > excess)
     return log_error(instance, "%s: the step ends at %.15g; expected none past stopTime %.15g", function, time + size,
                      situation->stop_time);
   return STATUS_DONE;
+}
+
+/* The step to time + size, or to stopTime where rounding alone leads past it. */
+static struct CommunicationStep step_within_experiment(const struct Situation *situation, double time, double size) {
+  double stop = situation->stop_time;
+  if (situation->stop_time_defined && time < stop && stop < time + size)
+    return (struct CommunicationStep){.start = time, .end = stop, .length = stop - time};
+  return (struct CommunicationStep){.start = time, .end = time + size, .length = size};
 }
 
 enum Status communication_step(struct Instance *instance, double time, double size, const char *function) {
@@ -153,9 +171,9 @@ enum Status communication_step(struct Instance *instance, double time, double si
   situation->time = time;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
-  struct CommunicationStep step = {.start = time, .end = time + size, .length = size};
+  struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
-  enum StepResult result = advance(instance, &step, &reached);
+  enum StepResult result = advance_to_end(instance, &step, &reached);
   if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
   advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;

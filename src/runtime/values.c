@@ -1,5 +1,6 @@
 #include "values.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -8,15 +9,17 @@
 
 /*
  * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
- * read all variables then; they get the values with a warning.
+ * and MasterSim read all variables then, and some end at any status but the best; they get the values, and the log tells
+ * it once.
  */
-static enum Status check_readable(struct Instance *instance, const struct ScalarVariable *variable) {
+static void tell_early_reading(struct Instance *instance, const struct ScalarVariable *variable) {
   if (instance->situation->mode != MODE_INITIALIZATION || variable->is_output || variable->kind == VARIABLE_DERIVATIVE)
-    return STATUS_DONE;
-  log_message(instance, STATUS_WARNING,
-              "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
-              variable->name);
-  return STATUS_WARNING;
+    return;
+  if (!instance->told_early_reading)
+    log_message(instance, STATUS_WARNING,
+                "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
+                variable->name);
+  instance->told_early_reading = true;
 }
 
 static enum Status worse(enum Status first, enum Status second) {
@@ -29,7 +32,7 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], false, function);
     if (variable == NULL) return STATUS_ERROR;
-    if (status == STATUS_DONE) status = check_readable(instance, variable); /* one warning is enough */
+    tell_early_reading(instance, variable);
     status = worse(status, evaluate_variable(instance, variable, &value[i]));
   }
   return status;
@@ -37,14 +40,14 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
 
 enum Status values_get_statistics(struct Instance *instance, const unsigned *reference, size_t count, int *value,
                                   const char *function) {
-  enum Status status = STATUS_DONE;
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], true, function);
     if (variable == NULL) return STATUS_ERROR;
-    if (status == STATUS_DONE) status = check_readable(instance, variable);
-    value[i] = instance->situation->statistics[variable->index];
+    tell_early_reading(instance, variable);
+    int64_t statistic = instance->situation->statistics[variable->index];
+    value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
   }
-  return status;
+  return STATUS_DONE;
 }
 
 /* Whether this kind of variable may be set now. */

@@ -10,7 +10,7 @@
 enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                        const char *function);
 
-/* Integer variables. */
+/* Integer variables; counts that are too large for one are the largest that there is. */
 enum Status values_get_statistics(struct Instance *instance, const unsigned *reference, size_t count, int *value,
                                   const char *function);
 

@@ -8,10 +8,31 @@
 #include "write/statements.h"
 #include "write/tables.h"
 
+/* The runtime's files but for solvers, NULL at the end; the build writes it. */
+extern const char *const runtime_sources[];
+
+static void include_source(FILE *file, const char *name) {
+  fprintf(file, "#include \"%s\"\n", name);
+}
+
+/* FMUs without SUNDIALS are complete in C: the files that this one needs, for archives whose source is one file. */
+static void write_runtime(FILE *file, const struct Program *program) {
+  const struct Method *method = program->interface->method;
+  if (method_uses_library(method)) return;
+  fputs("#ifdef FMU_IN_ONE_FILE\n", file);
+  for (const char *const *name = runtime_sources; *name != NULL; name++) include_source(file, *name);
+  for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
+    include_source(file, method->sources[i]);
+  if (program->is_table) include_source(file, "instructions.c");
+  if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");
+  fputs("#endif\n", file);
+}
+
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   if (program->series != NULL && !program->series_is_table && !series_is_unrolled(program))
     fputs("#define SERIES_ROLLED 1\n", file);
+  write_runtime(file, program);
   /* Long statements of series take a compiler half the time so, and the processor not more. */
   if (program->is_table && !program->series_is_table)
     fputs("#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize(\"O1\")\n#endif\n", file);

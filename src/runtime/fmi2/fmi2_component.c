@@ -15,7 +15,13 @@ static const char *const categories[] = {
     [CATEGORY_DISCARD] = "logStatusDiscard", [CATEGORY_ERROR] = "logStatusError",
     [CATEGORY_FATAL] = "logStatusFatal",     [CATEGORY_ALL] = "logAll",
 };
-enum { CATEGORY_COUNT = sizeof categories / sizeof *categories, ALL_CATEGORIES = (1u << CATEGORY_COUNT) - 1u };
+/* What goes wrong is sent without debug logging too, unless fmi2SetDebugLogging names categories. */
+enum {
+  CATEGORY_COUNT = sizeof categories / sizeof *categories,
+  ALL_CATEGORIES = (1u << CATEGORY_COUNT) - 1u,
+  CATEGORIES_WITHOUT_DEBUGGING =
+      1u << CATEGORY_WARNING | 1u << CATEGORY_DISCARD | 1u << CATEGORY_ERROR | 1u << CATEGORY_FATAL
+};
 
 static enum Category category_of(enum Status status) {
   static const enum Category of[] = {[STATUS_DONE] = CATEGORY_EVENTS,
@@ -65,7 +71,8 @@ static bool can_instantiate(const struct Log *log, const char *name, fmi2Type ty
 }
 
 /* A component with its core, name and messages; NULL, and nothing is allocated, where there is no memory. */
-static struct Component *create(const struct Component *description, enum Kind kind, const struct Allocator *memory) {
+static struct Component *component_create(const struct Component *description, enum Kind kind,
+                                          const struct Allocator *memory) {
   size_t name_size = strlen(description->name) + 1;
   struct Component *component = memory->allocate(1, sizeof *component);
   char *name = memory->allocate(name_size, 1);
@@ -96,9 +103,9 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   struct Allocator memory = {calloc, free};
   if (!by_itself) memory = (struct Allocator){functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
-  if (!loggingOn) description.categories = 0;
+  if (!loggingOn) description.categories = CATEGORIES_WITHOUT_DEBUGGING;
   enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
-  struct Component *component = create(&description, kind, &memory);
+  struct Component *component = component_create(&description, kind, &memory);
   if (component == NULL) log_write(&log, STATUS_ERROR, "fmi2Instantiate: allocateMemory returned no memory");
   else log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);
   return component;
@@ -124,7 +131,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
   struct Component *component = c;
   struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
   if (instance == NULL || !check_array(instance, names, nCategories, __func__, "categories")) return fmi2Error;
-  unsigned chosen = nCategories == 0 ? ALL_CATEGORIES : 0;
+  unsigned chosen = 0;
   for (size_t i = 0; i < nCategories; i++) {
     int category = category_named(names[i]);
     if (category == CATEGORY_COUNT)
@@ -132,8 +139,8 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
           log_error(instance, "%s: there is no log category '%s'", __func__, names[i] != NULL ? names[i] : "NULL"));
     chosen |= 1u << category;
   }
-  if (loggingOn) component->categories |= chosen;
-  else component->categories &= ~chosen;
+  if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : CATEGORIES_WITHOUT_DEBUGGING;
+  else component->categories = loggingOn ? chosen : component->categories & ~chosen;
   instance->log.wanted = wanted_statuses(component);
   return fmi2OK;
 }

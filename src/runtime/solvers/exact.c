@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "snapshot.h"
 #include "solver.h"
 
 /* What is kept of the last step: with the same step and parameters, its matrix serves again. */
@@ -33,6 +34,11 @@ static size_t saved_size(void) {
   return lagrangian.state_count * sizeof(double); /* what rounding left of the state */
 }
 
+static bool could_save(const struct Situation *situation, const void *saved) {
+  (void)situation;
+  return snapshot_is_finite(saved, lagrangian.state_count);
+}
+
 static void destroy(struct Instance *instance) {
   struct Exact *exact = instance->solver_memory;
   if (exact->generator != NULL) instance->memory.free(exact->generator);
@@ -41,7 +47,7 @@ static void destroy(struct Instance *instance) {
 }
 
 /* Divides one block of memory among the arrays. */
-static void lay_out(struct Exact *exact, size_t size) {
+static void divide_block(struct Exact *exact, size_t size) {
   size_t states = lagrangian.state_count, square = size * size;
   exact->term = exact->generator + square;
   exact->product = exact->term + square;
@@ -65,7 +71,7 @@ static bool create(struct Instance *instance) {
     exact->generator = instance->memory.allocate(1, 4 * size * size * sizeof(long double) + doubles * sizeof(double) +
                                                         size * sizeof(int));
     if (exact->generator != NULL) {
-      lay_out(exact, size);
+      divide_block(exact, size);
       return true;
     }
     destroy(instance);
@@ -297,6 +303,7 @@ const struct Solver solver_exact = {.name = "the matrix exponential",
                                     .remedy = "try a shorter step",
                                     .starts_anew = true,
                                     .saved_size = saved_size,
+                                    .could_save = could_save,
                                     .create = create,
                                     .destroy = destroy,
                                     .advance = advance,

@@ -1,7 +1,7 @@
 #include "ldlt.h"
 
 /* A pivot below this share of its diagonal element has lost all its digits. */
-static const double rounding = 1e-14;
+static const double smallest_pivot = 1e-14;
 
 static size_t factor_full(size_t n, double *m) {
   for (size_t i = 0; i < n; i++) {
@@ -18,7 +18,7 @@ static size_t factor_full(size_t n, double *m) {
       pivot -= l * row[j];
       row[j] = l;
     }
-    if (!(pivot > rounding * diagonal)) return i + 1;
+    if (!(pivot > smallest_pivot * diagonal)) return i + 1;
     row[i] = pivot;
   }
   return 0;
@@ -47,7 +47,7 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *
       pivot -= l * m[k];
       m[k] = l;
     }
-    if (!(pivot > rounding * diagonal)) return i + 1;
+    if (!(pivot > smallest_pivot * diagonal)) return i + 1;
     m[last] = pivot;
   }
   return 0;

@@ -5,15 +5,28 @@
  * inputs, parameters or the state were changed. The situation holds all that a step depends on.
  */
 #include <math.h>
+#include <string.h>
 
 #include "evaluate.h"
+#include "snapshot.h"
 #include "solver.h"
 #include "taylor.h"
 
+enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
 enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
 
 static size_t saved_size(void) {
   return sizeof(struct Saved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
+}
+
+static bool could_save(const struct Situation *situation, const void *saved) {
+  struct Saved first;
+  memcpy(&first, saved, sizeof first);
+  bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
+  bool is_new = first.order == 0 && situation->changed != 0; /* the first step is to come */
+  return (has_order || is_new) && first.reach >= 0.0 &&
+         situation->last_step.end == situation->last_step.start + first.reach &&
+         snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
 }
 
 static bool create(struct Instance *instance) {
@@ -91,7 +104,7 @@ static bool restart(struct Instance *instance, const struct CommunicationStep *s
   taylor->saved->reach = 0.0;
   taylor->is_measured = false;
   double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
-  taylor->saved->order = (int64_t)fmin(fmax(order, 4.0), SERIES_LENGTH - 2);
+  taylor->saved->order = (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     taylor->low[i] = 0.0;
     taylor->x[i][0] = instance->state[i];
@@ -156,6 +169,7 @@ static const char *advance(struct Instance *instance, const struct Communication
 
 const struct Solver solver_taylor = {.name = "the Taylor series",
                                      .saved_size = saved_size,
+                                     .could_save = could_save,
                                      .create = create,
                                      .destroy = destroy,
                                      .restart = restart,

@@ -1,0 +1,59 @@
+# For pack.cmake: one_file(SYSTEM NAME FILE) writes the C source of an FMU as one file, from the system's and the runtime's,
+# in SOURCE. Names that the linker sees, which NAMES lists as nm does, get the FMU's before them, so that several FMUs can
+# be linked into one program.
+cmake_minimum_required(VERSION 3.18)
+
+# The text with each included file of the project in the place where it is first named; TEXT is a variable.
+function(include_once variable)
+  set(rest "${${variable}}")
+  set(done "")
+  set(included "")
+  while(rest MATCHES "#include \"([a-z0-9_]+\\.[ch])\"\n")
+    set(line "${CMAKE_MATCH_0}")
+    set(name ${CMAKE_MATCH_1})
+    string(FIND "${rest}" "${line}" place)
+    string(SUBSTRING "${rest}" 0 ${place} before)
+    string(LENGTH "${line}" length)
+    math(EXPR place "${place} + ${length}")
+    string(SUBSTRING "${rest}" ${place} -1 rest)
+    string(APPEND done "${before}")
+    if(NOT name IN_LIST included)
+      list(APPEND included ${name})
+      file(GLOB file ${SOURCE}/include/${name} ${SOURCE}/src/runtime/${name} ${SOURCE}/src/runtime/*/${name})
+      file(READ ${file} text)
+      string(PREPEND rest "${text}")
+    endif()
+  endwhile()
+  set(${variable} "${done}${rest}" PARENT_SCOPE)
+endfunction()
+
+function(one_file system name file)
+  file(READ ${system} text)
+  include_once(text)
+  file(READ ${NAMES} symbols)
+  string(REGEX MATCHALL "[A-Za-z0-9_]+ [A-Z] " symbols "${symbols}\nlagrangian D ")
+  list(SORT symbols)
+  set(names "")
+  set(functions "")
+  foreach(symbol ${symbols})
+    string(REGEX REPLACE " .*" "" symbol "${symbol}")
+    if(symbol MATCHES "^fmi2")
+      string(APPEND functions "#define ${symbol} FMI2_FULL_NAME(FMI2_FUNCTION_PREFIX, ${symbol})\n")
+    elseif(text MATCHES "[^a-z0-9_]${symbol}[^a-z0-9_]")
+      string(APPEND names "#define ${symbol} ${name}_${symbol}\n")
+    endif()
+  endforeach()
+  file(WRITE ${file} "/*
+ * ${name} in C11, without any library but libm. Several FMUs can be linked into one program: compile each with
+ * FMI2_FUNCTION_PREFIX defined as the FMU's name and _, here ${name}_, which the functions of FMI then begin with.
+ * For a shared library, leave it undefined.
+ */
+#define FMU_IN_ONE_FILE
+${names}
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define FMI2_PASTE(prefix, name) prefix##name
+#define FMI2_FULL_NAME(prefix, name) FMI2_PASTE(prefix, name)
+${functions}#endif
+
+${text}")
+endfunction()
