@@ -21,6 +21,7 @@ from distributed import Client, LocalCluster, as_completed
 from fmpy import read_model_description
 
 from progress import Progress
+from variables import settable
 
 ROOT = Path(__file__).resolve().parent.parent
 CHUNK = 250  # runs a task
@@ -45,7 +46,7 @@ def variation(text):
 
 def known_name(name, description):
     """The variable of this name; theta0 is the start value of theta."""
-    names = [v.name for v in description.modelVariables if v.start is not None and v.type == "Real"]
+    names = settable(description)
     if name in names:
         return name
     if name.endswith("0") and name[:-1] in names:
