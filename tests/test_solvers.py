@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 import zipfile
 
 import matplotlib.image
@@ -46,6 +47,10 @@ def systems():
         for method in METHODS:
             whole = name + method.capitalize()
             texts[whole] = text(whole, force, x, v, f'method="{method}" {solver}')
+    for method in ("taylor", *METHODS):
+        whole = f"Few{method.capitalize()}"
+        texts[whole] = text(whole, "-1e4*x", 1, 0, f'method="{method}" maxSteps="30"')
+    texts["Oscillator"] = text("Oscillator", "-1e8*x", 1, 0, 'method="taylor"')
     fmu.build_systems("solver-systems", texts)
 
 
@@ -55,6 +60,26 @@ def test_the_longest_step_finds_a_pulse(method, open_fmu):
     instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
     instance.step(10.0)
     assert instance.get("v") == pytest.approx(0.01 * math.sqrt(math.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["Taylor", "Erk", "Bdf"])
+def test_a_number_of_steps_that_the_author_sets(method, open_fmu):
+    """It counts within one communication step: 30 are enough for a short one, and for the next one again."""
+    instance = open_fmu(f"Few{method}").initialize(tolerance=1e-4)
+    for _ in range(3):
+        instance.step(0.001)
+    assert instance.get("x") == pytest.approx(math.cos(0.3), abs=1e-2)
+    with instance.fails(2, "as many steps as maxSteps of <solver> in system.xml allows within one communication step"):
+        instance.step(100.0)
+
+
+def test_much_work_is_told_of_on_the_way(open_fmu):
+    """Once in a communication step that takes 50000 steps; it succeeds all the same."""
+    instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
+    instance.step(40.0)
+    told = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
+    assert len(told) == 1 and told[0][0] == 1 and re.search(r"has taken 50000 steps from time 0 .* gives up after 1000000", told[0][1])
+    assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 
 
 def collision_time(name, a):

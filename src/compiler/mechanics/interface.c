@@ -182,6 +182,10 @@ size_t interface_find(const struct Interface *interface, enum VariableKind kind,
   return interface->first[kind] + index;
 }
 
+long interface_max_steps(const struct Model *model) {
+  return isnan(model->max_steps) ? 1000000 : (long)model->max_steps;
+}
+
 double interface_tolerance(const struct Model *model) {
   return isnan(model->tolerance) ? 1e-8 : model->tolerance;
 }

@@ -56,6 +56,7 @@ struct Model {
   struct LinearizationPoint point;         /* where linearized */
   const struct Method *method;             /* NULL for the default */
   double tolerance, max_step;              /* NAN where none was given; max_step in s */
+  double max_steps;                        /* in one communication step, a whole number; NAN where none was given */
   double start_time, stop_time, step_size; /* NAN where none was given */
   long solver_line;
 };

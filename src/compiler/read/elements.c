@@ -322,6 +322,9 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
                  *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->max_step);
+  double *steps = &reader->model->max_steps;
+  if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
   free(method);
 }
 
