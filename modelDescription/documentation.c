@@ -30,7 +30,8 @@ struct Page {
 
 /* left = expression, on a line of its own. */
 static void write_equation(const struct Page *page, const char *left, Node right) {
-  char *expression = expression_text(page->model->graph, right), *text = format_text("%s = %s", left, expression);
+  char *expression = expression_text_with_names(page->model->graph, right, &page->summary->names);
+  char *text = format_text("%s = %s", left, expression);
   element(page->writer, "code", text);
   free(text);
   free(expression);
@@ -83,13 +84,27 @@ static void write_energies(const struct Page *page) {
   element(writer, "p", balance_of(page->model, summary->is_autonomous));
 }
 
+/* The author's own names, which the formulas use where they can. */
+static void write_definitions(const struct Page *page) {
+  const struct VariableList *definitions = &page->model->definitions;
+  const struct NodeNames *names = &page->summary->names;
+  bool first = true;
+  for (size_t i = 0; i < definitions->count; i++) {
+    const struct Variable *definition = &definitions->items[i];
+    if (names->of[definition->node] != definition->name) continue;
+    if (first) element(page->writer, "h2", "Definitions");
+    first = false;
+    write_equation(page, definition->name, definition->node);
+  }
+}
+
 static void write_mechanics(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
   write_energies(page);
   element(writer, "h2", "Equations of motion");
   for (size_t i = 0; i < summary->motion_count; i++) {
-    char *left = expression_text(page->model->graph, summary->inertial[i]);
+    char *left = expression_text_with_names(page->model->graph, summary->inertial[i], &summary->names);
     write_equation(page, left, summary->right_side[i]);
     free(left);
   }
@@ -193,6 +208,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
   const struct Page page = {writer, model, equations, interface, summary};
+  write_definitions(&page);
   if (equations->count > 0) write_mechanics(&page);
   write_outputs(&page);
   write_solver(&page);

@@ -69,11 +69,12 @@ static bool make_ready(struct Instance *instance, const struct CommunicationStep
 
 /* A user should hear of much work long before it is too much. */
 static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step) {
-  log_message(instance, STATUS_WARNING,
-              "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
-              "maxSteps of <solver> in system.xml sets",
-              lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
-              lagrangian.max_steps);
+  log_message(
+      instance, STATUS_WARNING,
+      "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
+      "maxSteps of <solver> in system.xml sets",
+      lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
+      lagrangian.max_steps);
 }
 
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does. */

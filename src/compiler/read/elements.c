@@ -307,7 +307,8 @@ static void read_definition(struct Reader *reader, xmlNodePtr node) {
   require_unit(reader, xmlGetLineNo(node), "the definition", value, unit);
   if (unit.known) value.dimension = unit;
   value.literal = value.literal && !unit.known;
-  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
+  if (name != NULL && scope_define(reader->scope, name, value, xmlGetLineNo(node)))
+    append_variable(&reader->model->definitions, (struct Variable){.name = copy_text(name), .node = value.node});
   free(name);
 }
 
