@@ -47,7 +47,23 @@ static const char *name_of(const struct Printer *printer, Node node) {
   return names != NULL && node != printer->whole && (size_t)node < names->count ? names->of[node] : NULL;
 }
 
+/* The node with a name that is a power of the base with an exponent of which *exponent is a multiple, or the base. */
+static Node named_root(const struct Printer *printer, Node base, double *exponent) {
+  const struct Vertex *vertices = printer->graph->vertices;
+  for (size_t i = 0; printer->names != NULL && i < printer->names->named_count; i++) {
+    Node node = printer->names->named[i];
+    if (node == printer->whole || vertices[node].operation != POWER || vertices[node].left != base) continue;
+    if (!graph_is_constant(printer->graph, vertices[node].right)) continue;
+    double multiple = *exponent / graph_value(printer->graph, vertices[node].right);
+    if (multiple < 1.0 || multiple != floor(multiple)) continue;
+    *exponent = multiple;
+    return node;
+  }
+  return base;
+}
+
 static void print_power(struct Printer *printer, Node base, double exponent) {
+  base = named_root(printer, base, &exponent);
   if (exponent == 0.5) {
     fputs("sqrt(", printer->file);
     print(printer, base, IN_SUM);

@@ -16,6 +16,8 @@ char *expression_text(const struct Graph *graph, Node node);
 struct NodeNames {
   const char **of;
   size_t count;
+  Node *named; /* the nodes that have a name */
+  size_t named_count;
 };
 
 /* The same with these names for all that is inside the expression. */

@@ -16,14 +16,14 @@
 static struct NodeNames definition_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
-  size_t shown = 0;
-  for (size_t i = 0; i < model->definitions.count && shown < SHOWN_LIMIT && !model->linearized; i++) {
+  names.named = allocate(SHOWN_LIMIT, sizeof *names.named);
+  for (size_t i = 0; i < model->definitions.count && names.named_count < SHOWN_LIMIT && !model->linearized; i++) {
     const struct Variable *definition = &model->definitions.items[i];
     if (graph->vertices[definition->node].operation == SYMBOL || graph_is_constant(graph, definition->node) ||
         names.of[definition->node] != NULL)
       continue;
     names.of[definition->node] = definition->name;
-    shown++;
+    names.named[names.named_count++] = definition->node;
   }
   return names;
 }
@@ -87,6 +87,7 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
 void summary_free(struct Summary *summary) {
   if (summary == NULL) return;
   free(summary->names.of);
+  free(summary->names.named);
   free(summary->inertial);
   free(summary->right_side);
   free(summary->outputs);
