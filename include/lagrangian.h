@@ -77,6 +77,7 @@ struct Lagrangian {
   const char *const *inertia_depends_on;
   double tolerance; /* relative, where the environment gives none */
   double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
+  long max_steps;   /* that a solver takes by itself in one communication step */
   bool depends_on_time;
   const struct Solver *solver;      /* NULL for a system without coordinates */
   struct Sparsity jacobian_pattern; /* where there is a jacobian() */

@@ -7,12 +7,15 @@
 #include <libxml/xmlwriter.h>
 
 #include "algebra/formula.h"
+#include "mathml.h"
 #include "memory.h"
 #include "xml_output.h"
 
 static const char *const style =
     "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
     "code{display:block;background:#f4f4f4;padding:.5em;margin:.3em 0;white-space:pre-wrap;overflow-wrap:anywhere}"
+    "math{font-size:1.1em;max-width:100%;overflow-x:auto}.formula{margin:.8em 0 0;line-height:2.4}"
+    "summary{color:#888;font-size:.8em}"
     "table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.2em .8em;text-align:left}";
 
 static void element(xmlTextWriterPtr writer, const char *name, const char *text) {
@@ -28,10 +31,22 @@ struct Page {
   const struct Summary *summary;
 };
 
-/* left = expression, on a line of its own. */
+/* left = expression, typeset, and as text to copy. */
 static void write_equation(const struct Page *page, const char *left, Node right) {
-  char *expression = expression_text(page->model->graph, right), *text = format_text("%s = %s", left, expression);
+  char *expression = expression_text_with_names(page->model->graph, right, &page->summary->names);
+  char *text = format_text("%s = %s", left, expression);
+  char *math = mathml_of_equation(text);
+  if (math != NULL) {
+    xmlTextWriterStartElement(page->writer, BAD_CAST "p");
+    write_attribute(page->writer, "class", "formula");
+    xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
+    xmlTextWriterEndElement(page->writer);
+    xmlTextWriterStartElement(page->writer, BAD_CAST "details");
+    element(page->writer, "summary", "as text");
+  }
   element(page->writer, "code", text);
+  if (math != NULL) xmlTextWriterEndElement(page->writer);
+  free(math);
   free(text);
   free(expression);
 }
@@ -83,13 +98,27 @@ static void write_energies(const struct Page *page) {
   element(writer, "p", balance_of(page->model, summary->is_autonomous));
 }
 
+/* The author's own names, which the formulas use where they can. */
+static void write_definitions(const struct Page *page) {
+  const struct VariableList *definitions = &page->model->definitions;
+  const struct NodeNames *names = &page->summary->names;
+  bool first = true;
+  for (size_t i = 0; i < definitions->count; i++) {
+    const struct Variable *definition = &definitions->items[i];
+    if (names->of[definition->node] != definition->name) continue;
+    if (first) element(page->writer, "h2", "Definitions");
+    first = false;
+    write_equation(page, definition->name, definition->node);
+  }
+}
+
 static void write_mechanics(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
   write_energies(page);
   element(writer, "h2", "Equations of motion");
   for (size_t i = 0; i < summary->motion_count; i++) {
-    char *left = expression_text(page->model->graph, summary->inertial[i]);
+    char *left = expression_text_with_names(page->model->graph, summary->inertial[i], &summary->names);
     write_equation(page, left, summary->right_side[i]);
     free(left);
   }
@@ -193,6 +222,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
   const struct Page page = {writer, model, equations, interface, summary};
+  write_definitions(&page);
   if (equations->count > 0) write_mechanics(&page);
   write_outputs(&page);
   write_solver(&page);

@@ -170,7 +170,7 @@ def build_fmu(name):
     (BUILD / "systems" / name / "system.xml").touch()
     for path in (BUILD / "fmu" / f"{name}.fmu", BUILD / "systems" / name / "system.c"):
         path.unlink(missing_ok=True)
-    return seconds_of(["cmake", "--build", BUILD, "--target", f"{name}_fmu"])
+    return seconds_of(["cmake", "--build", BUILD, "--target", f"fmu_{name}"])
 
 
 def compare_whole_fmus():

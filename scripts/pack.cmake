@@ -1,8 +1,16 @@
-# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SOURCE=... -D ICON=... -D ZIP=... -D NAMES=...
+# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SYSTEM=... -D SOURCE=... -D ICON=... -D ZIP=... -D NAMES=...
 #                     -P pack.cmake
 # FOLDER holds what lagc wrote; NAMES lists the global names of the compiled runtime.
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
+
+# Importers look for the library under the name in modelDescription.xml.
+get_filename_component(name ${LIBRARY} NAME_WE)
+file(STRINGS ${FOLDER}/modelDescription.xml found REGEX " modelIdentifier=")
+if(NOT found MATCHES " modelIdentifier=\"${name}\"")
+  string(REGEX REPLACE ".* modelIdentifier=\"([^\"]*)\".*" "\\1" found "${found}")
+  message(FATAL_ERROR "${SYSTEM}: the system is named '${found}'; expected '${name}', its folder's name")
+endif()
 
 set(content ${FOLDER}/content)
 file(REMOVE_RECURSE ${FMU} ${content})

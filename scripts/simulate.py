@@ -12,6 +12,8 @@ import numpy as np
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 
+from variables import settable
+
 
 def start_value(text):
     name, separator, value = text.partition("=")
@@ -54,10 +56,11 @@ def main():
     arguments = parser.parse_args()
 
     description = read_model_description(arguments.fmu)
-    known = [variable.name for variable in description.modelVariables]
+    known, free = [variable.name for variable in description.modelVariables], settable(description)
     for name, _ in arguments.start:
-        if name not in known:
-            parser.error(f"'{name}' is no variable of {description.modelName}; it has {', '.join(known)}")
+        if name not in free:
+            what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is no variable of {description.modelName}"
+            sys.exit(f"scripts/run: {what}; these can be: {', '.join(free)}")
     try:
         result = simulate_fmu(
             arguments.fmu,

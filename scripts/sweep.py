@@ -1,7 +1,8 @@
 """
 Runs an FMU over a grid or a random sample. Each run starts from the FMU's own values but for those that vary, and ends
 as a row of one Parquet file: what varied, the states at the end, the error of the energy, the run time, and what went
-wrong. Finished runs are kept in parts beside the file until all are there, so that the same command goes on after a kill.
+wrong; the energy has an error only where the FMU says which law it obeys. Finished runs are kept in parts beside the file
+until all are there, so that the same command goes on after a kill.
 """
 
 import argparse
@@ -12,6 +13,7 @@ import json
 import os
 import shutil
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,7 @@ from distributed import Client, LocalCluster, as_completed
 from fmpy import read_model_description
 
 from progress import Progress
+from variables import settable
 
 ROOT = Path(__file__).resolve().parent.parent
 CHUNK = 250  # runs a task
@@ -45,7 +48,7 @@ def variation(text):
 
 def known_name(name, description):
     """The variable of this name; theta0 is the start value of theta."""
-    names = [v.name for v in description.modelVariables if v.start is not None and v.type == "Real"]
+    names = settable(description)
     if name in names:
         return name
     if name.endswith("0") and name[:-1] in names:
@@ -104,6 +107,14 @@ def open_instance(archive):
     return opened[digest][:3]
 
 
+def lawful_energies(description):
+    """What to watch for the law of the energy: none where it may change, as in systems that are moved in a given way."""
+    law = next((v.description or "" for v in description.modelVariables if v.name == "totalEnergy"), "")
+    if law.endswith("; constant"):
+        return ["totalEnergy", "kineticEnergy"]
+    return ["totalEnergy", "kineticEnergy", "nonConservativeWork"] if law.endswith("; changes by nonConservativeWork alone") else []
+
+
 def run_chunk(archive, numbers, rows, names, settings):
     """A table of the results of some runs, as Parquet in bytes."""
     import time
@@ -113,10 +124,9 @@ def run_chunk(archive, numbers, rows, names, settings):
     slave, description, messages = open_instance(archive)
     references = {v.name: v.valueReference for v in description.modelVariables}
     states = [unknown.variable.derivative.name for unknown in description.derivatives]
-    energies = [n for n in ("totalEnergy", "kineticEnergy", "nonConservativeWork") if n in references]
     varied = [references[name] for name in names]
     ends = [references[name] for name in states]
-    watched = [references[name] for name in energies]
+    watched = [references[name] for name in lawful_energies(description)]
     columns = {"run": list(numbers)} | {name: list(column) for name, column in zip(names, np.transpose(rows))}
     results = {f"{state}_end": [] for state in states} | {"energyError": [], "runTime": [], "problem": []}
     for row in rows:
@@ -152,6 +162,13 @@ def run_chunk(archive, numbers, rows, names, settings):
     return buffer.getvalue()
 
 
+def replace(temporary, path):
+    """Gives a file its name when it is on the disk, so that a machine that loses power leaves it whole or not at all."""
+    with open(temporary, "rb+") as file:
+        os.fsync(file.fileno())
+    os.replace(temporary, path)
+
+
 class Parts:
     """Finished chunks beside the result, in a folder whose name tells which plan they belong to."""
 
@@ -166,7 +183,23 @@ class Parts:
     def write(self, chunk, data):
         temporary = self.path(chunk).with_suffix(".part")
         temporary.write_bytes(data)
-        os.replace(temporary, self.path(chunk))
+        replace(temporary, self.path(chunk))
+
+    def finished(self, runs_of):
+        """The chunks that are there. One whose file was cut short is dropped."""
+        chunks = sorted(int(path.stem) for path in self.folder.glob("*.parquet"))
+        whole = [chunk for chunk in chunks if self.is_whole(chunk, len(runs_of(chunk)))]
+        for chunk in set(chunks) - set(whole):
+            runs = runs_of(chunk)
+            print(f"{self.path(chunk)} is damaged: runs {runs.start} to {runs.stop - 1} are run again")
+            self.path(chunk).unlink()
+        return set(whole)
+
+    def is_whole(self, chunk, runs):
+        try:
+            return pq.read_table(self.path(chunk)).num_rows == runs
+        except (pa.ArrowException, OSError):
+            return False
 
     def join(self, output, count):
         """One file of all parts in the order of the runs, a part at a time."""
@@ -176,21 +209,23 @@ class Parts:
             writer = writer or pq.ParquetWriter(temporary, table.schema)
             writer.write_table(table)
         writer.close()
-        os.replace(temporary, output)
+        replace(temporary, output)
         shutil.rmtree(self.folder)
 
 
 def simulate(client, archive, rows, names, settings, parts):
     """Keeps a few tasks a worker in flight; writes each as it arrives."""
     count = -(-len(rows) // CHUNK)
-    waiting = [chunk for chunk in range(count) if not parts.path(chunk).exists()]
-    done = sum(min(CHUNK, len(rows) - chunk * CHUNK) for chunk in range(count) if parts.path(chunk).exists())
+    runs_of = lambda chunk: range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(rows)))
+    finished = parts.finished(runs_of)
+    waiting = [chunk for chunk in range(count) if chunk not in finished]
+    done = sum(len(runs_of(chunk)) for chunk in finished)
     if done:
         print(f"{done} of {len(rows)} runs are there already")
     progress, chunks = Progress(len(rows), done), {}
 
     def submit(chunk):
-        numbers = range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(rows)))
+        numbers = runs_of(chunk)
         future = client.submit(run_chunk, archive, numbers, rows[numbers.start : numbers.stop], names, settings, pure=False, retries=3)
         chunks[future.key] = chunk
         return future
@@ -201,10 +236,18 @@ def simulate(client, archive, rows, names, settings, parts):
     for future in queue:
         chunk = chunks.pop(future.key)
         parts.write(chunk, future.result())
+        future.release()
         if waiting:
             queue.add(submit(waiting.pop(0)))
-        progress("runs", min(CHUNK, len(rows) - chunk * CHUNK))
+        progress("runs", len(runs_of(chunk)))
     return count
+
+
+def simulate_with_dask(scheduler, *words):
+    with ExitStack() as stack:
+        if not scheduler:
+            scheduler = stack.enter_context(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0"))
+        return simulate(stack.enter_context(Client(scheduler)), *words)
 
 
 def print_summary(output):
@@ -250,19 +293,14 @@ def main():
     steps = max(1, round(stop / arguments.step)) if arguments.step else 1
     settings = {"stop": stop, "steps": steps, "tolerance": arguments.tolerance}
     output = arguments.output or ROOT / "build" / "results" / f"{description.modelName}-sweep.parquet"
-    output.parent.mkdir(parents=True, exist_ok=True)
     archive = path.read_bytes()
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), **settings}
-    parts = Parts(output, plan)
-    if arguments.scheduler:
-        client = Client(arguments.scheduler)
-    else:
-        client = Client(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0"))
-    with client:
-        count = simulate(client, archive, rows, names, settings, parts)
-        if not arguments.scheduler:
-            client.cluster.close()
-    parts.join(output, count)
+    try:
+        parts = Parts(output, plan)
+        count = simulate_with_dask(arguments.scheduler, archive, rows, names, settings, parts)
+        parts.join(output, count)
+    except OSError as problem:
+        sys.exit(f"scripts/sweep: {problem}; finished runs are kept beside {output}, and the same command goes on with them")
     print_summary(output)
 
 

@@ -40,6 +40,8 @@ CASES = [
     ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize 0; expected"),
     ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, "'0'"),
     ("largest step of the exact method", 11, '<solver method="exact" maxStep="0.1"/>', 11, "expected no maxStep"),
+    ("half a step at most", 11, '<solver method="erk" maxSteps="0.5"/>', 11, "maxSteps 0.5; expected a whole number from 1 to 1e9"),
+    ("number of steps of the exact method", 11, '<solver method="exact" maxSteps="10"/>', 11, "expected no maxSteps"),
     ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
     ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),

@@ -11,21 +11,28 @@ import pytest
 import fmu
 from fmu import BUILD, ROOT, lagc
 
+NAMES_OF_TARGETS = ("all", "lagc", "solvers", "test", "SimplePendulum_fmu")
 OFFICIAL = Path(fmpy.__file__).parent / "c-code"
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path):
-    """Another folder, another build: the same archives."""
-    source = tmp_path / "elsewhere"
+    """Another folder, another build: the same archives. Its name, and those of systems, may be any."""
+    source = tmp_path / "else where, over there"
     for folder in ("fmu", "include", "modelDescription", "scripts", "src", "tests"):
         shutil.copytree(ROOT / folder, source / folder)
     shutil.copy(ROOT / "CMakeLists.txt", source)
     systems = tmp_path / "systems"
     for name in ("SimplePendulum", "ElasticPendulum", "SimplePendulumLinear"):
         shutil.copytree(ROOT / "fmu" / name, systems / name)
+    for name in NAMES_OF_TARGETS:
+        (systems / name).mkdir()
+        (systems / name / "system.xml").write_text(f'<system\n  name="{name}"><input name="u"/><output name="y">u</output></system>')
     subprocess.run([source / "scripts" / "build", "build", f"-DSYSTEMS={systems}"], check=True)
     for name in ("SimplePendulum", "ElasticPendulum", "SimplePendulumLinear"):
         assert (source / "build" / "fmu" / f"{name}.fmu").read_bytes() == fmu.archive(name).read_bytes(), name
+    for name in NAMES_OF_TARGETS:
+        assert fmpy.read_model_description(source / "build" / "fmu" / f"{name}.fmu").modelName == name
+    assert "-Werror" not in (source / "build" / "compile_commands.json").read_text()
 
 
 def guid(system, folder):
@@ -51,13 +58,28 @@ def test_guids_differ():
     assert len({fmu.description(name).guid for name in fmu.all_names()}) == len(fmu.all_names())
 
 
-def test_folder_name_must_match(tmp_path):
-    systems = tmp_path / "systems"
-    shutil.copytree(ROOT / "fmu" / "SimplePendulum", systems / "Other")
-    result = subprocess.run(
-        ["cmake", "-S", ROOT, "-B", tmp_path / "build", f"-DSYSTEMS={systems}"], capture_output=True, text=True
-    )
-    assert result.returncode != 0 and "expected 'Other'" in " ".join(result.stderr.split())
+@pytest.mark.parametrize("start", ["<system name=", "<system\n  name=", "<system name = ", "<!-- <system name='Other'> --><system name="])
+def test_folder_name_must_match(start, tmp_path):
+    """However the name is written; the build that exists has lagc already."""
+    folder = tmp_path / "Other"
+    assert lagc("-o", folder, system_file(tmp_path, f'{start}"Mine"><input name="u"/><output name="y">u</output></system>')).returncode == 0
+    words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARY={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
+    result = subprocess.run([*words, "-P", ROOT / "scripts" / "pack.cmake"], capture_output=True, text=True)
+    assert result.returncode != 0
+    assert "Other/system.xml: the system is named 'Mine'; expected 'Other', its folder's name" in " ".join(result.stderr.split())
+
+
+def system_file(folder, text):
+    (folder / "system.xml").write_text(text)
+    return folder / "system.xml"
+
+
+def test_folder_that_is_no_name(tmp_path):
+    shutil.copytree(ROOT / "fmu" / "SimplePendulum", tmp_path / "systems" / "My pendulum")
+    words = ["cmake", "-S", ROOT, "-B", tmp_path / "build", f"-DSYSTEMS={tmp_path / 'systems'}"]
+    result = subprocess.run(words, capture_output=True, text=True)
+    message = "the folder is named 'My pendulum'; expected the system's name, of letters, digits and _"
+    assert result.returncode != 0 and message in " ".join(result.stderr.split())
 
 
 @pytest.mark.parametrize("header", ["fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"])

@@ -69,6 +69,28 @@ def test_every_term_arrives(tmp_path):
     assert sp.expand(ours - expected) == 0
 
 
+def test_the_page_keeps_the_names_of_definitions(tmp_path):
+    """Formulas use them wherever their expressions occur as a whole; mere variables and numbers are shown as they are."""
+    (tmp_path / "system.xml").write_text(
+        """<system name="Names"><parameter name="k" start="1"/><parameter name="l" start="1"/>
+  <coordinate name="x" velocity="v"/>
+  <define name="half">1/2</define><define name="place">x</define>
+  <define name="way">sqrt(l^2 + x^2)</define><define name="stretch">way - l</define><define name="angle">x/l + 1</define>
+  <kinetic>half*v^2</kinetic><potential>k*stretch^2/2 + cos(angle) + place</potential>
+  <output name="pull">3*k*stretch</output><output name="far">stretch + 2*sin(angle)</output>
+</system>"""
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    lines = re.findall(r"<code>([^<]*)</code>", html.unescape((tmp_path / "out" / "documentation" / "index.html").read_text()))
+    for line in ("way = sqrt(l^2 + x^2)", "stretch = way - l", "angle = 1 + x/l", "K = v^2/2", "pull = 3*k*stretch"):
+        assert line in lines
+    assert not any(line.startswith(("half =", "place =")) for line in lines)
+    (potential,), (far,), (motion,) = ([line for line in lines if line.startswith(left)] for left in ("U =", "far =", "der(v) ="))
+    assert "k*stretch^2/2" in potential and "cos(angle)" in potential
+    assert "2*sin(angle)" in far and "sin(angle)/l" in motion and "stretch/way" in motion
+
+
 def test_the_page_of_a_large_system(tmp_path):
     """A hundred equations and outputs are enough to read; the page says how many there are besides."""
     (tmp_path / "system.xml").write_text(

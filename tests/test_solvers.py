@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 import zipfile
 
 import matplotlib.image
@@ -46,6 +47,11 @@ def systems():
         for method in METHODS:
             whole = name + method.capitalize()
             texts[whole] = text(whole, force, x, v, f'method="{method}" {solver}')
+    for method in ("taylor", *METHODS):
+        whole = f"Few{method.capitalize()}"
+        texts[whole] = text(whole, "-1e4*x", 1, 0, f'method="{method}" maxSteps="30"')
+    texts["Oscillator"] = text("Oscillator", "-1e8*x", 1, 0, 'method="taylor"')
+    texts["Spiral"] = text("Spiral", "-4e7*x - 50*v", 1, 0, 'method="taylor"')
     fmu.build_systems("solver-systems", texts)
 
 
@@ -55,6 +61,26 @@ def test_the_longest_step_finds_a_pulse(method, open_fmu):
     instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
     instance.step(10.0)
     assert instance.get("v") == pytest.approx(0.01 * math.sqrt(math.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["Taylor", "Erk", "Bdf"])
+def test_a_number_of_steps_that_the_author_sets(method, open_fmu):
+    """It counts within one communication step: 30 are enough for a short one, and for the next one again."""
+    instance = open_fmu(f"Few{method}").initialize(tolerance=1e-4)
+    for _ in range(3):
+        instance.step(0.001)
+    assert instance.get("x") == pytest.approx(math.cos(0.3), abs=1e-2)
+    with instance.fails(2, "as many steps as maxSteps of <solver> in system.xml allows within one communication step"):
+        instance.step(100.0)
+
+
+def test_much_work_is_told_of_on_the_way(open_fmu):
+    """Once in a communication step that takes 50000 steps; it succeeds all the same."""
+    instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
+    instance.step(40.0)
+    told = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
+    assert len(told) == 1 and told[0][0] == 1 and re.search(r"has taken 50000 steps from time 0 .* gives up after 10000000", told[0][1])
+    assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 
 
 def collision_time(name, a):
@@ -105,13 +131,22 @@ def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
     assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
 
 
+BLUE, RED = (0.05, 0.35, 0.65), (0.85, 0.25, 0.15)
+
+
+def pixels(name, colour):
+    """How many pixels of the icon have the colour, or nearly."""
+    with zipfile.ZipFile(fmu.archive(name)) as archive:
+        image = matplotlib.image.imread(io.BytesIO(archive.read("model.png")))
+    return np.count_nonzero(np.all(np.abs(image[..., :3] - colour) < 0.02, axis=-1))
+
+
 def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
     """The solver's limit of steps in the build leaves no curve to draw, only the mark of the start."""
-    def pixels(name, colour):
-        with zipfile.ZipFile(fmu.archive(name)) as archive:
-            image = matplotlib.image.imread(io.BytesIO(archive.read("model.png")))
-        return np.count_nonzero(np.all(np.abs(image[..., :3] - colour) < 0.02, axis=-1))
+    assert pixels("StiffErk", BLUE) == 0 and pixels("StiffErk", RED) > 0
+    assert pixels("StiffBdf", BLUE) > 0
 
-    blue, red = (0.05, 0.35, 0.65), (0.85, 0.25, 0.15)
-    assert pixels("StiffErk", blue) == 0 and pixels("StiffErk", red) > 0
-    assert pixels("StiffBdf", blue) > 0
+
+def test_the_icon_of_a_fast_motion_is_no_block(open_fmu):
+    """A hundred turns of a spiral would fill a disk of 6100 pixels; so many of the first ones are drawn as can be told apart."""
+    assert 300 < pixels("Spiral", BLUE) < 2500

@@ -1,5 +1,6 @@
 """Sweeps: all runs once and in order, right, failures recorded, resumed after a kill."""
 
+import re
 import signal
 import re
 import subprocess
@@ -20,7 +21,7 @@ def command(output, *words):
 
 def sweep(output, *words):
     result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
-    assert result.returncode == 0, result.stderr
+    assert result.returncode == 0 and result.stderr == "", result.stderr
     return pq.read_table(output).to_pydict(), result.stdout
 
 
@@ -68,6 +69,64 @@ def test_resumes_after_a_kill(tmp_path):
     assert table["run"] == list(range(20000))
     assert all(table["runTime"][run] == seconds for run, seconds in times.items())
     assert list(tmp_path.glob("*.parts-*")) == []
+
+
+def interrupted(output, *words):
+    """The folder with the parts of a sweep that has run all but had nowhere to put its result."""
+    whole = output.with_suffix(".part")
+    whole.symlink_to("/dev/full")
+    result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
+    whole.unlink()
+    (line,) = result.stderr.splitlines()
+    assert result.returncode == 1 and re.match("scripts/sweep: .*No space left on device.*the same command goes on", line), line
+    (folder,) = output.parent.glob("*.parts-*")
+    return folder
+
+
+WORDS = ["SimplePendulum", "--vary", "theta=0:3", "--random", "1000", "--stop", "1"]
+
+
+def test_a_full_disk_loses_nothing(tmp_path):
+    """Neither where the result is written nor where a part is: one line, and the same command goes on."""
+    output = tmp_path / "full.parquet"
+    folder = interrupted(output, *WORDS)
+    assert len(list(folder.glob("*.parquet"))) == 4
+    (folder / "000002.parquet").unlink()
+    (folder / "000002.part").symlink_to("/dev/full")
+    result = subprocess.run(command(output, *WORDS), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
+    (line,) = result.stderr.splitlines()
+    assert result.returncode == 1 and "No space left on device" in line
+    (folder / "000002.part").unlink()
+    table, text = sweep(output, *WORDS)
+    assert "750 of 1000 runs are there already" in text and table["run"] == list(range(1000))
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: bytes(len(data)),
+                                    lambda data: data[:200] + bytes(len(data) - 600) + data[-400:]])  # fmt: skip
+def test_a_damaged_part_is_run_again(damage, tmp_path):
+    output = tmp_path / "damaged.parquet"
+    folder = interrupted(output, *WORDS)
+    part = folder / "000001.parquet"
+    part.write_bytes(damage(part.read_bytes()))
+    table, text = sweep(output, *WORDS)
+    assert f"{part} is damaged: runs 250 to 499 are run again\n750 of 1000 runs are there already" in text
+    assert table["run"] == list(range(1000)) and set(table["problem"]) == {None}
+
+
+def test_nowhere_to_write():
+    result = subprocess.run(command("/proc/x.parquet", *WORDS), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
+    (line,) = result.stderr.splitlines()
+    assert result.returncode == 1 and line.startswith("scripts/sweep: ") and "/proc/x" in line
+
+
+def test_the_energy_has_an_error_only_where_it_has_a_law(tmp_path):
+    """A pivot that is moved does work, and a force whose work nobody asked for too; neither is an error."""
+    words = ["--vary", "theta=0.5,1", "--stop", "2"]
+    for name in ("RotatingPivotPendulum", "InvertedPendulumCart"):
+        table, text = sweep(tmp_path / f"{name}.parquet", name, *words)
+        assert np.all(np.isnan(table["energyError"])) and "error of the energy" not in text
+    table, text = sweep(tmp_path / "damped.parquet", "DampedPendulum", *words)
+    assert np.max(np.abs(table["energyError"])) < 1e-7 and "error of the energy" in text
 
 
 @pytest.mark.parametrize("words, message", [

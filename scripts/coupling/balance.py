@@ -102,9 +102,11 @@ def by_libcosim(start, gains, step):
 
 def draw(runs, path):
     figure, axes = plt.subplots(2, sharex=True, figsize=(8, 5))
-    for name, rows in runs.items():
-        axes[0].plot(rows[:, 0], rows[:, 1], label=name)
-        axes[1].plot(rows[:, 0], rows[:, 2], label=name)
+    # Two runs are one until the push: a broad pale line stays visible below a narrow dark one.
+    styles = [dict(linewidth=5, color="#9ecae1"), dict(linewidth=1.8, color="#f4a261"), dict(linewidth=1.5, color="#1b4332", linestyle="--")]
+    for (name, rows), style in zip(runs.items(), styles):
+        for axis, column in zip(axes, (1, 2)):
+            axis.plot(rows[:, 0], rows[:, column], label=name, **style)
     axes[0].set_ylabel("x [m]")
     axes[1].set_ylabel("theta [rad]")
     axes[1].set_xlabel("time [s]")

@@ -11,6 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.lines import Line2D
 from scipy.linalg import expm
 
 from coupling.master import Diverged, Master
@@ -20,7 +21,6 @@ from html_page import page, paragraphs, svg, table, write_csv
 SCHEMES = {"jacobi": "Jacobi", "gauss_seidel": "Gauss-Seidel", "fixed_point": "fixed point", "newton": "Newton"}
 DEGREES = {0: "held", 1: "linear", 2: "quadratic"}
 COLOURS = {"jacobi": "#2a6f97", "gauss_seidel": "#588157", "fixed_point": "#f4a261", "newton": "#c1121f"}
-STYLES = {0: ":", 1: "--", 2: "-"}
 FOLDER = ROOT / "build" / "report"
 
 M1, M2, K, C, OWN = 1.0, 2.0, 40.0, 0.4, 10.0
@@ -115,18 +115,20 @@ def label(scheme, degree):
 
 
 def lines_plot(rows, x, y, texts, title):
-    figure, axes = plt.subplots(figsize=(6.2, 4.6))
-    for scheme in SCHEMES:
-        for degree in DEGREES:
+    """A panel for each force over a step, a line for each method."""
+    figure, panels = plt.subplots(1, len(DEGREES), sharex=True, sharey=True, figsize=(10, 4.2), layout="constrained")
+    for (degree, text), axes in zip(DEGREES.items(), panels):
+        for scheme in SCHEMES:
             points = np.array([(row[x], row[y]) for row in rows if row[0] == scheme and row[1] == degree and row[y] > 0])
             if len(points):
-                axes.loglog(points[:, 0], points[:, 1], STYLES[degree], color=COLOURS[scheme], marker="o", markersize=3, label=label(scheme, degree))
-    axes.set_xlabel(texts[0])
-    axes.set_ylabel(texts[1])
-    axes.set_title(title)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=6, ncols=2)
-    figure.tight_layout()
+                axes.loglog(points[:, 0], points[:, 1], color=COLOURS[scheme], marker="o", markersize=4)
+        axes.set_xlabel(texts[0])
+        axes.set_title(f"force {text}")
+        axes.grid(alpha=0.3)
+    panels[0].set_ylabel(texts[1])
+    methods = [Line2D([], [], color=COLOURS[scheme], marker="o", label=text) for scheme, text in SCHEMES.items()]
+    figure.legend(handles=methods, loc="outside lower center", ncols=len(methods))
+    figure.suptitle(title)
     return svg(figure)
 
 
@@ -164,7 +166,7 @@ def main():
              "which nothing damps here, may grow however short the step is."]  # fmt: skip
     sections = [
         ("Coupled FMUs: the two-mass oscillator", paragraphs(first)),
-        ("Error and stability", '<div class="plots">' + "".join(plots) + "</div>"),
+        ("Error and stability", '<div class="plots" style="grid-template-columns: 1fr">' + "".join(plots) + "</div>"),
         ("Orders", table(["scheme", "theory", "order found", "at a step of [s]", "error [m]", "run time [s]"], summary)),
         ("Largest stable step times omega, by mass ratio", table(["scheme", *(f"{ratio:g}" for ratio in ratios)], table_rows)),
     ]

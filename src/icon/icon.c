@@ -31,6 +31,7 @@ struct Library {
   __typeof__(fmi2GetReal) *get_real;
   __typeof__(fmi2GetInteger) *get_integer;
   __typeof__(fmi2DoStep) *do_step;
+  __typeof__(fmi2Reset) *reset;
   __typeof__(fmi2FreeInstance) *free_instance;
 };
 
@@ -47,6 +48,7 @@ static bool load(const char *path, struct Library *library) {
       {"fmi2GetReal", &library->get_real},
       {"fmi2GetInteger", &library->get_integer},
       {"fmi2DoStep", &library->do_step},
+      {"fmi2Reset", &library->reset},
       {"fmi2FreeInstance", &library->free_instance},
   };
   void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -85,10 +87,10 @@ static bool begin(const struct Library *fmu, fmi2Component c, const struct Descr
   return true;
 }
 
-/* Runs the FMU; where it stops early or becomes too slow, the portrait ends there. */
-static struct Curve run(const struct Library *fmu, fmi2Component c, const struct Description *description) {
+/* Runs the FMU to the end; where it stops early or becomes too slow, the portrait ends there. */
+static struct Curve run(const struct Library *fmu, fmi2Component c, const struct Description *description, double end) {
   struct Curve curve = {.count = 0};
-  double values[2], step = description->stop_time / POINTS;
+  double values[2], step = end / POINTS;
   for (int i = 0; i <= POINTS; i++) {
     if (description->has_states) {
       if (i == 1 && !begin(fmu, c, description, step)) break;
@@ -129,6 +131,38 @@ static bool contains_zero(struct Range range) {
 
 static double place(struct Range range, double value) {
   return MARGIN + (SIZE - 2 * MARGIN) * (value - range.low) / (range.high - range.low);
+}
+
+/* The length of the curve as it is drawn, in widths of the picture. */
+static double drawn_length(const struct Curve *curve) {
+  if (curve->count == 0) return 0.0;
+  struct Range x = range_of(curve->x, curve->count), y = range_of(curve->y, curve->count);
+  double length = 0.0;
+  for (int i = 1; i < curve->count; i++)
+    length +=
+        hypot((curve->x[i] - curve->x[i - 1]) / (x.high - x.low), (curve->y[i] - curve->y[i - 1]) / (y.high - y.low));
+  return length;
+}
+
+/* Brings a new or reset instance to its start. False where the system cannot start at its start values. */
+static bool start(const struct Library *fmu, fmi2Component c) {
+  return fmu->setup_experiment(c, fmi2True, 1e-5, 0.0, fmi2False, 0.0) == fmi2OK &&
+         fmu->enter_initialization_mode(c) == fmi2OK && fmu->exit_initialization_mode(c) == fmi2OK;
+}
+
+/* The run, or so much of its beginning that the curve is no block of lines, as that of a fast top would be. */
+static struct Curve portrait(const struct Library *fmu, fmi2Component c, const struct Description *description) {
+  enum { LENGTH_LIMIT = 25, HALVINGS = 20 };
+  struct Curve curve = {.count = 0};
+  double end = description->stop_time;
+  if (!start(fmu, c)) return curve;
+  curve = run(fmu, c, description, end);
+  for (int i = 0; i < HALVINGS && drawn_length(&curve) > LENGTH_LIMIT; i++) {
+    if (fmu->reset(c) != fmi2OK || !start(fmu, c)) break;
+    end *= 0.5;
+    curve = run(fmu, c, description, end);
+  }
+  return curve;
 }
 
 static void draw_axes(cairo_t *cairo, struct Range x, struct Range y) {
@@ -181,15 +215,12 @@ int main(int count, char **words) {
   if (!description_read(words[2], &description) || !load(words[1], &fmu)) return 1;
   const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
   fmi2Component c = fmu.instantiate("icon", fmi2CoSimulation, description.guid, NULL, &callbacks, fmi2False, fmi2False);
-  bool ready = c != NULL && fmu.setup_experiment(c, fmi2True, 1e-5, 0.0, fmi2False, 0.0) == fmi2OK &&
-               fmu.enter_initialization_mode(c) == fmi2OK;
-  /* A system that cannot start at its start values gets a portrait of a point. */
-  bool started = ready && fmu.exit_initialization_mode(c) == fmi2OK;
   struct Curve curve = {.count = 0};
-  if (started) curve = run(&fmu, c, &description);
+  if (c != NULL) curve = portrait(&fmu, c, &description);
+  /* A system that cannot start gets a portrait of a point. */
   if (curve.count == 0) append(&curve, 0.0, 0.0);
   if (c != NULL) fmu.free_instance(c);
   description_free(&description);
-  if (!ready) fputs("icon: the FMU cannot be instantiated\n", stderr);
-  return ready && draw(&curve, words[3]) ? 0 : 1;
+  if (c == NULL) fputs("icon: the FMU cannot be instantiated\n", stderr);
+  return c != NULL && draw(&curve, words[3]) ? 0 : 1;
 }

@@ -67,6 +67,4 @@ bool solver_rests(double time, double step);
 /* What a user reads where a solver rests. */
 extern const char solver_resting[];
 
-enum { STEP_LIMIT = 10000000 }; /* steps of a solver in one communication step */
-
 #endif

@@ -17,6 +17,9 @@ enum StepResult {
 /* Steps too short to change the time are a singularity, which a solver could pass through. */
 enum { RESTING_STEP_LIMIT = 20 };
 
+/* So many steps in one communication step take a good part of a second. */
+enum { SLOW_STEPS = 50000 };
+
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
 
 static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
@@ -64,12 +67,24 @@ static bool make_ready(struct Instance *instance, const struct CommunicationStep
   return true;
 }
 
+/* A user should hear of much work long before it is too much. */
+static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step) {
+  log_message(
+      instance, STATUS_WARNING,
+      "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
+      "maxSteps of <solver> in system.xml sets",
+      lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
+      lagrangian.max_steps);
+}
+
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
   const struct Span *last = &instance->situation->last_step;
   int resting = 0;
   for (; last->end < step->end; step->count++) {
-    if (step->count == STEP_LIMIT) return "too many steps";
+    if (step->count == lagrangian.max_steps)
+      return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
+    if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);
     const char *problem = lagrangian.solver->advance(instance, step);
     if (problem != NULL) return problem;
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;

@@ -14,6 +14,8 @@ enum Tightness { IN_SUM, IN_PRODUCT, IN_POWER };
 struct Printer {
   FILE *file;
   const struct Graph *graph;
+  const struct NodeNames *names; /* NULL for none */
+  Node whole;                    /* what is printed, which is not named itself */
   long start;
   int depth;
 };
@@ -39,7 +41,29 @@ static bool is_cut(struct Printer *printer) {
   return true;
 }
 
+/* The name that stands for a node in the text, NULL for none. */
+static const char *name_of(const struct Printer *printer, Node node) {
+  const struct NodeNames *names = printer->names;
+  return names != NULL && node != printer->whole && (size_t)node < names->count ? names->of[node] : NULL;
+}
+
+/* The node with a name that is a power of the base with an exponent of which *exponent is a multiple, or the base. */
+static Node named_root(const struct Printer *printer, Node base, double *exponent) {
+  const struct Vertex *vertices = printer->graph->vertices;
+  for (size_t i = 0; printer->names != NULL && i < printer->names->named_count; i++) {
+    Node node = printer->names->named[i];
+    if (node == printer->whole || vertices[node].operation != POWER || vertices[node].left != base) continue;
+    if (!graph_is_constant(printer->graph, vertices[node].right)) continue;
+    double multiple = *exponent / graph_value(printer->graph, vertices[node].right);
+    if (multiple < 1.0 || multiple != floor(multiple)) continue;
+    *exponent = multiple;
+    return node;
+  }
+  return base;
+}
+
 static void print_power(struct Printer *printer, Node base, double exponent) {
+  base = named_root(printer, base, &exponent);
   if (exponent == 0.5) {
     fputs("sqrt(", printer->file);
     print(printer, base, IN_SUM);
@@ -71,7 +95,9 @@ static void print_factors(struct Printer *printer, double number, const struct F
 /* A product with a positive coefficient. */
 static void print_product(struct Printer *printer, double coefficient, Node base) {
   struct Factor factors[FACTOR_LIMIT];
-  int count = factors_of(printer->graph, base, factors);
+  bool named = name_of(printer, base) != NULL;
+  int count = named ? 1 : factors_of(printer->graph, base, factors);
+  if (named) factors[0] = (struct Factor){.base = base, .exponent = 1.0};
   if (count < 0) {
     const struct Vertex *vertex = &printer->graph->vertices[base];
     if (coefficient != 1.0) {
@@ -95,7 +121,7 @@ static void print_product(struct Printer *printer, double coefficient, Node base
 }
 
 static void print_term(struct Printer *printer, Node node, bool first) {
-  if (printer->graph->vertices[node].operation == ADD) {
+  if (printer->graph->vertices[node].operation == ADD && name_of(printer, node) == NULL) {
     if (is_cut(printer)) return;
     printer->depth++;
     print_term(printer, printer->graph->vertices[node].left, first);
@@ -103,8 +129,8 @@ static void print_term(struct Printer *printer, Node node, bool first) {
     printer->depth--;
     return;
   }
-  Node base;
-  double coefficient = coefficient_of(printer->graph, node, &base);
+  Node base = node;
+  double coefficient = name_of(printer, node) == NULL ? coefficient_of(printer->graph, node, &base) : 1.0;
   if (coefficient < 0) fputs(first ? "-" : " - ", printer->file);
   else if (!first) fputs(" + ", printer->file);
   if (base == ONE) print_number(printer->file, fabs(coefficient));
@@ -123,6 +149,11 @@ static void print_function(struct Printer *printer, const struct Vertex *vertex)
 
 static void print(struct Printer *printer, Node node, enum Tightness tightness) {
   if (is_cut(printer)) return;
+  const char *name = name_of(printer, node);
+  if (name != NULL) {
+    fputs(name, printer->file);
+    return;
+  }
   printer->depth++;
   const struct Vertex *vertex = &printer->graph->vertices[node];
   Node base;
@@ -143,15 +174,20 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
 }
 
 void print_expression(FILE *file, const struct Graph *graph, Node node) {
-  struct Printer printer = {.file = file, .graph = graph, .start = ftell(file)};
+  struct Printer printer = {.file = file, .graph = graph, .whole = node, .start = ftell(file)};
   print(&printer, node, IN_SUM);
 }
 
 char *expression_text(const struct Graph *graph, Node node) {
+  return expression_text_with_names(graph, node, NULL);
+}
+
+char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names) {
   char *text = NULL;
   size_t length = 0;
   FILE *file = open_text(&text, &length);
-  print_expression(file, graph, node);
+  struct Printer printer = {.file = file, .graph = graph, .names = names, .whole = node};
+  print(&printer, node, IN_SUM);
   fclose(file);
   return text;
 }

@@ -12,6 +12,17 @@ void print_expression(FILE *file, const struct Graph *graph, Node node);
 /* The same as a string, to be freed with free(). */
 char *expression_text(const struct Graph *graph, Node node);
 
+/* Names that stand for expressions: of[node] is that of a node below count, or NULL. */
+struct NodeNames {
+  const char **of;
+  size_t count;
+  Node *named; /* the nodes that have a name */
+  size_t named_count;
+};
+
+/* The same with these names for all that is inside the expression. */
+char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names);
+
 enum { NUMBER_LENGTH = 40 };
 
 /* The shortest decimal form that reads back as the same number. */

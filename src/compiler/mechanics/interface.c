@@ -96,6 +96,16 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
+/* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
+static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  bool changes = model->driven || model->linearized || graph_depends_on(graph, model->kinetic.node, TIME) ||
+                 graph_depends_on(graph, model->potential.node, TIME);
+  if (changes || (model->has_forces && !equations->has_work)) return "kinetic and potential energy";
+  return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
+                             : "kinetic and potential energy; constant";
+}
+
 static const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
   if (model->coordinates.count == 0) return NULL;
   if (model->method != NULL) return model->method;
@@ -152,7 +162,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_bodies(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
-  append_result(interface, "totalEnergy", "J", equations->total, "kinetic and potential energy");
+  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
   append_statistics(interface);
   return interface;
 }
@@ -170,6 +180,10 @@ void interface_free(struct Interface *interface) {
 
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index) {
   return interface->first[kind] + index;
+}
+
+long interface_max_steps(const struct Model *model) {
+  return isnan(model->max_steps) ? 10000000 : (long)model->max_steps;
 }
 
 double interface_tolerance(const struct Model *model) {

@@ -36,4 +36,7 @@ size_t interface_find(const struct Interface *interface, enum VariableKind kind,
 /* The relative tolerance of the solver. */
 double interface_tolerance(const struct Model *model);
 
+/* How many steps a solver may take in one communication step. */
+long interface_max_steps(const struct Model *model);
+
 #endif

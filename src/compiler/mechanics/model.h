@@ -39,6 +39,7 @@ struct Model {
   char *name, *description;
   struct Graph *graph;
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct VariableList definitions; /* what each <define> stands for, in its node */
   struct Body *bodies;
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
@@ -56,6 +57,7 @@ struct Model {
   struct LinearizationPoint point;         /* where linearized */
   const struct Method *method;             /* NULL for the default */
   double tolerance, max_step;              /* NAN where none was given; max_step in s */
+  double max_steps;                        /* in one communication step, a whole number; NAN where none was given */
   double start_time, stop_time, step_size; /* NAN where none was given */
   long solver_line;
 };

@@ -9,11 +9,31 @@
 #include "algebra/simplify.h"
 #include "memory.h"
 
+/*
+ * The names of the first definitions, but for those of mere numbers and variables, which read as well by themselves. Their
+ * expressions do not occur in linearized equations.
+ */
+static struct NodeNames definition_names(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
+  names.named = allocate(SHOWN_LIMIT, sizeof *names.named);
+  for (size_t i = 0; i < model->definitions.count && names.named_count < SHOWN_LIMIT && !model->linearized; i++) {
+    const struct Variable *definition = &model->definitions.items[i];
+    if (graph->vertices[definition->node].operation == SYMBOL || graph_is_constant(graph, definition->node) ||
+        names.of[definition->node] != NULL)
+      continue;
+    names.of[definition->node] = definition->name;
+    names.named[names.named_count++] = definition->node;
+  }
+  return names;
+}
+
 /* The expression as it is, or multiplied out where that is shorter to read. */
-static Node readable(struct Graph *graph, Node node) {
+static Node readable(struct Graph *graph, const struct NodeNames *names, Node node) {
   Node expanded = simplify_fraction(graph, node);
   if (expanded == node) return node;
-  char *text = expression_text(graph, node), *expanded_text = expression_text(graph, expanded);
+  char *text = expression_text_with_names(graph, node, names);
+  char *expanded_text = expression_text_with_names(graph, expanded, names);
   bool shorter = strlen(expanded_text) < strlen(text);
   free(text);
   free(expanded_text);
@@ -21,7 +41,8 @@ static Node readable(struct Graph *graph, Node node) {
 }
 
 /* Row i of M a, or the acceleration itself. */
-static Node inertial_side(const struct Model *model, const struct Equations *equations, size_t i) {
+static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
+                          size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
@@ -30,7 +51,7 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, model->accelerations[block->coordinates[k]]));
   }
-  return readable(graph, sum);
+  return readable(graph, names, sum);
 }
 
 static size_t at_most(size_t count, size_t limit) {
@@ -40,28 +61,33 @@ static size_t at_most(size_t count, size_t limit) {
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
   struct Graph *graph = model->graph;
   struct Summary *summary = allocate(1, sizeof *summary);
+  struct NodeNames names = definition_names(model);
   Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
-  *summary =
-      (struct Summary){.lagrangian_kinetic = readable(graph, model->kinetic.node),
-                       .kinetic = readable(graph, equations->kinetic),
-                       .potential = readable(graph, model->linearized ? equations->potential : model->potential.node),
-                       .power = readable(graph, equations->power),
-                       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
-                       .motion_count = at_most(equations->count, SHOWN_LIMIT),
-                       .output_count = at_most(model->outputs.count, SHOWN_LIMIT)};
+  *summary = (struct Summary){
+      .names = names,
+      .lagrangian_kinetic = readable(graph, &names, model->kinetic.node),
+      .kinetic = readable(graph, &names, equations->kinetic),
+      .potential = readable(graph, &names, model->linearized ? equations->potential : model->potential.node),
+      .power = readable(graph, &names, equations->power),
+      .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
+      .motion_count = at_most(equations->count, SHOWN_LIMIT),
+      .output_count = at_most(model->outputs.count, SHOWN_LIMIT)};
   summary->inertial = allocate(summary->motion_count, sizeof(Node));
   summary->right_side = allocate(summary->motion_count, sizeof(Node));
   summary->outputs = allocate(summary->output_count, sizeof(Node));
   for (size_t i = 0; i < summary->motion_count; i++) {
-    summary->inertial[i] = inertial_side(model, equations, i);
-    summary->right_side[i] = readable(graph, equations->right_side[i]);
+    summary->inertial[i] = inertial_side(model, equations, &names, i);
+    summary->right_side[i] = readable(graph, &names, equations->right_side[i]);
   }
-  for (size_t i = 0; i < summary->output_count; i++) summary->outputs[i] = readable(graph, equations->outputs[i]);
+  for (size_t i = 0; i < summary->output_count; i++)
+    summary->outputs[i] = readable(graph, &names, equations->outputs[i]);
   return summary;
 }
 
 void summary_free(struct Summary *summary) {
   if (summary == NULL) return;
+  free(summary->names.of);
+  free(summary->names.named);
   free(summary->inertial);
   free(summary->right_side);
   free(summary->outputs);

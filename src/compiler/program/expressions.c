@@ -83,9 +83,10 @@ static void create_directional(struct Expressions *expressions) {
 
 static void create_linear(struct Expressions *expressions, struct Diagnostics *diagnostics) {
   const struct Model *model = expressions->model;
-  if (!isnan(model->max_step))
+  if (!isnan(model->max_step) || !isnan(model->max_steps))
     report_error(diagnostics, model->solver_line,
-                 "the method 'exact' takes a communication step as a whole; expected no maxStep");
+                 "the method 'exact' takes a communication step as a whole; expected no maxStep%s",
+                 isnan(model->max_step) ? "s" : "");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
     report_error(diagnostics, model->solver_line,

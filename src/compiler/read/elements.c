@@ -307,7 +307,8 @@ static void read_definition(struct Reader *reader, xmlNodePtr node) {
   require_unit(reader, xmlGetLineNo(node), "the definition", value, unit);
   if (unit.known) value.dimension = unit;
   value.literal = value.literal && !unit.known;
-  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
+  if (name != NULL && scope_define(reader->scope, name, value, xmlGetLineNo(node)))
+    append_variable(&reader->model->definitions, (struct Variable){.name = copy_text(name), .node = value.node});
   free(name);
 }
 
@@ -322,6 +323,9 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
                  *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->max_step);
+  double *steps = &reader->model->max_steps;
+  if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
   free(method);
 }
 

@@ -69,7 +69,7 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
   model->name = attribute(root, "name");
   model->description = attribute(root, "description");
   model->method = NULL;
-  model->max_step = NAN;
+  model->max_step = model->max_steps = NAN;
   begin_point(model);
   for (xmlNodePtr node = root->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;

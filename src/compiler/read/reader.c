@@ -112,7 +112,7 @@ static void reserve_result_names(struct Scope *scope) {
 static struct Model *model_create(void) {
   struct Model *model = allocate(1, sizeof *model);
   model->graph = graph_create();
-  model->tolerance = model->max_step = model->start_time = model->stop_time = model->step_size = NAN;
+  model->tolerance = model->max_step = model->max_steps = model->start_time = model->stop_time = model->step_size = NAN;
   return model;
 }
 

@@ -59,7 +59,7 @@ bool bdf_configure(struct Instance *instance) {
                             "CVodeInit") &&
          set_tolerances(instance, bdf) &&
          sundials_succeeded(instance, CVodeSetUserData(bdf->cvode, instance), "CVodeSetUserData") &&
-         sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, STEP_LIMIT), "CVodeSetMaxNumSteps") &&
+         sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, lagrangian.max_steps), "CVodeSetMaxNumSteps") &&
          sundials_succeeded(instance, CVodeSetMaxHnilWarns(bdf->cvode, -1), "CVodeSetMaxHnilWarns") &&
          sundials_succeeded(instance, CVodeSetLinearSolver(bdf->cvode, bdf->linear_solver, bdf->matrix),
                             "CVodeSetLinearSolver") &&

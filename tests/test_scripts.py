@@ -1,0 +1,172 @@
+"""Scripts: words that are wrong, folders of one's own, set-up that was stopped, and two at once."""
+
+import fcntl
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import fmu
+from fmu import ROOT
+
+SIMULATE = [sys.executable, str(ROOT / "scripts" / "simulate.py")]
+
+
+@pytest.mark.parametrize("word, message", [
+    ("der(theta)=1", "'der(theta)' of SimplePendulum cannot be set; these can be: theta, omega, m, l, g"),
+    ("solverSteps=3", "'solverSteps' of SimplePendulum cannot be set"),
+    ("totalEnergy=3", "'totalEnergy' of SimplePendulum cannot be set"),
+    ("q=3", "'q' is no variable of SimplePendulum; these can be: theta"),
+])  # fmt: skip
+def test_what_cannot_be_set(word, message, tmp_path):
+    result = subprocess.run([*SIMULATE, fmu.archive("SimplePendulum"), word], capture_output=True, text=True, cwd=tmp_path)
+    assert result.returncode == 1 and message in result.stderr and "Traceback" not in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def script(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("#!/usr/bin/env bash\n" + text)
+    path.chmod(0o755)
+
+
+# Notes what was asked of it, and makes environments whose pip works.
+PYTHON = """
+echo "python $*" >>"$LOG"
+if [ "$1 $2" = "-m venv" ]; then
+  echo made >"$SIGNAL"
+  read <"$SIGNAL"
+  mkdir -p "$3/bin"
+  cp "$0" "$3/bin/python"
+fi
+"""
+
+
+class Clone:
+    """The scripts with programs in place of Python and CMake that note how they are called."""
+
+    def __init__(self, folder):
+        self.folder, self.log = folder, folder / "log"
+        shutil.copytree(ROOT / "scripts", folder / "scripts")
+        for name in ("fmu", "build"):
+            (folder / name).mkdir()
+        script(folder / "bin" / "python3", PYTHON)
+        script(folder / "bin" / "cmake", 'echo "cmake $*" >>"$LOG"\n')
+        script(folder / "bin" / "dpkg-query", "echo install ok installed\n")
+        self.signal = folder / "signal"
+        os.mkfifo(self.signal)
+        path = f"{folder / 'bin'}:{os.environ['PATH']}"
+        self.environment = {**os.environ, "PATH": path, "LOG": str(self.log), "SIGNAL": str(self.signal)}
+
+    def start(self, *words, cwd=None):
+        words = [self.folder / "scripts" / words[0], *words[1:]]
+        return subprocess.Popen(words, env=self.environment, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def run(self, *words, cwd=None):
+        process = self.start(*words, cwd=cwd)
+        output, errors = process.communicate(timeout=60)
+        return process.returncode, output + errors
+
+    def calls(self):
+        return self.log.read_text().splitlines() if self.log.exists() else []
+
+    def let_python_go(self):
+        """The environment is being made: lets that go on."""
+        self.signal.read_text()
+        self.signal.write_text("on\n")
+
+
+@pytest.fixture
+def clone(tmp_path):
+    return Clone(tmp_path / "a clone")
+
+
+def made(clone):
+    return sum("-m venv" in call for call in clone.calls())
+
+
+def test_a_setup_that_was_stopped_is_made_good(clone):
+    """Killed while the environment is made: the next one makes it anew, and the one after finds it whole."""
+    stopped = clone.start("setup", "run")
+    clone.signal.read_text()
+    stopped.kill()
+    clone.signal.write_text("on\n")
+    stopped.communicate()
+    shutil.rmtree(clone.folder / "build" / "venv")
+    script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "No module named pip" >&2\nexit 1\n')
+    next_one = clone.start("setup", "run")
+    clone.let_python_go()
+    output, errors = next_one.communicate(timeout=60)
+    assert next_one.returncode == 0, output + errors
+    assert made(clone) == 2 and "pip install" in clone.calls()[-1]
+    before = clone.calls()
+    assert clone.run("setup", "run")[0] == 0
+    assert [call for call in clone.calls()[len(before) :] if "venv" in call or "pip" in call] == ["python -c import ensurepip, venv"]
+
+
+def test_two_setups_at_once(clone):
+    first = clone.start("setup", "run")
+    clone.signal.read_text()
+    second = clone.start("setup", "run")
+    assert "scripts/setup: waiting for another one" in second.stderr.readline()
+    clone.signal.write_text("on\n")
+    assert first.wait(timeout=60) == 0 and second.wait(timeout=60) == 0
+    assert made(clone) == 1
+
+
+def test_a_build_waits_for_another_in_its_folder(clone):
+    (clone.folder / "build" / "one").mkdir()
+    with open(clone.folder / "build" / "one" / "build.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        waiting = clone.start("build", "build/one")
+        assert "scripts/build: waiting for another one, which works in build/one" in waiting.stderr.readline()
+        assert clone.run("build", "build/two")[0] == 0
+        assert clone.calls() and not any("build/one" in call for call in clone.calls())
+    assert waiting.wait(timeout=60) == 0
+    assert any("--build build/one" in call for call in clone.calls())
+
+
+@pytest.fixture
+def ready(clone):
+    """A clone that is set up."""
+    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
+    script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
+    (clone.folder / "build" / "venv" / "installed-run").write_text(stamp)
+    return clone
+
+
+def add(folder):
+    folder.mkdir(parents=True)
+    (folder / "system.xml").write_text("<system/>")
+    return folder
+
+
+@pytest.mark.parametrize("word", ["own/Bead", "own/Bead/", "own/Bead/system.xml", "own", "./own/../own"])
+def test_a_folder_of_ones_own(word, ready, tmp_path):
+    """It is found from where the command is typed, and alone is built."""
+    bead = add(tmp_path / "else where" / "own" / "Bead")
+    status, text = ready.run("run", word, "theta=1", cwd=tmp_path / "else where")
+    assert status == 0, text
+    assert any(f"-DSYSTEMS={bead}" in call for call in ready.calls())
+    assert ready.calls()[-1] == "python scripts/simulate.py build/own/fmu/Bead.fmu theta=1"
+
+
+@pytest.mark.parametrize("word", ["Pendulum", "fmu/Pendulum", "fmu/Pendulum/system.xml"])
+def test_a_system_of_the_clone(word, ready):
+    add(ready.folder / "fmu" / "Pendulum")
+    status, text = ready.run("run", word, cwd=ready.folder)
+    assert status == 0, text
+    assert not any("SYSTEMS" in call for call in ready.calls())
+    assert ready.calls()[-1] == "python scripts/simulate.py build/fmu/Pendulum.fmu"
+
+
+def test_systems_that_are_not_there(ready, tmp_path):
+    add(ready.folder / "fmu" / "Pendulum")
+    status, text = ready.run("run", "Nothing", cwd=tmp_path)
+    assert status == 1 and f"neither fmu/Nothing/system.xml nor {tmp_path}/Nothing/system.xml; the systems in fmu are: Pendulum\n" in text
+    one, two = add(tmp_path / "own" / "One"), add(tmp_path / "own" / "Two")
+    status, text = ready.run("run", "own", cwd=tmp_path)
+    assert status == 1 and f"{tmp_path}/own holds several systems; name one of them: {one} {two}\n" in text
+    assert ready.calls() == []
