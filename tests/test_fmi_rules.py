@@ -12,6 +12,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave
 
 import fmu
+from closed_forms import pendulum_angle
 from fmu import DISCARD, ERROR, OK, WARNING
 
 CATEGORIES = ["logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal", "logAll"]
@@ -113,6 +114,30 @@ def test_steps_end_where_they_say(name, open_fmu):
             time = math.nextafter(time, 10)  # a caller that rounds otherwise
     with instance.fails(ERROR, "currentCommunicationPoint"):
         instance.fmu.doStep(time + 0.1, 0.1)
+
+
+def test_states_are_those_of_the_end(name, open_fmu):
+    """Many uneven steps come to where one step does, and not to where the last but one ends."""
+    states, sizes = fmu.states_of(name), [0.003 * (1 + i % 3) for i in range(60)]
+    many, one, early = (open_fmu(name).initialize(tolerance=1e-8) for _ in range(3))
+    for size in sizes:
+        many.step(size)
+    one.step(sum(sizes))
+    early.step(sum(sizes[:-1]))
+    if not states:
+        return
+    apart = lambda other: max(abs(a - b) for a, b in zip(many.fmu.getReal(many.vr(*states)), other.fmu.getReal(other.vr(*states))))
+    assert apart(one) < 1e-6 < 1e-4 < apart(early)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear"])
+def test_every_end_is_on_the_closed_form(name, open_fmu):
+    instance = open_fmu(name).initialize(dict(theta=1.0, omega=0.0), tolerance=1e-10)
+    rate = math.sqrt(9.81)
+    for i in range(40):
+        instance.step(0.01 * (1 + i % 4))
+        angle = math.cos(rate * instance.time) if name.endswith("Linear") else pendulum_angle(1.0, rate, instance.time)
+        assert instance.get("theta") == pytest.approx(angle, abs=1e-8)
 
 
 def test_steps_past_the_end(name, open_fmu):
