@@ -113,7 +113,13 @@ def test_steps_end_where_they_say(name, open_fmu):
         if i == 100:
             time = math.nextafter(time, 10)  # a caller that rounds otherwise
     with instance.fails(ERROR, "currentCommunicationPoint"):
-        instance.fmu.doStep(time + 0.1, 0.1)
+        instance.fmu.doStep(time + 1e-5, 0.1)
+
+
+def test_step_that_is_too_short_for_the_time(name, open_fmu):
+    instance = open_fmu(name).initialize(start_time=1e9)
+    with instance.fails(ERROR, "step 1e-09 does not advance the time 1e\\+09"):
+        instance.fmu.doStep(1e9, 1e-9)
 
 
 def test_states_are_those_of_the_end(name, open_fmu):
