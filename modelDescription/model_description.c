@@ -26,12 +26,9 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   const struct Interface *interface = program->interface;
   static const char *const state_access[] = {"canGetAndSetFMUstate", "canSerializeFMUstate",
                                              "providesDirectionalDerivative"};
-  bool uses_library = method_uses_library(interface->method);
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
   write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
-  /* SUNDIALS allocates with malloc, so that these FMUs have no use for the caller's functions. */
-  if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
   xmlTextWriterEndElement(writer);
@@ -42,7 +39,6 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   /* Every system has outputs: its coordinates, or those that it names. */
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
                                     interface->output_derivative_order);
-  if (uses_library) write_attribute(writer, "canNotUseMemoryManagementFunctions", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
   xmlTextWriterEndElement(writer);

@@ -53,11 +53,10 @@ def test_no_inertia(name, parameter, open_fmu):
     values = {parameter: 0.0}
     if (name, parameter) == ("InvertedPendulumCart", "M"):
         values["theta"] = 0.0  # elsewhere M + m sin^2(theta) is not zero
-    with instance.fails(ERROR, "mass matrix|no acceleration"):
-        instance.set(values)
-        instance.fmu.enterInitializationMode()
+    instance.set(values)
+    instance.fmu.enterInitializationMode()
+    with instance.fails(ERROR, "mass matrix is singular"):
         instance.fmu.exitInitializationMode()
-        instance.step(0.1)
     assert any(parameter in text for _, _, text in instance.messages)
     works_again(instance, name)
     assert all(math.isfinite(value) for value in instance.fmu.getReal(instance.vr(*states)))

@@ -75,34 +75,6 @@ def test_ecos(name):
     np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
 
 
-WITHOUT_CALLBACKS = [
-    name for name in fmu.all_names() if fmu.description(name).coSimulation.canNotUseMemoryManagementFunctions
-]
-
-
-@pytest.mark.parametrize("name", WITHOUT_CALLBACKS)
-def test_fmuloader(name):
-    """
-    It passes NULL for the memory functions of FMUs that do not use them. (Those that it passes to others cut off
-    pointers at 32 bits, so it cannot run FMUs that use them.)
-    """
-    from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
-
-    outputs, expected = outputs_by_fmpy(name)
-    references = fmu.references(name)
-    with Fmi2Slave(fmu.archive(name), model_identifier=name) as slave:
-        slave.instantiate(name, Fmi2Type.CO_SIMULATION, guid=fmu.description(name).guid,
-                          cannot_use_memory_management_functions=True)
-        slave.setup_experiment()
-        slave.enter_initialization_mode()
-        slave.exit_initialization_mode()
-        for i in range(round(END / STEP)):
-            slave.do_step(i * STEP, STEP)
-        values = slave.get_real([references[output] for output in outputs])
-        slave.terminate()
-    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
-
-
 def test_fmu_manipulation_toolbox_finds_no_error(name):
     tool = BUILD / "venv" / "bin" / "fmutool"
     result = subprocess.run([tool, "-input", fmu.archive(name), "-check"], capture_output=True, text=True)

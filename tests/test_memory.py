@@ -1,6 +1,7 @@
 """Every FMU under sanitizers and under valgrind: no leak, no undefined behaviour, no race between threads."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -38,6 +39,48 @@ def test_life_under_sanitizers(name):
 def test_life_under_valgrind(name):
     flags = ["--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all", "-q"]
     run(["valgrind", *flags, *words_for(name, BUILD)])
+
+
+def words_for_refusals(name, build, library):
+    output = fmu.references(name)[fmu.names_of(name, "output")[0]]
+    return [build / "bin" / "out_of_memory", library, fmu.description(name).guid, str(output)]
+
+
+def test_every_allocation_is_refused(name):
+    """The caller's functions refuse each allocation in turn: a message, no leak, and the instance works after a reset."""
+    library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"
+    result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
+    assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 5
+
+
+ROW_OF_SPRINGS = """<system name="{name}">
+  <constant name="N" value="{masses}"/>
+  <for index="i" from="1" to="N"><coordinate name="q[i]" velocity="v[i]" start="0.1*i"/><particle mass="1" x="q[i]"/></for>
+  <for index="i" from="2" to="N"><potential>10*(q[i] - q[i-1])^2 + (q[i] - q[i-1])^4</potential></for>
+  <potential>q[1]^2</potential>
+  <solver method="{method}"/>
+</system>"""
+# How many masses and, in the code, the solver: KLU allocates during steps, too.
+WITH_SUNDIALS = {"erk": (2, "solver_erk"), "bdf": (2, "solver_bdf"), "bdf_sparse": (40, "solver_bdf_sparse")}
+
+
+@pytest.fixture(scope="module")
+def rows_of_springs():
+    texts = {
+        f"Row_{solver}": ROW_OF_SPRINGS.format(name=f"Row_{solver}", masses=masses, method=solver.removesuffix("_sparse"))
+        for solver, (masses, _) in WITH_SUNDIALS.items()
+    }
+    fmu.build_systems("sanitized/rows-of-springs", texts, "-DSANITIZE=address,undefined")
+
+
+@pytest.mark.parametrize("solver", WITH_SUNDIALS)
+def test_every_allocation_of_sundials_is_refused(solver, rows_of_springs):
+    name = f"Row_{solver}"
+    folder = SANITIZED / "rows-of-springs" / "systems" / name
+    assert f"&{WITH_SUNDIALS[solver][1]}," in (folder / "system.c").read_text()
+    library = folder / "binaries" / "linux64" / f"{name}.so"
+    result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
+    assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 60
 
 
 @pytest.mark.parametrize("system", sorted((ROOT / "fmu").glob("*/system.xml")), ids=lambda path: path.parent.name)

@@ -1,13 +1,15 @@
-"""Random sequences of calls (random_calls.py) on FMUs built with AddressSanitizer and UndefinedBehaviorSanitizer."""
+"""Random calls, right ones (random_calls.py) and attacks (c/attack.c), on FMUs built with AddressSanitizer and UBSan."""
 
 import os
 import re
 import subprocess
 import sys
 
+import fmu
 from fmu import BUILD, ROOT
 
 CALLS = 20_000
+ATTACKS = 20_000
 
 
 def test_random_calls_under_sanitizers():
@@ -28,3 +30,16 @@ def test_random_calls_under_sanitizers():
     assert "runtime error" not in text and "ERROR: AddressSanitizer" not in text, text[-5000:]
     leaks = [leak for leak in text.split("\n\n") if " leak of " in leak and "/binaries/linux64/" in leak]
     assert not leaks, leaks[0]
+
+
+def test_attack_under_sanitizers(name):
+    """NULL, unknown references, extreme numbers, wrong states, refused memory, damaged and forged saved states."""
+    build, description = BUILD / "sanitized", fmu.description(name)
+    library = build / "systems" / name / "binaries" / "linux64" / f"{name}.so"
+    counts = [len(description.modelVariables), len(fmu.states_of(name)), ATTACKS]
+    words = [build / "bin" / "attack", library, description.guid, *map(str, counts)]
+    environment = os.environ | {"UBSAN_OPTIONS": "print_stacktrace=1"}
+    result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=300)
+    assert result.returncode == 0, result.stderr
+    steps, restored = map(int, re.findall(r"\d+", result.stdout))
+    assert steps > ATTACKS / 10 and restored > ATTACKS / 50

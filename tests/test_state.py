@@ -12,23 +12,31 @@ import pytest
 from fmpy.fmi2 import FMU2Model
 
 import fmu
+from closed_forms import pendulum_angle
 from fmu import ERROR, ROOT
 
 # Those of tests/systems have the method erk.
 ONE_STEP = [name for name in [*fmu.all_names(), "BeadOnHoop", "TwoCarts"] if name != "ElasticPendulum"]
 
 
+def change(instance, name, i):
+    """What an importer changes before step i: an input, its derivative, a parameter."""
+    inputs, parameter = fmu.names_of(name, "input"), fmu.names_of(name, "parameter")[0]
+    if inputs and i % 3 == 0:
+        instance.set({inputs[0]: np.sin(i) / 10})
+    if inputs and instance.description.coSimulation.canInterpolateInputs and i % 4 == 1:
+        instance.fmu.setRealInputDerivatives(instance.vr(inputs[0]), [1], [0.3])
+    if i % 5 == 3:
+        instance.set({parameter: instance.get(parameter) * (1.1 if i % 2 else 0.9)})
+
+
 def drive(instance, name, steps):
-    """Uneven steps with changing inputs; returns what can be read at each."""
+    """Uneven steps with changes; returns what can be read at each."""
     rows = []
-    inputs = fmu.names_of(name, "input")
     # Statistics count what was done, also in the past that was left.
     names = [v.name for v in instance.description.modelVariables if v.type == "Real"]
     for i in range(steps):
-        if inputs and i % 3 == 0:
-            instance.set({inputs[0]: np.sin(i) / 10})
-        if inputs and instance.description.coSimulation.canInterpolateInputs and i % 4 == 1:
-            instance.fmu.setRealInputDerivatives(instance.vr(inputs[0]), [1], [0.3])
+        change(instance, name, i)
         instance.step(0.013 * (1 + i % 3))
         rows.append(instance.fmu.getReal(instance.vr(*names)))
     return rows
@@ -96,8 +104,11 @@ def test_going_on_in_another_process(name, open_fmu):
 
 
 def test_state_has_everything(open_fmu):
-    """Rule 10: parameters, inputs and the status go back too, also out of an error."""
-    instance = open_fmu("DampedPendulum").initialize(dict(b=0.3, tau=0.1))
+    """Rule 10: parameters, inputs and the status go back too, also out of an error, and the motion goes on as if never left."""
+    values = dict(b=0.3, tau=0.1)
+    stayed, instance = (open_fmu("DampedPendulum").initialize(values) for _ in range(2))
+    stayed.step(0.1)
+    stayed.step(0.1)
     instance.step(0.1)
     state = instance.fmu.getFMUstate()
     before = instance.get("theta", "omega", "b", "tau", "nonConservativeWork")
@@ -109,6 +120,28 @@ def test_state_has_everything(open_fmu):
     assert instance.get("theta", "omega", "b", "tau", "nonConservativeWork") == before
     instance.time = 0.1
     instance.step(0.1)
+    names = [v.name for v in instance.description.modelVariables if v.type == "Real"]
+    assert instance.get(*names) == stayed.get(*names)
+    instance.free_state(state)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear"])
+def test_restored_parameters_count(name, open_fmu):
+    """What was computed of the parameters goes back too, before a step and in it: der(omega) and the closed forms."""
+    instance = open_fmu(name).initialize(dict(theta=0.5, omega=0.0, l=2.0), tolerance=1e-10)
+    state = instance.fmu.getFMUstate()
+    linear = name.endswith("Linear")
+    instance.set(l=0.5)
+    assert instance.get("der(omega)") == pytest.approx(-9.81 / 0.5 * (0.5 if linear else np.sin(0.5)), rel=1e-15)
+    instance.step(0.3)
+    instance.get("der(omega)")
+    instance.fmu.setFMUstate(state)
+    assert instance.get("der(omega)") == pytest.approx(-9.81 / 2 * (0.5 if linear else np.sin(0.5)), rel=1e-15)
+    instance.time, rate = 0.0, np.sqrt(9.81 / 2)
+    for i in range(1, 10):
+        instance.step(0.2)
+        angle = 0.5 * np.cos(rate * 0.2 * i) if linear else pendulum_angle(0.5, rate, 0.2 * i)
+        assert instance.get("theta") == pytest.approx(angle, abs=1e-8)
     instance.free_state(state)
 
 
@@ -326,12 +359,8 @@ def test_instances_are_independent(name, open_fmu):
     second.initialize({parameter: 1.9})
     interleaved = []
     names = [v.name for v in first.description.modelVariables if v.type == "Real"]
-    inputs = fmu.names_of(name, "input")
     for i in range(6):
-        if inputs and i % 3 == 0:
-            first.set({inputs[0]: np.sin(i) / 10})
-        if inputs and first.description.coSimulation.canInterpolateInputs and i % 4 == 1:
-            first.fmu.setRealInputDerivatives(first.vr(inputs[0]), [1], [0.3])
+        change(first, name, i)
         second.step(0.01)
         first.step(0.013 * (1 + i % 3))
         second.fmu.getReal(second.vr(*names))

@@ -19,8 +19,6 @@ struct CommunicationStep {
 struct Solver {
   const char *name;   /* in messages */
   const char *remedy; /* the end of the message that it stopped; NULL for the usual one */
-  /* The library behind the solver has an allocator of its own, and no use for the caller's. */
-  bool allocates_by_itself;
   /* Every communication step does, so that it depends on nothing that the solver keeps. */
   bool starts_anew;
   /* Bytes that the solver keeps in the situation, at instance->saved; NULL for none. */
@@ -30,6 +28,11 @@ struct Solver {
    * it keeps nothing.
    */
   bool (*could_save)(const struct Situation *situation, const void *saved);
+  /*
+   * Does a task in which the other functions but destroy() may be called. False where there was no memory: the task was
+   * left halfway, and solver_memory is NULL. NULL for a solver that needs nothing around it.
+   */
+  bool (*run)(struct Instance *instance, void (*task)(void *argument), void *argument);
   /* Allocates instance->solver_memory. False after logging where that fails. */
   bool (*create)(struct Instance *instance);
   void (*destroy)(struct Instance *instance);

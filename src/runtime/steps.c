@@ -126,6 +126,28 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
 }
 
+struct Advance {
+  struct Instance *instance;
+  struct CommunicationStep *step;
+  double *reached;
+  enum StepResult result;
+};
+
+static void do_advance(void *argument) {
+  struct Advance *task = argument;
+  task->result = advance_to_end(task->instance, task->step, task->reached);
+}
+
+/* Advances inside of what the solver needs around it. */
+static enum StepResult run(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+  const struct Solver *solver = lagrangian.solver;
+  if (solver == NULL || solver->run == NULL) return advance_to_end(instance, step, reached);
+  struct Advance task = {.instance = instance, .step = step, .reached = reached};
+  if (solver->run(instance, do_advance, &task)) return task.result;
+  solver_lacks_memory(instance);
+  return STEP_FAILED;
+}
+
 /* The polynomials of the inputs, continued from the end of the step. */
 static void advance_inputs(struct Instance *instance, double end) {
   if (!instance->situation->input_derivatives_set) return;
@@ -188,7 +210,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
-  enum StepResult result = advance_to_end(instance, &step, &reached);
+  enum StepResult result = run(instance, &step, &reached);
   if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
   advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;

@@ -1,12 +1,10 @@
 /* Creation and end of an instance, and its messages to the caller's logger (sections 2.1.4 and 2.1.5). */
 #include "fmi2_component.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
 #include "fmi2_life_cycle.h"
-#include "solver.h"
 
 enum Category { CATEGORY_EVENTS, CATEGORY_WARNING, CATEGORY_DISCARD, CATEGORY_ERROR, CATEGORY_FATAL, CATEGORY_ALL };
 
@@ -98,10 +96,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                                   .name = instanceName != NULL ? instanceName : "",
                                   .categories = ALL_CATEGORIES};
   struct Log log = {.write = send, .receiver = &description, .wanted = wanted_statuses(&description)};
-  /* Where canNotUseMemoryManagementFunctions is true, the caller's functions are ignored, and may be NULL. */
-  bool by_itself = lagrangian.solver != NULL && lagrangian.solver->allocates_by_itself;
-  struct Allocator memory = {calloc, free};
-  if (!by_itself) memory = (struct Allocator){functions->allocateMemory, functions->freeMemory};
+  struct Allocator memory = {functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
   if (!loggingOn) description.categories = CATEGORIES_WITHOUT_DEBUGGING;
   enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;

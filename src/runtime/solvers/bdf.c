@@ -17,8 +17,7 @@ static bool configure(struct Instance *instance) {
   sunindextype n = (sunindextype)lagrangian.state_count;
   bdf->fill = fill;
   bdf->matrix = SUNDenseMatrix(n, n, bdf->sundials.context);
-  if (bdf->matrix != NULL)
-    bdf->linear_solver = SUNLinSol_Dense(bdf->sundials.state, bdf->matrix, bdf->sundials.context);
+  bdf->linear_solver = SUNLinSol_Dense(bdf->sundials.state, bdf->matrix, bdf->sundials.context);
   return bdf_configure(instance);
 }
 
@@ -27,9 +26,9 @@ static bool create(struct Instance *instance) {
 }
 
 const struct Solver solver_bdf = {.name = "CVODE",
-                                  .allocates_by_itself = true,
+                                  .run = sundials_run,
                                   .create = create,
-                                  .destroy = bdf_destroy,
+                                  .destroy = sundials_destroy,
                                   .restart = bdf_restart,
                                   .advance = bdf_advance,
                                   .interpolate = bdf_interpolate};

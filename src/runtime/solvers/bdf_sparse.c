@@ -10,12 +10,6 @@ struct SparseBdf {
   sunindextype *start, *row, *place;
 };
 
-static void destroy(struct Instance *instance) {
-  struct SparseBdf *sparse = instance->solver_memory;
-  if (sparse->start != NULL) instance->memory.free(sparse->start);
-  bdf_destroy(instance);
-}
-
 /* Merges the diagonal into the pattern of the Jacobian. */
 static void add_diagonal(struct SparseBdf *sparse) {
   const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
@@ -51,15 +45,14 @@ static bool configure(struct Instance *instance) {
   struct Bdf *bdf = &sparse->bdf;
   SUNContext context = bdf->sundials.context;
   size_t states = lagrangian.state_count, elements = lagrangian.jacobian_pattern.count;
-  sparse->start = instance->memory.allocate(states + 1 + (elements + states) + elements, sizeof *sparse->start);
-  if (sparse->start == NULL) return solver_lacks_memory(instance);
+  sparse->start = sundials_allocate(states + 1 + (elements + states) + elements, sizeof *sparse->start);
   sparse->row = sparse->start + states + 1;
   sparse->place = sparse->row + elements + states;
   add_diagonal(sparse);
   sunindextype n = (sunindextype)states;
   bdf->fill = fill;
   bdf->matrix = SUNSparseMatrix(n, n, sparse->start[states], CSC_MAT, context);
-  if (bdf->matrix != NULL) bdf->linear_solver = SUNLinSol_KLU(bdf->sundials.state, bdf->matrix, context);
+  bdf->linear_solver = SUNLinSol_KLU(bdf->sundials.state, bdf->matrix, context);
   return bdf_configure(instance);
 }
 
@@ -68,9 +61,9 @@ static bool create(struct Instance *instance) {
 }
 
 const struct Solver solver_bdf_sparse = {.name = "CVODE with KLU",
-                                         .allocates_by_itself = true,
+                                         .run = sundials_run,
                                          .create = create,
-                                         .destroy = destroy,
+                                         .destroy = sundials_destroy,
                                          .restart = bdf_restart,
                                          .advance = bdf_advance,
                                          .interpolate = bdf_interpolate};

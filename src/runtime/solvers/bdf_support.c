@@ -31,15 +31,6 @@ static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatri
   return 0;
 }
 
-void bdf_destroy(struct Instance *instance) {
-  struct Bdf *bdf = instance->solver_memory;
-  if (bdf->cvode != NULL) CVodeFree(&bdf->cvode);
-  if (bdf->linear_solver != NULL) SUNLinSolFree(bdf->linear_solver);
-  if (bdf->matrix != NULL) SUNMatDestroy(bdf->matrix);
-  if (bdf->jacobian != NULL) instance->memory.free(bdf->jacobian);
-  sundials_destroy(instance);
-}
-
 static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
   return sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->sundials.relative, bdf->sundials.tolerance),
                             "CVodeSVtolerances");
@@ -47,12 +38,12 @@ static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
 
 bool bdf_configure(struct Instance *instance) {
   struct Bdf *bdf = instance->solver_memory;
-  if (bdf->matrix == NULL || bdf->linear_solver == NULL) return solver_lacks_memory(instance);
+  if (bdf->matrix == NULL || bdf->linear_solver == NULL) return false;
   sundials_load(instance, safety);
-  bdf->jacobian = instance->memory.allocate(lagrangian.jacobian_pattern.count, sizeof *bdf->jacobian);
+  bdf->jacobian = sundials_allocate(lagrangian.jacobian_pattern.count, sizeof *bdf->jacobian);
   bdf->cvode = CVodeCreate(CV_BDF, bdf->sundials.context);
-  if (bdf->jacobian == NULL || bdf->cvode == NULL) return solver_lacks_memory(instance);
-  return sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
+  return bdf->cvode != NULL &&
+         sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
                             "CVodeSetErrHandlerFn") &&
          sundials_succeeded(instance,
                             CVodeInit(bdf->cvode, sundials_right_side, instance->situation->time, bdf->sundials.state),

@@ -17,11 +17,10 @@ struct Bdf {
   void (*fill)(const struct Bdf *bdf, SUNMatrix matrix);
 };
 
-/* Configures CVODE with matrix, linear_solver and fill, which the caller has set; false where one is NULL. */
+/* Configures CVODE with matrix, linear_solver and fill, which the caller has set; false where that fails. */
 bool bdf_configure(struct Instance *instance);
 
 /* What the descriptors share. */
-void bdf_destroy(struct Instance *instance);
 bool bdf_restart(struct Instance *instance, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);

@@ -20,21 +20,13 @@ struct Erk {
   void *arkode;
 };
 
-static void destroy(struct Instance *instance) {
-  struct Erk *erk = instance->solver_memory;
-  if (erk->arkode != NULL) ERKStepFree(&erk->arkode);
-  if (erk->before != NULL) N_VDestroy(erk->before);
-  if (erk->rate != NULL) N_VDestroy(erk->rate);
-  sundials_destroy(instance);
-}
-
 static bool configure(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
   SUNContext context = erk->sundials.context;
   erk->before = N_VClone(erk->sundials.state);
   erk->rate = N_VClone(erk->sundials.state);
   erk->arkode = ERKStepCreate(sundials_right_side, instance->situation->time, erk->sundials.state, context);
-  return erk->before != NULL && erk->rate != NULL && erk->arkode != NULL &&
+  return erk->arkode != NULL &&
          sundials_succeeded(instance, ERKStepSetErrHandlerFn(erk->arkode, sundials_ignore_error, NULL),
                             "ERKStepSetErrHandlerFn") &&
          sundials_succeeded(instance, ERKStepSetUserData(erk->arkode, instance), "ERKStepSetUserData") &&
@@ -148,10 +140,10 @@ static bool interpolate(struct Instance *instance, double time, double *state) {
 }
 
 const struct Solver solver_erk = {.name = "ERKStep",
-                                  .allocates_by_itself = true,
                                   .starts_anew = true,
+                                  .run = sundials_run,
                                   .create = create,
-                                  .destroy = destroy,
+                                  .destroy = sundials_destroy,
                                   .restart = restart,
                                   .advance = advance,
                                   .interpolate = interpolate};

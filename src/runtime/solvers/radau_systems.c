@@ -75,7 +75,7 @@ static double size_of(struct Complex a) {
 }
 
 /* Gauss's elimination with row pivots. False where the matrix is singular. */
-static bool factor(size_t n, struct Complex *matrix, size_t *pivots) {
+static bool eliminate(size_t n, struct Complex *matrix, size_t *pivots) {
   for (size_t k = 0; k < n; k++) {
     size_t best = k;
     for (size_t i = k + 1; i < n; i++)
@@ -117,7 +117,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
   for (int j = 0; j <= method->stages / 2; j++) {
     systems->mu[j] = (struct Complex){method->value_real[j] / step, method->value_imaginary[j] / step};
     fill(systems, systems->mu[j], systems->factors[j]);
-    if (!factor(n, systems->factors[j], systems->pivots[j])) return false;
+    if (!eliminate(n, systems->factors[j], systems->pivots[j])) return false;
   }
   return true;
 }

@@ -6,43 +6,20 @@
 
 #include "first_terms.h"
 
-static bool allocate(struct Instance *instance, struct Sundials *sundials) {
+bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(struct Instance *instance)) {
   sunindextype states = (sunindextype)lagrangian.state_count;
+  struct Sundials *sundials = instance->solver_memory = sundials_allocate(1, size);
   if (SUNContext_Create(NULL, &sundials->context) == 0) {
     sundials->state = N_VNew_Serial(states, sundials->context);
     sundials->inside = N_VNew_Serial(states, sundials->context);
     sundials->tolerance = N_VNew_Serial(states, sundials->context);
-  }
-  size_t rows = first_terms_rows();
-  bool limits = rows > 0;
-  if (limits) sundials->series = instance->memory.allocate(rows, sizeof(Series));
-  if (sundials->state != NULL && sundials->inside != NULL && sundials->tolerance != NULL &&
-      (!limits || sundials->series != NULL))
-    return true;
-  return solver_lacks_memory(instance);
-}
-
-bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(struct Instance *instance)) {
-  struct Sundials *sundials = instance->memory.allocate(1, size);
-  if (sundials == NULL) return solver_lacks_memory(instance);
-  instance->solver_memory = sundials;
-  if (allocate(instance, sundials)) {
+    size_t rows = first_terms_rows();
+    if (rows > 0) sundials->series = sundials_allocate(rows, sizeof(Series));
     memcpy(N_VGetArrayPointer(sundials->state), instance->state, lagrangian.state_count * sizeof(double));
     if (configure(instance)) return true;
   }
-  lagrangian.solver->destroy(instance);
-  return false;
-}
-
-void sundials_destroy(struct Instance *instance) {
-  struct Sundials *sundials = instance->solver_memory;
-  if (sundials->series != NULL) instance->memory.free(sundials->series);
-  if (sundials->state != NULL) N_VDestroy(sundials->state);
-  if (sundials->inside != NULL) N_VDestroy(sundials->inside);
-  if (sundials->tolerance != NULL) N_VDestroy(sundials->tolerance);
-  if (sundials->context != NULL) SUNContext_Free(&sundials->context);
-  instance->memory.free(sundials);
   instance->solver_memory = NULL;
+  return false;
 }
 
 void sundials_load(const struct Instance *instance, double safety) {

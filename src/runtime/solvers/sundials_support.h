@@ -6,9 +6,11 @@
 #include <sundials/sundials_context.h>
 
 #include "solver.h"
+#include "sundials_memory.h"
 
 /* The memory of each solver begins with this. */
 struct Sundials {
+  struct SundialsMemory memory;
   SUNContext context;
   N_Vector state;     /* at the end of the last step */
   N_Vector inside;    /* workspace: a state in the last step */
@@ -17,14 +19,8 @@ struct Sundials {
   Series *series;     /* of the state, the inputs and the workspace; NULL where nothing limits a step */
 };
 
-/*
- * Allocates solver_memory of this size and lets the solver configure itself. False, and nothing is allocated, after
- * logging where that fails.
- */
+/* Allocates solver_memory of this size and lets the solver configure itself; false after logging where that fails. */
 bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(struct Instance *instance));
-
-/* Frees what sundials_create() has allocated; a solver frees its own share before. */
-void sundials_destroy(struct Instance *instance);
 
 /* Takes over the state and the tolerance of the situation, this share of it: local errors add up over a simulation. */
 void sundials_load(const struct Instance *instance, double safety);

@@ -1,0 +1,58 @@
+"""Small faults, each with the tests that see it: (file, what stands there once, what is planted, words for pytest or ctest)."""
+
+PENDULUM = "SimplePendulum and not Linear"
+LINEAR = "SimplePendulumLinear"
+
+
+def pytest(module, keyword):
+    return ["pytest", f"tests/{module}.py", "-k", keyword]
+
+
+def ctest(name):
+    return ["ctest", name]
+
+
+FAULTS = [
+    # runtime
+    ("src/runtime/snapshot.c", "instance->prepared_is_stale = instance->solver_is_stale = true;", "instance->solver_is_stale = true;",
+     pytest("test_state", f"restored_parameters and {PENDULUM}")),
+    ("src/runtime/values.c", "if (variable->kind == VARIABLE_PARAMETER) instance->prepared_is_stale = true;", "",
+     pytest("test_state", f"restored_parameters and {PENDULUM}")),
+    ("src/runtime/values.c", "  *target = value;\n  instance->situation->changed = 1;", "  *target = value;",
+     pytest("test_state", "state_has_everything or restored_parameters")),
+    ("src/runtime/values.c", "value < variable->minimum || value > variable->maximum", "value > variable->maximum",
+     pytest("test_bad_values", "SimplePendulum")),
+    ("src/runtime/steps.c", "fabs(time - situation->time) > rounding", "fabs(time - situation->time) > 0.5 * size",
+     pytest("test_fmi_rules", "steps_end_where_they_say and DampedPendulum")),
+    ("src/runtime/steps.c", "if (time + size <= time)", "if (time + size < time)", pytest("test_fmi_rules", "too_short_for_the_time and DampedPendulum")),
+    ("src/runtime/steps.c", "situation->last_step = (struct Span){step->start, step->start};", "situation->last_step.end = step->start;",
+     pytest("test_fmi_rules", "on_the_closed_form or states_are_those_of_the_end")),
+    ("src/runtime/log.c", "  instance->situation->mode = MODE_ERROR;\n", "", pytest("test_life_cycle", "SimplePendulum or error")),
+    ("src/runtime/fmi2/fmi2_life_cycle.c", "[FUNCTION_TERMINATE] = {FOR_BOTH, EXCHANGE | STEPS}", "[FUNCTION_TERMINATE] = {FOR_BOTH, ALL}",
+     pytest("test_life_cycle", "")),
+    ("src/runtime/evaluate.c", "s / 2 * (d[n] + s / 3 * d[2 * n]))", "s * (d[n] + s / 3 * d[2 * n]))",
+     pytest("test_output_derivatives", "DampedPendulum")),
+    ("src/runtime/output_derivatives.c", "for (int k = 2; k <= order; k++) derivative *= k;", "",
+     pytest("test_output_derivatives", "DampedPendulum or SimplePendulum")),
+    # solvers
+    ("src/runtime/solvers/exact.c", " && memcmp(exact->parameter, instance->parameter, bytes) == 0", "",
+     pytest("test_state", f"restored_parameters and {LINEAR}")),
+    ("src/runtime/solvers/exact.c", "(identity[i] + identity[j]) * sum[i * n + j]", "identity[i] * sum[i * n + j]",
+     pytest("test_state", f"restored_parameters and {LINEAR}")),
+    ("src/runtime/solvers/taylor.c", "taylor->x[i][0] = instance->state[i];", "taylor->x[i][0] += 0.0;",
+     pytest("test_fmi_rules", f"on_the_closed_form and {PENDULUM}")),
+    ("src/runtime/solvers/taylor.c", "  taylor->saved->reach = 0.0;\n  taylor->is_measured = false;", "  taylor->is_measured = false;",
+     pytest("test_state", f"restored_parameters and {PENDULUM}")),
+    ("src/runtime/solvers/sundials_memory.c", "if (block->next != NULL) block->next->previous = block->previous;", "",
+     pytest("test_bad_values", "ElasticPendulum")),
+    # compiler
+    ("src/compiler/mechanics/linearize.c", "change_of(expansion, slopes.values[i], 0.5)", "change_of(expansion, slopes.values[i], 1.0)",
+     pytest("test_derivation", f"energies and {LINEAR}")),
+    ("src/compiler/algebra/units.c", '{"Pa", {[KILOGRAM] = 1, [METRE] = -1, [SECOND] = -2}}', '{"Pa", {[KILOGRAM] = 1, [METRE] = 1, [SECOND] = -2}}',
+     ctest("test_units")),
+    ("src/compiler/algebra/units.c", "fabs(first.exponent[i] - second.exponent[i]) > 1e-9", "fabs(first.exponent[i] - second.exponent[i]) > 1.5",
+     pytest("test_bad_systems", "test_errors or unit")),
+    ("src/compiler/algebra/simplify.c", "bool is_even = fmod(exponent, 2.0) == 0.0;", "bool is_even = true;", ctest("test_simplify")),
+    ("src/compiler/algebra/simplify.c", "  if (n == 0.0) return ONE;\n", "", ctest("test_simplify")),
+    ("src/compiler/algebra/simplify.c", "  if (coefficient == 0.0) return ZERO;\n", "", ctest("test_simplify")),
+]

@@ -1,0 +1,81 @@
+/*
+ * lagc on any bytes, for libFuzzer (scripts/fuzz): it ends with files or with messages, and neither crashes, nor leaks,
+ * nor works for long.
+ */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <libxml/tree.h>
+
+#include "documentation.h"
+#include "mechanics/lagrange.h"
+#include "mechanics/linearize.h"
+#include "memory.h"
+#include "model_description.h"
+#include "program/program.h"
+#include "read/reader.h"
+#include "write/code.h"
+
+int LLVMFuzzerInitialize(int *count, char ***words);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void write_texts(const struct Program *program, const struct Summary *summary) {
+  char *code = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&code, &length);
+  code_write(file, program);
+  fclose(file);
+  xmlBufferPtr buffer = xmlBufferCreate();
+  if (!model_description_write(buffer, program, "") || !documentation_write(buffer, program, summary)) abort();
+  xmlBufferFree(buffer);
+  free(code);
+}
+
+static void compile(const struct Model *model, const struct Equations *equations, struct Diagnostics *diagnostics) {
+  struct Interface *interface = interface_create(model, equations);
+  struct Summary *summary = summary_create(model, equations);
+  struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
+  struct Program *program = expressions != NULL ? program_create(expressions, (enum CodeForm){0}) : NULL;
+  if (program != NULL) write_texts(program, summary);
+  program_free(program);
+  expressions_free(expressions);
+  summary_free(summary);
+  interface_free(interface);
+}
+
+static void compile_file(const char *path) {
+  struct Diagnostics diagnostics = {.file = path};
+  struct ReaderOptions options = {0};
+  struct Model *model = model_read(path, &options, &diagnostics);
+  if ((model == NULL) != (diagnostics.errors > 0)) abort();
+  struct Equations *equations = model != NULL ? equations_derive(model, &diagnostics) : NULL;
+  if (equations != NULL && model->linearized) {
+    struct Equations *linear = linearize(model, equations, &diagnostics);
+    equations_free(equations);
+    equations = linear;
+  }
+  if (equations != NULL) equations_check_finite(model, equations, &diagnostics);
+  if (diagnostics.errors == 0) compile(model, equations, &diagnostics);
+  equations_free(equations);
+  model_free(model);
+}
+
+int LLVMFuzzerInitialize(int *count, char ***words) {
+  (void)count;
+  (void)words;
+  stderr = fopen("/dev/null", "w"); /* the sanitizers write to the descriptor, and are still heard */
+  return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  int file = memfd_create("system.xml", 0);
+  char path[64];
+  if (file < 0 || write(file, data, size) != (ssize_t)size) abort();
+  snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+  compile_file(path);
+  close(file);
+  return 0;
+}
