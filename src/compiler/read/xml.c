@@ -39,9 +39,36 @@ static void validate(xmlDocPtr document, struct Diagnostics *diagnostics) {
   xmlSchemaFreeParserCtxt(parser);
 }
 
+/*
+ * Ends the reading at a document type declaration, with which a short file can stand for one of any length. libxml2 hands
+ * its parser on as the first argument.
+ */
+static void refuse_document_type(void *context, const xmlChar *name, const xmlChar *external_id,
+                                 const xmlChar *system_id) {
+  (void)name, (void)external_id, (void)system_id;
+  xmlParserCtxtPtr parser = context;
+  report_error(parser->_private, parser->input->line,
+               "<!DOCTYPE ...> and entities are not read; expected the file without them, and <constant>, <define> or "
+               "<for> for what repeats");
+  xmlStopParser(parser);
+}
+
+static xmlDocPtr parse(const char *path, struct Diagnostics *diagnostics) {
+  xmlParserCtxtPtr parser = xmlNewParserCtxt();
+  if (parser == NULL) return NULL;
+  parser->_private = diagnostics;
+  parser->sax->internalSubset = refuse_document_type;
+  int errors = diagnostics->errors;
+  xmlDocPtr document = xmlCtxtReadFile(parser, path, NULL, XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
+  xmlFreeParserCtxt(parser);
+  if (diagnostics->errors == errors) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
+
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
   xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
-  xmlDocPtr document = xmlReadFile(path, NULL, XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
+  xmlDocPtr document = parse(path, diagnostics);
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
   if (document != NULL) validate(document, diagnostics);
