@@ -13,10 +13,16 @@ static struct Polynomial with_capacity(size_t count) {
   return (struct Polynomial){.terms = allocate(count, sizeof(struct Monomial))};
 }
 
+/* A coefficient that overflows or loses digits at the lower end of the numbers would give another value. */
+static void set_coefficient(struct Polynomial *p, size_t term, double coefficient) {
+  p->terms[term].coefficient = coefficient;
+  p->overflow = p->overflow || !isnormal(coefficient);
+}
+
 struct Polynomial polynomial_constant(double value) {
   struct Polynomial p = with_capacity(1);
-  p.terms[0].coefficient = value;
   p.count = value != 0.0;
+  if (p.count > 0) set_coefficient(&p, 0, value);
   return p;
 }
 
@@ -56,15 +62,17 @@ struct Polynomial polynomial_add(const struct Polynomial *a, const struct Polyno
     }
     i += order >= 0;
     j += order <= 0;
-    if (term.coefficient != 0.0) sum.terms[sum.count++] = term;
+    if (term.coefficient == 0.0) continue;
+    sum.terms[sum.count] = term;
+    set_coefficient(&sum, sum.count++, term.coefficient);
   }
-  sum.overflow = a->overflow || b->overflow || sum.count > MONOMIAL_LIMIT;
+  sum.overflow = sum.overflow || a->overflow || b->overflow || sum.count > MONOMIAL_LIMIT;
   return sum;
 }
 
 void polynomial_scale(struct Polynomial *p, double coefficient, const uint8_t exponent[ATOM_LIMIT]) {
   for (size_t i = 0; i < p->count; i++) {
-    p->terms[i].coefficient *= coefficient;
+    set_coefficient(p, i, p->terms[i].coefficient * coefficient);
     for (int atom = 0; atom < ATOM_LIMIT; atom++) {
       if (p->terms[i].exponent[atom] + exponent[atom] > UINT8_MAX) p->overflow = true;
       p->terms[i].exponent[atom] = (uint8_t)(p->terms[i].exponent[atom] + exponent[atom]);
@@ -74,7 +82,7 @@ void polynomial_scale(struct Polynomial *p, double coefficient, const uint8_t ex
 
 void polynomial_divide_by(struct Polynomial *p, double divisor, const uint8_t exponent[ATOM_LIMIT]) {
   polynomial_scale(p, 1.0, exponent);
-  for (size_t i = 0; i < p->count; i++) p->terms[i].coefficient /= divisor;
+  for (size_t i = 0; i < p->count; i++) set_coefficient(p, i, p->terms[i].coefficient / divisor);
 }
 
 struct Polynomial polynomial_multiply(const struct Polynomial *a, const struct Polynomial *b) {
@@ -108,7 +116,7 @@ bool polynomial_divide(const struct Polynomial *a, const struct Polynomial *b, s
     struct Monomial lead;
     if (!divide_monomial(&rest.terms[0], &b->terms[0], &lead)) break;
     struct Polynomial part = polynomial_copy(b), one = {.terms = &lead, .count = 1};
-    polynomial_scale(&part, lead.coefficient, lead.exponent);
+    polynomial_scale(&part, lead.coefficient, lead.exponent); /* overflows where lead is no normal number */
     struct Polynomial smaller = polynomial_add(&rest, &part, -1.0), sum = polynomial_add(quotient, &one, 1.0);
     polynomial_free(&part);
     polynomial_free(&rest);

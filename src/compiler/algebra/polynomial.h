@@ -17,7 +17,8 @@ struct Monomial {
 struct Polynomial {
   struct Monomial *terms;
   size_t count;
-  bool overflow; /* too many monomials or too high powers: the value is not meaningful */
+  bool
+      overflow; /* too many monomials, too high powers, or coefficients that are no normal numbers: no meaningful value */
 };
 
 struct Polynomial polynomial_constant(double value);
