@@ -12,11 +12,12 @@
 #include "first_terms.h"
 #include "radau.h"
 #include "radau_tables.h"
+#include "snapshot.h"
 
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.05;
 
-enum { ITERATION_LIMIT = 12, ATTEMPT_LIMIT = 60 };
+enum { ITERATION_LIMIT = 12, ATTEMPT_LIMIT = 60, METHOD_COUNT = sizeof methods / sizeof *methods };
 
 /* What the situation keeps; the state at the start of the last step and its stages follow. */
 struct Saved {
@@ -40,6 +41,15 @@ struct Radau {
 
 static size_t saved_size(void) {
   return sizeof(struct Saved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
+}
+
+static bool could_save(const struct Situation *situation, const void *saved) {
+  struct Saved first;
+  memcpy(&first, saved, sizeof first);
+  return first.method >= 0 && first.method < METHOD_COUNT && first.step >= 0.0 && first.next >= 0.0 &&
+         first.error >= 0.0 && first.contraction >= 0.0 &&
+         situation->last_step.end == situation->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
+         snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
 }
 
 static bool create(struct Instance *instance) {
@@ -347,6 +357,7 @@ static const char *advance(struct Instance *instance, const struct Communication
 
 const struct Solver solver_radau = {.name = "Radau",
                                     .saved_size = saved_size,
+                                    .could_save = could_save,
                                     .create = create,
                                     .destroy = destroy,
                                     .restart = restart,
