@@ -81,6 +81,14 @@ def test_values_outside_their_range(open_fmu):
     works_again(instance, "SimplePendulum")
 
 
+@pytest.mark.parametrize("value", [0.05, 0.95])
+def test_value_outside_of_a_range(value, open_fmu):
+    instance = open_fmu("Functions").initialize()
+    with instance.fails(ERROR, f"{value} for 'p' is outside its range from 0.1 to 0.9"):
+        instance.set(p=value)
+
+
+
 def test_no_value_is_set_where_one_is_wrong(open_fmu):
     instance = open_fmu("SimplePendulum")
     with instance.fails(ERROR, "'l'"):

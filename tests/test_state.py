@@ -145,6 +145,23 @@ def test_restored_parameters_count(name, open_fmu):
     instance.free_state(state)
 
 
+@pytest.mark.parametrize("name", fmu.moving_names())
+def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
+    """What was prepared for the old value is not used: a new instance with the same values moves alike."""
+    instance, fresh = open_fmu(name).initialize(tolerance=1e-9), open_fmu(name)
+    instance.step(0.01)
+    parameter, states = fmu.names_of(name, "parameter")[0], fmu.states_of(name)
+    instance.set({parameter: 1.5 * instance.get(parameter)})
+    names = [*states, *fmu.names_of(name, "parameter")]
+    fresh.initialize({key: instance.get(key) for key in names if key != "nonConservativeWork"}, tolerance=1e-9, start_time=0.01)
+    work = instance.get("nonConservativeWork") if "nonConservativeWork" in states else 0.0
+    for one in (instance, fresh):
+        one.step(0.2)
+    for key in states:
+        before = work if key == "nonConservativeWork" else 0.0
+        assert instance.get(key) - before == pytest.approx(fresh.get(key), abs=1e-6, rel=1e-6)
+
+
 def test_a_state_is_used_again(open_fmu):
     """Rule 10: fmi2GetFMUstate reuses a state that is not NULL; fmi2FreeFMUstate sets the pointer to NULL."""
     instance = open_fmu("SimplePendulum").initialize()

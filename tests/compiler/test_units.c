@@ -26,6 +26,22 @@ static void test_units_in_base_units(void **state) {
   assert_unit("Hz", "1/s");
 }
 
+/* The derived units as the SI brochure expresses them in each other. */
+static void test_units_in_each_other(void **state) {
+  (void)state;
+  static const char *const equal[][2] = {{"Hz", "1/s"}, {"J", "N.m"},  {"W", "J/s"},   {"Pa", "N/m2"},
+                                         {"C", "A.s"},  {"V", "W/A"},  {"F", "C/V"},   {"Ohm", "V/A"},
+                                         {"S", "A/V"},  {"Wb", "V.s"}, {"T", "Wb/m2"}, {"H", "Wb/A"}};
+  for (size_t i = 0; i < sizeof equal / sizeof *equal; i++) {
+    struct Dimension dimension;
+    const char *problem = NULL;
+    if (!unit_parse(equal[i][1], &dimension, &problem)) fail_msg("'%s': %s", equal[i][1], problem);
+    char *base = unit_text(dimension);
+    assert_unit(equal[i][0], base);
+    free(base);
+  }
+}
+
 static void test_units_that_are_refused(void **state) {
   (void)state;
   static const char *const wrong[] = {"", "km", "m//s", "m/s/s", "N.", "(m", "m)", "m^2", "deg", "m2x", "m999999999"};
@@ -53,6 +69,7 @@ static void test_agreement(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_units_in_base_units),
+      cmocka_unit_test(test_units_in_each_other),
       cmocka_unit_test(test_units_that_are_refused),
       cmocka_unit_test(test_agreement),
   };

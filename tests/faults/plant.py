@@ -13,7 +13,7 @@ from faults import FAULTS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TREE = ROOT / "build" / "faults"
-SYSTEMS = {"SimplePendulum", "SimplePendulumLinear", "DampedPendulum", "ElasticPendulum"}  # few, to build them often
+SYSTEMS = {"SimplePendulum", "SimplePendulumLinear", "DampedPendulum", "ElasticPendulum", "ParticlePolar"}  # few, to build them often
 
 
 def copy_project():
