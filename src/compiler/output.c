@@ -77,7 +77,10 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
   written = written && model_description_write(description, program, guid) &&
             documentation_write(documentation, program, summary);
-  if (written)
+  const char *limit = graph_limit(program->model->graph);
+  if (limit != NULL)
+    report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
+  else if (written)
     write_all(directory,
               (const char *const[]){file, (const char *)xmlBufferContent(description),
                                     (const char *)xmlBufferContent(documentation)},

@@ -46,6 +46,9 @@ static int compare(const void *first, const void *second) {
   return (a > b) - (a < b);
 }
 
+/* A visit comes with the algebra that the sweep is for. */
+enum { VISIT_WORK = 4 };
+
 void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
                   bool (*stops)(const struct Graph *graph, Node node)) {
   grow(cone, graph->count);
@@ -58,6 +61,7 @@ void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targ
     add(cone, vertex->left);
     if (arity == 2) add(cone, vertex->right);
   }
+  cone->work += VISIT_WORK * cone->count;
   qsort(cone->nodes, cone->count, sizeof *cone->nodes, compare);
   for (size_t i = 0; i < cone->count; i++) cone->place[cone->nodes[i]] = i;
 }

@@ -12,6 +12,7 @@ struct Cone {
   size_t count;
   size_t *place; /* for each node of the graph; see cone_place() */
   size_t capacity;
+  size_t work; /* steps of all sweeps so far; see graph_work() */
 };
 
 struct Cone *cone_create(void);

@@ -30,6 +30,7 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
 
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   struct Cone *cone = graph->cone;
+  if (graph_limit(graph) != NULL) count = 0; /* the derivatives are then what they were, and have no meaning */
   cone_collect(cone, graph, targets, count, NULL);
   Node *along = allocate(cone->count, sizeof *along);
   for (size_t place = 0; place < cone->count; place++) {
@@ -56,7 +57,7 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
 Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[symbol].left] = ONE;
-  Node derivative;
+  Node derivative = ZERO;
   derivative_along(graph, &target, 1, seeds, &derivative);
   free(seeds);
   return derivative;
@@ -85,6 +86,7 @@ static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, c
 struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
                                   unsigned kinds) {
   struct Cone *cone = graph->cone;
+  if (graph_limit(graph) != NULL) count = 0;
   cone_collect(cone, graph, targets, count, NULL);
   Node *adjoint = allocate(cone->count, sizeof *adjoint);
   for (size_t k = 0; k < count; k++) add_adjoint(graph, kinds, adjoint, targets[k], weights[k], ONE);

@@ -83,16 +83,23 @@ static void grow(struct Graph *graph) {
   for (Node node = 0; node < graph->count; node++) insert(graph, node);
 }
 
+void graph_work(const struct Graph *graph, size_t steps) {
+  graph->cone->work += steps;
+}
+
+const char *graph_limit(const struct Graph *graph) {
+  if (graph->overflow) return "more than 4000000 operations";
+  return graph->cone->work > WORK_LIMIT ? "more than 100000000 steps to read and derive it" : NULL;
+}
+
 static Node intern(struct Graph *graph, struct Vertex vertex) {
   size_t place = hash(&vertex) & (graph->bucket_count - 1);
   for (; graph->buckets[place] != 0; place = (place + 1) & (graph->bucket_count - 1)) {
     Node node = graph->buckets[place] - 1;
     if (same(&graph->vertices[node], &vertex)) return node;
   }
-  if (graph->count >= NODE_LIMIT) {
-    graph->overflow = true;
-    return ZERO;
-  }
+  graph->overflow = graph->overflow || graph->count >= NODE_LIMIT;
+  if (graph_limit(graph) != NULL) return ZERO;
   grow(graph);
   Node node = (Node)graph->count++;
   graph->vertices[node] = vertex;

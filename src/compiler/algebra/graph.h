@@ -83,14 +83,26 @@ struct Graph {
   struct Symbol *symbols;
   size_t symbol_count;
   struct Cone *cone; /* workspace of the sweeps in algebra/, each of which collects anew */
-  bool overflow;     /* more than NODE_LIMIT nodes were asked for: results are not meaningful */
+  bool overflow;     /* more than NODE_LIMIT nodes were asked for */
   bool not_finite;   /* a constant that is no finite number was asked for, since this was last set to false */
 };
 
-enum { NODE_LIMIT = 4000000, ZERO = 0, ONE = 1 };
+enum { NODE_LIMIT = 4000000, WORK_LIMIT = 100000000, ZERO = 0, ONE = 1 };
 
 struct Graph *graph_create(void);
 void graph_free(struct Graph *graph);
+
+/*
+ * Counts steps of work, each about as long as a visit to a node: the sweeps of algebra/ count themselves, and so does
+ * reading. Both limits together bound the time that any file takes.
+ */
+void graph_work(const struct Graph *graph, size_t steps);
+
+/*
+ * Which limit the graph has gone beyond, such as "more than 4000000 operations"; NULL where none. Then no new node is made,
+ * ZERO stands for it, and results are not meaningful: loops over many nodes or elements end.
+ */
+const char *graph_limit(const struct Graph *graph);
 
 /* The node of a new symbol; kind and index say what it stands for, name how it is printed. */
 Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name);

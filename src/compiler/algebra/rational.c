@@ -187,6 +187,8 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
   struct Fraction *known = allocate(cone->count, sizeof *known);
   for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
     known[place] = convert(converter, cone->nodes[place], known);
+    size_t terms = known[place].above.count + known[place].below.count;
+    graph_work(converter->graph, terms * terms); /* products and quotients look at all pairs */
     converter->overflow = converter->overflow || !is_usable(&known[place]);
   }
   for (size_t i = 0; i < count && !converter->overflow; i++)
@@ -204,6 +206,7 @@ static Node fraction_node(const struct Converter *converter, struct Fraction *fr
 Node simplify_fraction(struct Graph *graph, Node node) {
   struct Converter converter = {.graph = graph};
   struct Fraction fraction = {0};
+  if (graph_limit(graph) != NULL) return node;
   Node result = convert_all(&converter, &node, 1, &fraction) ? fraction_node(&converter, &fraction) : node;
   fraction_free(&fraction);
   return result;

@@ -15,6 +15,7 @@ struct Length {
 static struct Length length_of(const struct Graph *graph, const Node *nodes, size_t count) {
   const struct Cone *cone = graph->cone;
   struct Length length = {0};
+  if (graph_limit(graph) != NULL) return length;
   cone_collect(graph->cone, graph, nodes, count, NULL);
   for (size_t place = 0; place < cone->count; place++) {
     if (operation_arity(graph->vertices[cone->nodes[place]].operation) == 0) continue;

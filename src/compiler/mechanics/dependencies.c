@@ -54,6 +54,7 @@ static enum Dependency step_of(const struct Graph *graph, enum Operation operati
 static void descend(struct Dependencies *dependencies, Node target, enum Dependency kind) {
   const struct Graph *graph = dependencies->graph;
   const struct Cone *cone = graph->cone;
+  if (graph_limit(graph) != NULL) return;
   cone_collect(graph->cone, graph, &target, 1, NULL);
   enum Dependency *on = allocate(cone->count, sizeof *on);
   on[cone_place(cone, target)] = kind;

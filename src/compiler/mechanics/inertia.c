@@ -74,7 +74,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   struct Elements elements = elements_of(model, momentum);
   struct Inertia *inertia = create_blocks(count, &elements);
   elements_free(&elements);
-  if (model->graph->overflow) return inertia;
+  if (graph_limit(model->graph) != NULL) return inertia;
   if (pivots_check(model, inertia, diagnostics)) {
     bool unroll_all = model->linearized || (model->method != NULL && model->method->needs_linear);
     for (size_t b = 0; b < inertia->block_count; b++)

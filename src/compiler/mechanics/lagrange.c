@@ -190,9 +190,8 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
     solve_for_accelerations(model, equations);
     copy_outputs(model, equations);
   }
-  if (graph->overflow)
-    report_error(diagnostics, 0, "the equations of motion need more than %d operations; expected a smaller system",
-                 NODE_LIMIT);
+  if (graph_limit(graph) != NULL)
+    report_error(diagnostics, 0, "the equations of motion need %s; expected a smaller system", graph_limit(graph));
   free(momentum);
   free(force);
   if (diagnostics->errors == errors) return equations;

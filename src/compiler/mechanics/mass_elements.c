@@ -30,7 +30,7 @@ void elements_free(struct Elements *elements) {
 /* M_ij = d p_i / d v_j, row by row. */
 static struct Elements differentiate_momenta(struct Graph *graph, const Node *momentum, size_t count) {
   struct Elements elements = elements_create(count);
-  for (size_t i = 0; i < count && !graph->overflow; i++) {
+  for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
@@ -97,7 +97,7 @@ static void differentiate_columns(const struct Model *model, const Node *momentu
   struct Graph *graph = model->graph;
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   Node *targets = allocate(count, sizeof *targets), *column = allocate(count, sizeof *column);
-  for (size_t first = 0, end = 0; first < count && !graph->overflow; first = end) {
+  for (size_t first = 0, end = 0; first < count && graph_limit(graph) == NULL; first = end) {
     for (end = first; end < count && parts[end].column == parts[first].column; end++)
       targets[end - first] = momentum[positions[parts[end].element].row];
     Node *seed = &seeds[graph->vertices[model->velocities.items[parts[first].column].node].left];

@@ -123,9 +123,8 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   if (method != NULL && method->needs_jacobian) expressions->jacobian = jacobian_create(model->graph, equations);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
-  if (model->graph->overflow)
-    report_error(diagnostics, 0, "the generated code needs more than %d operations; expected a smaller system",
-                 NODE_LIMIT);
+  if (graph_limit(model->graph) != NULL)
+    report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
   if (diagnostics->errors == errors) return expressions;
   expressions_free(expressions);
   return NULL;

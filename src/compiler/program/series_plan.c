@@ -61,7 +61,7 @@ static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
 static void close(struct SeriesPlan *plan, struct Graph *graph) {
   bool *visited = NULL;
   size_t known = 0;
-  for (bool grown = true; grown && !graph->overflow;) {
+  for (bool grown = true; grown && graph_limit(graph) == NULL;) {
     size_t size = graph->count;
     bool *needed = allocate(size, sizeof *needed);
     visited = reallocate(visited, size, sizeof *visited);

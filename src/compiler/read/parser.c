@@ -11,7 +11,7 @@
 #include "read/quantities.h"
 #include "read/similar.h"
 
-enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000 };
+enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
@@ -277,8 +277,19 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   return operation == POWER ? quantity_power(parser, a, b) : quantity_function(parser, operation, a, b);
 }
 
+static void require_limits(struct Parser *parser) {
+  const char *limit = graph_limit(parser->graph);
+  if (limit == NULL) return;
+  if (parser->scope->diagnostics->errors > 0) parser->failed = true; /* said already */
+  else
+    FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->place.what, limit);
+}
+
 static struct Quantity parse_primary(struct Parser *parser) {
   char buffer[32];
+  graph_work(parser->graph, PRIMARY_WORK);
+  require_limits(parser);
+  if (parser->failed) return nothing;
   skip_space(parser);
   char c = *parser->next;
   if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1]))) return parse_literal(parser);
@@ -360,8 +371,7 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
   if (!parser.failed && *parser.next != '\0')
     FAIL(&parser, "%s: expected an operator or the end, found %s", place.what, found(&parser, buffer));
-  if (!parser.failed && parser.graph->overflow)
-    FAIL(&parser, "%s: the system is too large: more than %d operations", place.what, NODE_LIMIT);
+  require_limits(&parser);
   return parser.failed ? nothing : value;
 }
 

@@ -12,7 +12,10 @@
 #include "read/parser.h"
 #include "read/xml.h"
 
-enum { REPETITION_LIMIT = 10000 };
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20 };
+
+/* An index beyond could not be counted on in doubles. */
+static const double index_limit = 1e9;
 
 /* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
 static char refused, backwards, repeated;
@@ -21,9 +24,11 @@ static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pa
 
 /* Whether the bounds are right and the index is a new name; names may have been defined since the last pass. */
 static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
-  if (from != floor(from) || to != floor(to) || to - from >= REPETITION_LIMIT) {
+  bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
+  if (!are_whole || to - from >= REPETITION_LIMIT) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<for> from %g to %g; expected whole numbers and at most %d repetitions", from, to, REPETITION_LIMIT);
+                 "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions", from, to,
+                 REPETITION_LIMIT);
     return false;
   }
   if (scope_find(reader->scope, index) == NULL) return true;
@@ -45,7 +50,8 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   }
   if (from <= to) node->_private = &repeated;
   else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
-  for (double i = from; i <= to && node->_private != &refused && !reader->model->graph->overflow; i++) {
+  for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
+    graph_work(reader->model->graph, REPETITION_WORK);
     scope_set_number(scope, index, i);
     read_children(reader, node, pass);
   }
@@ -136,8 +142,9 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_children(reader, root, POSITIONS);
   read_children(reader, root, EXPRESSIONS);
   check_system(reader);
-  if (reader->model->graph->overflow)
-    report_error(reader->diagnostics, 0, "the system is too large: more than %d operations", NODE_LIMIT);
+  if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
+    report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
+                 graph_limit(reader->model->graph));
 }
 
 /* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
