@@ -14,6 +14,9 @@
 
 enum { FILE_COUNT = 3 };
 
+/* What names the files of a run that has not come to its end. */
+static const char unfinished[] = ".unfinished";
+
 static char *code_text(const struct Program *program) {
   char *text = NULL;
   size_t length = 0;
@@ -43,27 +46,58 @@ static bool write_file(const char *path, const char *text) {
   return fclose(file) == 0 && written;
 }
 
-static const char *const names[FILE_COUNT] = {"system.c", "modelDescription.xml", "documentation/index.html"};
+/* The last one is what the build looks for: while it is there, all are of one run. */
+static const char *const names[FILE_COUNT] = {"modelDescription.xml", "documentation/index.html", "system.c"};
 
-void output_remove(const char *directory) {
-  for (int i = 0; i < FILE_COUNT; i++) {
-    char *path = format_text("%s/%s", directory, names[i]);
+static char *path_of(const char *directory, int file, const char *suffix) {
+  return format_text("%s/%s%s", directory, names[file], suffix);
+}
+
+static void remove_all(const char *directory, const char *suffix) {
+  for (int i = FILE_COUNT - 1; i >= 0; i--) {
+    char *path = path_of(directory, i, suffix);
     remove(path);
     free(path);
   }
 }
 
-static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
-  char *documentation = format_text("%s/documentation", directory);
-  bool written = create_directory(directory) && create_directory(documentation);
-  for (int i = 0; i < FILE_COUNT; i++) {
-    char *path = format_text("%s/%s", directory, names[i]);
-    written = written && write_file(path, texts[i]);
+static bool write_beside(const char *directory, const char *const *texts) {
+  bool written = true;
+  for (int i = 0; i < FILE_COUNT && written; i++) {
+    char *path = path_of(directory, i, unfinished);
+    written = write_file(path, texts[i]);
     free(path);
   }
-  if (!written)
+  return written;
+}
+
+/* Puts what was written beside in the place of an earlier run's files. */
+static bool move_in(const char *directory) {
+  bool moved = true;
+  char *mark = path_of(directory, FILE_COUNT - 1, "");
+  remove(mark);
+  free(mark);
+  for (int i = 0; i < FILE_COUNT && moved; i++) {
+    char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
+    moved = rename(from, to) == 0;
+    free(from);
+    free(to);
+  }
+  return moved;
+}
+
+void output_remove(const char *directory) {
+  remove_all(directory, "");
+}
+
+static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
+  char *documentation = format_text("%s/documentation", directory);
+  if (!create_directory(directory) || !create_directory(documentation) || !write_beside(directory, texts) ||
+      !move_in(directory)) {
     report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
                  strerror(errno));
+    remove_all(directory, unfinished);
+  }
   free(documentation);
 }
 
@@ -82,8 +116,8 @@ void output_write(const struct Program *program, const struct Summary *summary, 
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
   else if (written)
     write_all(directory,
-              (const char *const[]){file, (const char *)xmlBufferContent(description),
-                                    (const char *)xmlBufferContent(documentation)},
+              (const char *const[]){(const char *)xmlBufferContent(description),
+                                    (const char *)xmlBufferContent(documentation), file},
               diagnostics);
   else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
   free(code);

@@ -1,4 +1,7 @@
-/* The files that lagc leaves: all of them, or none. */
+/*
+ * The files that lagc leaves: all of them, or none. They are written beside those of an earlier run and then renamed;
+ * wherever lagc is stopped, system.c is there only with the others of its run.
+ */
 #ifndef OUTPUT_H
 #define OUTPUT_H
 
