@@ -40,7 +40,10 @@ static const struct {
 
 struct Dimension dimension_multiply(struct Dimension first, struct Dimension second, double power) {
   if (!first.known || !second.known) return dimension_unknown;
-  for (int i = 0; i < BASE_UNIT_COUNT; i++) first.exponent[i] += power * second.exponent[i];
+  for (int i = 0; i < BASE_UNIT_COUNT; i++) {
+    double exponent = first.exponent[i] + power * second.exponent[i];
+    first.exponent[i] = fabs(exponent - round(exponent)) < 1e-9 ? round(exponent) : exponent; /* thirds add up to 1 */
+  }
   return first;
 }
 
@@ -49,6 +52,12 @@ bool dimension_agrees(struct Dimension first, struct Dimension second) {
   for (int i = 0; i < RADIAN; i++)
     if (fabs(first.exponent[i] - second.exponent[i]) > 1e-9) return false;
   return true;
+}
+
+bool dimension_is_whole(struct Dimension dimension) {
+  for (int i = 0; i < BASE_UNIT_COUNT; i++)
+    if (dimension.exponent[i] != round(dimension.exponent[i])) return false;
+  return dimension.known;
 }
 
 struct UnitReader {

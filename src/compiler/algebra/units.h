@@ -30,6 +30,9 @@ char *unit_text(struct Dimension dimension);
 /* first * second^power; unknown where either is. */
 struct Dimension dimension_multiply(struct Dimension first, struct Dimension second, double power);
 
+/* Whether all exponents are whole numbers, as FMI asks for; false where unknown. */
+bool dimension_is_whole(struct Dimension dimension);
+
 /* Whether both are the same quantity; the radian counts as 1, unknown agrees with all. */
 bool dimension_agrees(struct Dimension first, struct Dimension second);
 

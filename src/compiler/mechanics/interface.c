@@ -41,7 +41,7 @@ static void append_derivative(struct Interface *interface, const struct Variable
   const char *problem;
   unit_parse("s", &second, &problem);
   struct Dimension dimension = dimension_multiply(state->dimension, second, -1.0);
-  variable->unit = dimension.known ? unit_text(dimension) : NULL;
+  variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
   free(name);
   free(text);
 }

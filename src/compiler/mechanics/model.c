@@ -46,5 +46,5 @@ double *start_values(const struct Model *model) {
 
 char *variable_unit(const struct Variable *variable) {
   if (variable->unit != NULL) return copy_text(variable->unit);
-  return variable->dimension.known ? unit_text(variable->dimension) : NULL;
+  return dimension_is_whole(variable->dimension) ? unit_text(variable->dimension) : NULL;
 }

@@ -65,7 +65,7 @@ void model_free(struct Model *model);
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);
 
-/* The unit of a variable, for output: as written, else from its dimension; NULL where unknown. Free with free(). */
+/* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. Free with free(). */
 char *variable_unit(const struct Variable *variable);
 
 #endif
