@@ -39,6 +39,11 @@ static bool is_cut(struct Printer *printer) {
   return true;
 }
 
+/* Formulas are for reading: the last two digits of a double only show how it was rounded. */
+static void print_rounded(FILE *file, double value) {
+  fprintf(file, "%.15g", value);
+}
+
 static void print_power(struct Printer *printer, Node base, double exponent) {
   if (exponent == 0.5) {
     fputs("sqrt(", printer->file);
@@ -49,14 +54,14 @@ static void print_power(struct Printer *printer, Node base, double exponent) {
   print(printer, base, exponent == 1.0 ? IN_PRODUCT : IN_POWER);
   if (exponent == 1.0) return;
   fputs("^", printer->file);
-  print_number(printer->file, exponent);
+  print_rounded(printer->file, exponent);
 }
 
 /* One side of the fraction bar: the factors whose exponent has this sign, led by a number unless it is 1. */
 static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count, int sign) {
   const char *separator = "";
   if (number != 1.0) {
-    print_number(printer->file, number);
+    print_rounded(printer->file, number);
     separator = "*";
   }
   for (int i = 0; i < count; i++) {
@@ -75,7 +80,7 @@ static void print_product(struct Printer *printer, double coefficient, Node base
   if (count < 0) {
     const struct Vertex *vertex = &printer->graph->vertices[base];
     if (coefficient != 1.0) {
-      print_number(printer->file, coefficient);
+      print_rounded(printer->file, coefficient);
       fputs("*", printer->file);
     }
     print(printer, vertex->left, IN_PRODUCT);
@@ -107,7 +112,7 @@ static void print_term(struct Printer *printer, Node node, bool first) {
   double coefficient = coefficient_of(printer->graph, node, &base);
   if (coefficient < 0) fputs(first ? "-" : " - ", printer->file);
   else if (!first) fputs(" + ", printer->file);
-  if (base == ONE) print_number(printer->file, fabs(coefficient));
+  if (base == ONE) print_rounded(printer->file, fabs(coefficient));
   else print_product(printer, fabs(coefficient), base);
 }
 

@@ -325,7 +325,7 @@ static void print_matrix(const struct Model *model, const char *name, const Node
     for (size_t j = 0; j < columns; j++) {
       Node node = matrix[i * columns + j];
       if (j > 0) printf(", ");
-      if (values != NULL) print_number(stdout, values[node]);
+      if (values != NULL) printf("%.15g", values[node]); /* without the digits that only show rounding */
       else {
         char *text = expression_text(model->graph, node);
         printf("%s", text);
