@@ -1,10 +1,13 @@
 """Broken system.xml files: each must give this line and this message, and leave no output."""
 
 import re
+import resource
+import signal
+import subprocess
 
 import pytest
 
-from fmu import ROOT, lagc
+from fmu import LAGC, ROOT, lagc
 
 # A right system; the cases below replace or add lines of it (counted from 1).
 RIGHT = """\
@@ -344,3 +347,94 @@ def test_external_entities_are_not_read(tmp_path):
 def test_every_system_compiles_without_a_word(name, tmp_path):
     result = lagc(ROOT / "fmu" / name / "system.xml", "-o", tmp_path / "out")
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def names_of(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+FILES = ["documentation/index.html", "modelDescription.xml", "system.c"]
+
+
+@pytest.mark.parametrize("limit", [0, 1, 4096, 7000])
+def test_stopped_while_it_writes(limit, tmp_path):
+    """Each file of an earlier run is whole and of that run, however far the next one came before it was killed."""
+    compile_text(RIGHT, tmp_path)
+    before = {name: (tmp_path / "out" / name).read_bytes() for name in FILES}
+    assert limit < max(map(len, before.values()))
+    (tmp_path / "system.xml").write_text(RIGHT.replace("height", "level"))
+    words = [LAGC, "system.xml", "-o", "out"]
+    result = subprocess.run(
+        words, cwd=tmp_path, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    )
+    assert result.returncode == -signal.SIGXFSZ
+    assert {name: (tmp_path / "out" / name).read_bytes() for name in FILES} == before
+    assert subprocess.run(words, cwd=tmp_path).returncode == 0
+    assert names_of(tmp_path / "out") == FILES and b"level" in (tmp_path / "out" / "system.c").read_bytes()
+
+
+def test_a_disk_that_is_full(tmp_path):
+    """The same without a signal: writing fails, and nothing is left that the build would take."""
+    compile_text(RIGHT, tmp_path)
+
+    def fill():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    result = subprocess.run(
+        [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, preexec_fn=fill, restore_signals=False, capture_output=True
+    )
+    assert result.returncode == 1 and b"cannot write into 'out': File too large" in result.stderr
+    assert names_of(tmp_path / "out") == []
+
+
+def test_a_file_that_cannot_be_replaced(tmp_path):
+    (tmp_path / "out" / "modelDescription.xml").mkdir(parents=True)
+    (tmp_path / "out" / "modelDescription.xml" / "mine").write_text("")
+    result = compile_text(RIGHT, tmp_path)
+    assert result.returncode == 1 and "cannot write into 'out'" in result.stderr
+    assert names_of(tmp_path / "out") == ["modelDescription.xml/mine"]
+
+
+def test_without_memory(tmp_path):
+    (tmp_path / "system.xml").write_text(RIGHT.replace("</system>", '<for index="i" from="1" to="10000"><output name="y[i]">sin(i*theta)*exp(theta/i)*der(omega)</output></for></system>'))
+    limit = 80 << 20
+    result = subprocess.run(
+        [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+    )  # fmt: skip
+    assert (result.returncode, result.stderr) == (1, "lagc: out of memory\n")
+    assert not (tmp_path / "out" / "system.c").exists()
+
+
+def test_version():
+    result = lagc("--version")
+    assert result.returncode == 0 and re.fullmatch(r"lagc \d+\.\d+\.\d+\n", result.stdout)
+
+
+def test_the_point_may_hold_functions_with_commas(tmp_path):
+    (tmp_path / "system.xml").write_text(RIGHT)
+    results = [
+        lagc("--linearize", "system.xml", "--at", point, cwd=tmp_path)
+        for point in ("theta=atan2(0, 2),omega=max(0, min(0, 1)),tau=0", "theta=0,omega=0,tau=0")
+    ]
+    assert results[0].returncode == 0 and results[0].stdout == results[1].stdout
+
+
+def test_numbers_without_rounding_errors(tmp_path):
+    """-0.3/3 is -0.09999999999999999 in doubles."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="P"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic><force coordinate="x">-0.3*x/3</force></system>'
+    )
+    result = lagc("--linearize", "system.xml", cwd=tmp_path)
+    assert result.stdout.count("[-0.1, 0]") == 2 and "9999" not in result.stdout
+
+
+def test_units_with_roots(tmp_path):
+    """FMI's units have whole exponents: a root of metres has none, and three thirds of a metre are one."""
+    outputs = '<output name="a">sqrt(l)</output><output name="b">sqrt(l)*sqrt(l)</output><output name="c">l^(1/3)*l^(1/3)*l^(1/3)</output>'
+    result = compile_text(broken(10, outputs), tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    text = (tmp_path / "out" / "modelDescription.xml").read_text()
+    units = dict(re.findall(r'<ScalarVariable name="([abc])".*?<Real(?: unit="(.*?)")?/>', text, re.S))
+    assert units == {"a": "", "b": "m", "c": "m"} and "0.5" not in text.split("ModelVariables")[0]

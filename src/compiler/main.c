@@ -15,6 +15,7 @@
 static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
+    "       lagc --version\n"
     "\n"
     "Writes system.c, modelDescription.xml and documentation/index.html into DIR, or prints the\n"
     "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
@@ -32,12 +33,20 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, help;
+  bool linearize, help, version;
 };
+
+/* Up to the next comma that does not stand between the arguments of a function. */
+static size_t length_of_part(const char *text) {
+  size_t length = 0;
+  for (int depth = 0; text[length] != '\0' && (text[length] != ',' || depth > 0); length++)
+    depth += (text[length] == '(') - (text[length] == ')');
+  return length;
+}
 
 static void append_point(struct Arguments *arguments, const char *text) {
   while (*text != '\0') {
-    size_t length = strcspn(text, ",");
+    size_t length = length_of_part(text);
     arguments->point = reallocate(arguments->point, arguments->point_count + 1, sizeof *arguments->point);
     arguments->point[arguments->point_count++] = format_text("%.*s", (int)length, text);
     text += length + (text[length] == ',');
@@ -59,11 +68,12 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
+    else if (strcmp(word, "--version") == 0) arguments->version = true;
     else if (strcmp(word, "-D") == 0) arguments->definitions[arguments->definition_count++] = next;
     else if (word[0] == '-' || arguments->system != NULL) return false;
     else arguments->system = word;
   }
-  if (arguments->help) return true;
+  if (arguments->help || arguments->version) return true;
   bool consistent = arguments->linearize ? arguments->directory == NULL && arguments->solver == NULL
                                          : arguments->directory != NULL && arguments->point_count == 0;
   return arguments->system != NULL && consistent;
@@ -119,12 +129,19 @@ static int run(const struct Arguments *arguments) {
   return diagnostics.errors > 0 ? 1 : 0;
 }
 
+static _Noreturn void end_without_memory(void) {
+  fputs("lagc: out of memory\n", stderr);
+  exit(1);
+}
+
 int main(int count, char **words) {
+  on_memory_failure(end_without_memory);
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();
   if (!parse_arguments(count, words, &arguments)) fprintf(stderr, usage, methods);
   else if (arguments.help) status = fprintf(stdout, usage, methods) < 0;
+  else if (arguments.version) status = puts("lagc " LAGC_VERSION) < 0;
   else status = run(&arguments);
   for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);
   free(arguments.point);

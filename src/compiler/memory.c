@@ -6,9 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void (*handler)(void) = abort;
+
+void on_memory_failure(void (*function)(void)) {
+  handler = function;
+}
+
 static _Noreturn void out_of_memory(void) {
-  fputs("lagc: out of memory\n", stderr);
-  exit(1);
+  handler();
+  abort();
 }
 
 void *allocate(size_t count, size_t size) {

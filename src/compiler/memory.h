@@ -1,9 +1,12 @@
-/* Memory for a compiler that runs once: an allocation that fails ends the program with a message. */
+/* Memory for a compiler that runs once: after an allocation that fails nothing goes on, but for what main says. */
 #ifndef MEMORY_H
 #define MEMORY_H
 
 #include <stddef.h>
 #include <stdio.h>
+
+/* What is called when an allocation fails; it must not return. Without it the program aborts. */
+void on_memory_failure(void (*function)(void));
 
 /* count zeroed elements of size bytes; never NULL. Free with free(). */
 void *allocate(size_t count, size_t size);
