@@ -65,6 +65,23 @@ struct UnitReader {
   const char *problem;
 };
 
+/* Units of the world that are not coherent, and how the value is given instead. */
+static const char *problem_of_other_unit(const char *text) {
+  static const struct {
+    const char *name, *problem;
+  } others[] = {
+      {"deg", "expected rad, and the value times pi/180"}, {"mm", "expected m, and the value times 1e-3"},
+      {"cm", "expected m, and the value times 1e-2"},      {"km", "expected m, and the value times 1e3"},
+      {"g", "expected kg, and the value times 1e-3"},      {"ms", "expected s, and the value times 1e-3"},
+      {"min", "expected s, and the value times 60"},       {"h", "expected s, and the value times 3600"},
+      {"kN", "expected N, and the value times 1e3"},       {"rpm", "expected rad/s, and the value times pi/30"},
+      {"Nm", "expected N.m, with a point between units"},  {"kgm", "expected kg.m, with a point between units"}};
+  size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (strlen(others[i].name) == length && strncmp(others[i].name, text, length) == 0) return others[i].problem;
+  return NULL;
+}
+
 static struct Dimension read_factor(struct UnitReader *reader) {
   size_t length = 0;
   while (isalpha((unsigned char)reader->next[length])) length++;
@@ -82,6 +99,7 @@ static struct Dimension read_factor(struct UnitReader *reader) {
     reader->problem = "an exponent is larger than 20";
     return dimension_unknown;
   }
+  if (reader->problem == NULL) reader->problem = problem_of_other_unit(reader->next);
   if (reader->problem == NULL)
     reader->problem = "expected coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' and '/', "
                       "for example kg.m2/s2 or N/(m.s)";

@@ -321,6 +321,9 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
                  *tolerance);
+  if (*tolerance > 0 && *tolerance < 1e-14)
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->max_step);
   free(method);
 }
@@ -357,7 +360,10 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) {
-    read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+    Node dissipation = read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+    if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
+      report_warning(reader->diagnostics, xmlGetLineNo(node),
+                     "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
     model->has_forces = true;
   } else if (strcmp(element, "force") == 0) read_force(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);

@@ -8,6 +8,7 @@
 #include "memory.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/hints.h"
 #include "read/quantities.h"
 #include "read/similar.h"
 
@@ -17,6 +18,14 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
     [VELOCITY] = "velocities",  [INPUT] = "inputs", [ACCELERATION] = "accelerations",
 };
+
+/* What names the argument of der(...) in messages begins so. */
+static const char derived[] = "der(...) in ";
+static const char no_derivative[] = "; expected coordinates or velocities, whose derivatives the system knows";
+
+static bool is_derived(const char *what) {
+  return strncmp(what, derived, strlen(derived)) == 0;
+}
 
 static const struct Quantity nothing = {.node = ZERO};
 
@@ -65,7 +74,8 @@ static bool accept(struct Parser *parser, char c) {
 static void expect(struct Parser *parser, char c, const char *context) {
   char buffer[32];
   if (parser->failed || accept(parser, c)) return;
-  FAIL(parser, "%s: expected '%c' %s, found %s", parser->place.what, c, context, found(parser, buffer));
+  FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
+       hint_for_text(parser->text, parser->next));
 }
 
 static struct Quantity parse_literal(struct Parser *parser) {
@@ -75,6 +85,11 @@ static struct Quantity parse_literal(struct Parser *parser) {
     return nothing;
   }
   double value = strtod(parser->next, &end);
+  if (isinf(value)) {
+    FAIL(parser, "%s: '%.*s' is too large for a number; expected one below 1e308", parser->place.what,
+         (int)(end - parser->next), parser->next);
+    return nothing;
+  }
   if (end == parser->next || !isfinite(value) || isalnum((unsigned char)*end) || *end == '_' || *end == '.') {
     FAIL(parser, "%s: '%.12s' is no number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
          parser->place.what, parser->next);
@@ -153,7 +168,8 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
   unsigned surplus = parser->graph->vertices[quantity->node].kinds & ~parser->place.kinds;
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
-      FAIL(parser, "%s cannot depend on %s, but '%s' does", parser->place.what, kind_names[kind], name);
+      FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
+           is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind));
   return *quantity;
 }
 
@@ -200,16 +216,21 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
+/* Inputs and accelerations have no derivatives that a system knows. */
 static struct Quantity parse_derivative(struct Parser *parser) {
-  unsigned allowed = parser->place.kinds;
+  const struct Place place = parser->place;
   parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION));
+  char *what = format_text("%s%s", derived, place.what);
+  parser->place.what = what;
   struct Quantity value = parse_sum(parser);
-  parser->place.kinds = allowed;
+  parser->place = place;
+  free(what);
   expect(parser, ')', "at the end of der(...)");
   Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
-    if ((allowed & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
-      FAIL(parser, "%s cannot depend on %s, but der(...) does", parser->place.what, kind_names[kind]);
+    if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
+      FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
+           is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind));
   if (parser->failed) return nothing;
   struct Dimension second;
   const char *problem;
@@ -246,8 +267,12 @@ static void report_unknown_function(struct Parser *parser, const char *name) {
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
   char *names = function_names();
-  if (similar.best != NULL)
+  if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
+  else if (scope_find(parser->scope, name) != NULL)
+    FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
+  else if (*hint_for_function(name) != '\0')
+    FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
   else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
   free(names);
 }
@@ -300,7 +325,8 @@ static struct Quantity parse_primary(struct Parser *parser) {
     return value;
   }
   if (!isalpha((unsigned char)c) && c != '_') {
-    FAIL(parser, "%s: expected a number, a name or '(', found %s", parser->place.what, found(parser, buffer));
+    FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->place.what, found(parser, buffer),
+         hint_for_text(parser->text, parser->next));
     return nothing;
   }
   char *name = read_identifier(parser);
@@ -370,7 +396,8 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
   if (!parser.failed && *parser.next == ')')
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
   if (!parser.failed && *parser.next != '\0')
-    FAIL(&parser, "%s: expected an operator or the end, found %s", place.what, found(&parser, buffer));
+    FAIL(&parser, "%s: expected an operator or the end, found %s%s", place.what, found(&parser, buffer),
+         hint_for_text(text, parser.next));
   require_limits(&parser);
   return parser.failed ? nothing : value;
 }

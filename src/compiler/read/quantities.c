@@ -75,7 +75,8 @@ static void check_power(struct Parser *parser, Node base, Node exponent) {
   if (base_given && exponent_given && graph->not_finite && n == 0.5)
     FAIL(parser, "%s: sqrt(%g) is no real number; expected an argument %s", parser->place.what, b, domain_text(POWER));
   else if (base_given && exponent_given && graph->not_finite)
-    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected another base or exponent", parser->place.what, b, n);
+    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->place.what, b, n,
+         b < 0 ? "a positive base, or sign(x)*abs(x)^n for an odd root" : "another base or exponent");
   else if (base_given && !exponent_given && b <= 0)
     FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
   require_finite(parser, "a power");

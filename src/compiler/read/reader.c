@@ -52,7 +52,7 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
   for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
     graph_work(reader->model->graph, REPETITION_WORK);
-    scope_set_number(scope, index, i);
+    scope_set_index(scope, index, i);
     read_children(reader, node, pass);
   }
   scope_remove(scope, index);

@@ -9,7 +9,8 @@
 
 struct Entry {
   struct Quantity quantity;
-  long line; /* of the definition; 0 for names of the language itself */
+  long line; /* of the definition; 0 for names of the language itself and indices */
+  bool is_index;
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics) {
@@ -34,7 +35,7 @@ static struct Entry *find_entry(const struct Scope *scope, const char *name) {
 
 static void add_entry(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
   struct Entry *entry = allocate(1, sizeof *entry);
-  *entry = (struct Entry){quantity, line};
+  *entry = (struct Entry){.quantity = quantity, .line = line};
   names_set(scope->names, name, entry);
 }
 
@@ -46,7 +47,8 @@ bool scope_define(struct Scope *scope, const char *name, struct Quantity quantit
     return false;
   }
   if (taken != NULL) {
-    report_error(scope->diagnostics, line, "the name '%s' belongs to the language itself; expected another name", name);
+    report_error(scope->diagnostics, line, "the name '%s' %s; expected another name", name,
+                 taken->is_index ? "is the index of a <for> around it" : "belongs to the language itself");
     return false;
   }
   add_entry(scope, name, quantity, line);
@@ -56,6 +58,11 @@ bool scope_define(struct Scope *scope, const char *name, struct Quantity quantit
 void scope_set_number(struct Scope *scope, const char *name, double value) {
   struct Quantity number = {.node = graph_constant(scope->graph, value), .dimension = dimension_one, .literal = true};
   add_entry(scope, name, number, 0);
+}
+
+void scope_set_index(struct Scope *scope, const char *name, double value) {
+  scope_set_number(scope, name, value);
+  find_entry(scope, name)->is_index = true;
 }
 
 void scope_remove(struct Scope *scope, const char *name) {

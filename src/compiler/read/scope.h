@@ -22,8 +22,11 @@ void scope_free(struct Scope *scope);
 /* Makes a name known. Where it is taken already, reports this and returns false. */
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line);
 
-/* A compile-time number; a second definition replaces the first (used for loop indices). */
+/* A compile-time number; a second definition replaces the first. */
 void scope_set_number(struct Scope *scope, const char *name, double value);
+
+/* The same for the index of a loop, until it is removed. */
+void scope_set_index(struct Scope *scope, const char *name, double value);
 void scope_remove(struct Scope *scope, const char *name);
 
 /* NULL where the name is unknown. */

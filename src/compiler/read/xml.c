@@ -1,5 +1,6 @@
 #include "read/xml.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include <libxml/parser.h>
@@ -15,8 +16,29 @@ static const char *expected_elements(const xmlError *error) {
          "define, output or for, and outside of <for> also work, solver or experiment.";
 }
 
+/* What XML says of characters that have a meaning of their own in it, in other words. */
+static const char *meaning_of(const xmlError *error) {
+  if (error->domain != XML_FROM_PARSER) return NULL;
+  bool of_reference = error->message != NULL && strstr(error->message, "EntityRef") != NULL;
+  if (of_reference)
+    return "'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions";
+  switch (error->code) {
+  case XML_ERR_NAME_REQUIRED:
+    return "'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or sign for "
+           "conditions";
+  case XML_ERR_LT_IN_ATTRIBUTE:
+    return "'<' stands in an attribute; write &lt; for the sign itself, and min, max, abs or sign for conditions";
+  case XML_ERR_ATTRIBUTE_NOT_STARTED: return "the value of an attribute is not in quotes; expected name=\"value\"";
+  case XML_ERR_TAG_NOT_FINISHED: return "the file ends inside an element; expected its end, such as </system>";
+  default: return NULL;
+  }
+}
+
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
+  struct Diagnostics *told = diagnostics;
+  if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
+  if (meaning_of(error) != NULL) message = meaning_of(error);
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
   else report_error(diagnostics, error->line, "%.*s%s", length, message, expected_elements(error));

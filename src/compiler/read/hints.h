@@ -1,0 +1,16 @@
+/* The right way to write what other languages write otherwise: ends of messages about expressions. */
+#ifndef HINTS_H
+#define HINTS_H
+
+#include "algebra/graph.h"
+
+/* For what stands at `next` in an expression and is no part of the language there, such as "; write ^ for a power". */
+const char *hint_for_text(const char *begin, const char *next);
+
+/* For a function of other languages; "" where there is none. */
+const char *hint_for_function(const char *name);
+
+/* What to do instead of using symbols of a kind where they are not allowed. */
+const char *hint_for_kind(enum SymbolKind kind);
+
+#endif
