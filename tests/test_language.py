@@ -121,3 +121,37 @@ def test_dependencies_of_a_large_coupled_system(tmp_path):
     assert len(outputs[-1].split()) == 1002
     derivatives, _ = structure("-D", "N=500")
     assert len(derivatives["der(v[7])"].split()) == 1000
+
+
+def equations(lines, folder):
+    (folder / "system.xml").write_text('<system name="Order">' + "\n".join(lines) + "</system>")
+    result = lagc("system.xml", "-o", "out", cwd=folder)
+    assert (result.returncode, result.stderr) == (0, "")
+    page = html.unescape((folder / "out" / "documentation" / "index.html").read_text())
+    ((left, right),) = re.findall(r"<code>([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>", page)
+    return sp.sympify(f"{left} - ({right})".replace("der(v)", "acc").replace("^", "**"))
+
+
+def test_the_order_of_definitions_is_free(tmp_path):
+    """Each uses the next one, by way of a position: from the last to the first, and the other way round."""
+    lines = [
+        '<coordinate name="x" velocity="v"/>', '<parameter name="k" start="1"/>', '<parameter name="m" start="1"/>',
+        '<for index="i" from="1" to="3"><define name="a[i]">i*a[i+1] + sum(j, 1, i, b[j])</define></for>',
+        '<for index="j" from="1" to="3"><define name="b[j]">j*x</define></for>',
+        '<define name="a[4]">end.x</define>', '<particle name="end" mass="m" x="2*x" y="end.x + middle.x"/>',
+        '<particle name="middle" mass="0" x="third*x"/>', '<define name="third">3</define>', "<potential>k*a[1]</potential>",
+    ]  # fmt: skip
+    x, k, m, acc = sp.symbols("x k m acc")
+    # a[4] = 2 x, a[3] = 3*2x + 6x, a[2] = 2 a[3] + 3 x, a[1] = a[2] + x; y = 5 x
+    expected = m * (4 + 25) * acc + k * (2 * (6 + 6) + 3 + 1)
+    for order in (lines, lines[::-1]):
+        assert sp.expand(equations(order, tmp_path) - expected) == 0
+
+
+def test_a_long_chain_of_definitions_backwards(tmp_path):
+    """Deeper than any stack of calls."""
+    chain = [f'<define name="d{i}">d{i + 1} + x</define>' for i in range(20000)] + ['<define name="d20000">x</define>']
+    text = "".join(['<system name="Chain"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic>', *chain, "<potential>d0</potential></system>"])
+    (tmp_path / "system.xml").write_text(text)
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")

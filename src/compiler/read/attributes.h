@@ -8,11 +8,13 @@
 #include "read/reader.h"
 
 /* Each pass uses the names that the ones before it made known, wherever in the file they stand. */
-enum Pass { DECLARATIONS, POSITIONS, EXPRESSIONS };
+enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
 
 struct Reader {
   struct Model *model;
   struct Scope *scope;
+  struct Definitions *definitions;
+  size_t named_bodies;  /* bodies whose components are among the definitions */
   struct Names *bodies; /* name -> size_t, its place among the model's */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;

@@ -7,6 +7,7 @@
 #include "algebra/differentiate.h"
 #include "mechanics/energies.h"
 #include "memory.h"
+#include "read/definitions.h"
 #include "algebra/simplify.h"
 
 #define KIND(kind) (1u << (kind))
@@ -132,13 +133,6 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   model->driven |= graph_depends_on(graph, position, TIME);
 }
 
-static void define_component(struct Reader *reader, const struct Body *body, const char *component,
-                             struct Quantity value) {
-  char *name = format_text("%s.%s", body->name, component);
-  scope_define(reader->scope, name, value, body->line);
-  free(name);
-}
-
 static const struct Body *find_body(const struct Reader *reader, const char *name) {
   const size_t *place = names_find(reader->bodies, name);
   return place != NULL ? &reader->model->bodies[*place] : NULL;
@@ -155,6 +149,17 @@ static void append_body(struct Reader *reader, struct Body body) {
   model->bodies[model->body_count++] = body;
 }
 
+/* A component that definitions.h has read; true where it is given. */
+static bool take_component(const struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
+                           struct Quantity *value) {
+  if (!xmlHasProp(node, (const xmlChar *)component)) return false;
+  char *name = format_text("%s.%s", body->name, component);
+  const struct Quantity *known = scope_find(reader->scope, name);
+  if (known != NULL) *value = *known;
+  free(name);
+  return true;
+}
+
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
@@ -166,20 +171,14 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
                  other->line);
   expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
-  for (int axis = 0; axis < 3; axis++) {
-    body.has_position[axis] = expression_attribute(reader, node, axes[axis], IN_POSITION, &body.position[axis]);
-    if (!body.has_position[axis]) continue;
-    require_unit(reader, body.line, axes[axis], body.position[axis], unit_of("m"));
-    define_component(reader, &body, axes[axis], body.position[axis]);
-  }
-  body.has_angle = expression_attribute(reader, node, "angle", IN_POSITION, &body.angle);
+  for (int axis = 0; axis < 3 && other == NULL; axis++)
+    body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis]);
+  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle);
   if (body.has_angle) {
-    require_unit(reader, body.line, "the angle", body.angle, unit_of("rad"));
-    define_component(reader, &body, "angle", body.angle);
     expression_attribute(reader, node, "inertia", IN_MASS, &body.inertia);
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
-  if (!body.has_position[0] && !body.has_position[1] && !body.has_position[2])
+  if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
   for (int axis = 0; axis < 3; axis++)
     add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
@@ -300,14 +299,43 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   append_variable(&reader->model->outputs, output);
 }
 
-static void read_definition(struct Reader *reader, xmlNodePtr node) {
-  char *name = name_attribute(reader, node, "name");
-  struct Quantity value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
-  struct Dimension unit = unit_attribute(reader, node);
-  require_unit(reader, xmlGetLineNo(node), "the definition", value, unit);
+struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *component) {
+  long line = xmlGetLineNo(node);
+  struct Quantity value = {.node = ZERO};
+  bool is_angle = component != NULL && strcmp(component, "angle") == 0;
+  if (component != NULL) expression_attribute(reader, node, component, IN_POSITION, &value);
+  else value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  if (definitions_are_waiting(reader->definitions)) return value;
+  struct Dimension unit = component == NULL ? unit_attribute(reader, node) : unit_of(is_angle ? "rad" : "m");
+  require_unit(reader, line, component == NULL ? "the definition" : is_angle ? "the angle" : component, value, unit);
+  if (component != NULL) return value;
   if (unit.known) value.dimension = unit;
   value.literal = value.literal && !unit.known;
-  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
+  return value;
+}
+
+/* Of several bodies of one name, which is reported later, the first one has the components. */
+static void collect_components(struct Reader *reader, xmlNodePtr node) {
+  static const char *const components[] = {"x", "y", "z", "angle"};
+  char *body = name_attribute(reader, node, "name");
+  reader->named_bodies++;
+  if (body == NULL) body = format_text("body%zu", reader->named_bodies);
+  for (size_t i = 0; i < sizeof components / sizeof *components; i++)
+    if (xmlHasProp(node, (const xmlChar *)components[i]))
+      definitions_add(reader->definitions, format_text("%s.%s", body, components[i]), node, components[i]);
+  free(body);
+}
+
+static void collect(struct Reader *reader, xmlNodePtr node, const char *element) {
+  if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) collect_components(reader, node);
+  if (strcmp(element, "define") != 0) return;
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  if (scope_find(reader->scope, name) == NULL) {
+    definitions_add(reader->definitions, name, node, NULL);
+    return;
+  }
+  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
   free(name);
 }
 
@@ -373,6 +401,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   const char *element = (const char *)node->name;
   if (pass == DECLARATIONS) read_declaration(reader, node, element);
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
-  else if (strcmp(element, "define") == 0) read_definition(reader, node);
+  else if (pass == DEFINITIONS) collect(reader, node, element);
   else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
 }

@@ -11,4 +11,7 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass);
 void read_solver(struct Reader *reader, xmlNodePtr node);
 void read_experiment(struct Reader *reader, xmlNodePtr node);
 
+/* The value of a <define>, or of a component of a particle or body, for NULL or the attribute's name. */
+struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *attribute);
+
 #endif

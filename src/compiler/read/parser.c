@@ -158,6 +158,7 @@ static void report_unknown_name(struct Parser *parser, const char *name) {
 
 static struct Quantity look_up(struct Parser *parser, const char *name) {
   const struct Quantity *quantity = scope_find(parser->scope, name);
+  if (quantity == NULL && definitions_wait_for(parser->scope->definitions, name)) return nothing;
   if (quantity == NULL) {
     report_unknown_name(parser, name);
     return nothing;

@@ -2,6 +2,7 @@
 #ifndef PARSER_STATE_H
 #define PARSER_STATE_H
 
+#include "read/definitions.h"
 #include "read/parser.h"
 
 struct Parser {
@@ -20,7 +21,8 @@ long current_line(const struct Parser *parser);
 /* Reports the first error of an expression; later ones would only follow from it. */
 #define FAIL(parser, ...)                                                                                              \
   do {                                                                                                                 \
-    if (!(parser)->failed) report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);              \
+    if (!(parser)->failed && !definitions_are_waiting((parser)->scope->definitions))                                   \
+      report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);                                   \
     (parser)->failed = true;                                                                                           \
   } while (0)
 

@@ -6,6 +6,7 @@
 
 #include "read/attributes.h"
 #include "read/checks.h"
+#include "read/definitions.h"
 #include "read/elements.h"
 #include "read/linearization_reader.h"
 #include "memory.h"
@@ -53,7 +54,9 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
     graph_work(reader->model->graph, REPETITION_WORK);
     scope_set_index(scope, index, i);
+    if (pass == DEFINITIONS) definitions_enter(reader->definitions, index, i);
     read_children(reader, node, pass);
+    if (pass == DEFINITIONS) definitions_leave(reader->definitions);
   }
   scope_remove(scope, index);
   free(index);
@@ -139,6 +142,8 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   check_repetitions(reader, root);
   check_definitions_used(reader);
   relate_to_time(reader->model, reader->scope);
+  read_children(reader, root, DEFINITIONS);
+  definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
   read_children(reader, root, EXPRESSIONS);
   check_system(reader);
@@ -167,10 +172,13 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     *scope = language_of(model, &local);
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
     reader.bodies = names_create();
+    reader.definitions = (*scope)->definitions = definitions_create();
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     read_system(&reader, root);
     free(reader.definition_used);
     names_free(reader.bodies);
+    definitions_free(reader.definitions);
+    (*scope)->definitions = NULL;
   }
   if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
     apply_point(model, *scope, options->point, options->point_count, &local);

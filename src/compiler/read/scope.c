@@ -65,6 +65,12 @@ void scope_set_index(struct Scope *scope, const char *name, double value) {
   find_entry(scope, name)->is_index = true;
 }
 
+/* Does nothing where the name has another meaning. */
+void scope_remove_index(struct Scope *scope, const char *name) {
+  const struct Entry *entry = find_entry(scope, name);
+  if (entry != NULL && entry->is_index) names_remove(scope->names, name);
+}
+
 void scope_remove(struct Scope *scope, const char *name) {
   names_remove(scope->names, name);
 }

@@ -7,12 +7,15 @@
 #include "diagnostics.h"
 #include "read/names.h"
 
+struct Definitions;
+
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
   struct Names *names;              /* name -> struct Entry */
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
+  struct Definitions *definitions;  /* names that may become known; NULL for none */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
 };
 
@@ -27,6 +30,7 @@ void scope_set_number(struct Scope *scope, const char *name, double value);
 
 /* The same for the index of a loop, until it is removed. */
 void scope_set_index(struct Scope *scope, const char *name, double value);
+void scope_remove_index(struct Scope *scope, const char *name);
 void scope_remove(struct Scope *scope, const char *name);
 
 /* NULL where the name is unknown. */
