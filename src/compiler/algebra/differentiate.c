@@ -30,8 +30,7 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
 
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   struct Cone *cone = graph->cone;
-  for (size_t i = 0; i < count; i++) derivatives[i] = ZERO;
-  if (graph_limit(graph) != NULL) return;
+  if (graph_limit(graph) != NULL) count = 0; /* the derivatives are then what they were, and have no meaning */
   cone_collect(cone, graph, targets, count, NULL);
   Node *along = allocate(cone->count, sizeof *along);
   for (size_t place = 0; place < cone->count; place++) {
@@ -58,7 +57,7 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
 Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[symbol].left] = ONE;
-  Node derivative;
+  Node derivative = ZERO;
   derivative_along(graph, &target, 1, seeds, &derivative);
   free(seeds);
   return derivative;

@@ -113,7 +113,7 @@ void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative
 }
 
 Node total_time_derivative(struct Scope *scope, Node node) {
-  Node derivative;
+  Node derivative = ZERO;
   derivative_along(scope->graph, &node, 1, scope->time_derivatives, &derivative);
   return derivative;
 }
