@@ -148,5 +148,5 @@ def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
 
 
 def test_the_icon_of_a_fast_motion_is_no_block(open_fmu):
-    """A hundred turns of a spiral would fill a disk of 6100 pixels; so many of the first ones are drawn as can be told apart."""
+    """A hundred turns of a spiral would fill a disk of 8000 pixels; the first ones alone are drawn."""
     assert 300 < pixels("Spiral", BLUE) < 2500

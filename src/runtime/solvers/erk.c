@@ -40,7 +40,8 @@ static bool configure(struct Instance *instance) {
          sundials_succeeded(instance, ERKStepSetUserData(erk->arkode, instance), "ERKStepSetUserData") &&
          sundials_succeeded(instance, ERKStepSetTableNum(erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5),
                             "ERKStepSetTableNum") &&
-         sundials_succeeded(instance, ERKStepSetMaxNumSteps(erk->arkode, lagrangian.max_steps), "ERKStepSetMaxNumSteps") &&
+         sundials_succeeded(instance, ERKStepSetMaxNumSteps(erk->arkode, lagrangian.max_steps),
+                            "ERKStepSetMaxNumSteps") &&
          sundials_succeeded(instance, ERKStepSetMaxStep(erk->arkode, lagrangian.max_step), "ERKStepSetMaxStep") &&
          sundials_succeeded(instance, ERKStepSetMaxHnilWarns(erk->arkode, -1), "ERKStepSetMaxHnilWarns") &&
          sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, 3), "ERKStepSetInterpolantDegree");
