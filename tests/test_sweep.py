@@ -101,8 +101,7 @@ def test_a_full_disk_loses_nothing(tmp_path):
     assert "750 of 1000 runs are there already" in text and table["run"] == list(range(1000))
 
 
-@pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: bytes(len(data)),
-                                    lambda data: data[:200] + bytes(len(data) - 600) + data[-400:]])  # fmt: skip
+@pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda data: bytes(len(data))])
 def test_a_damaged_part_is_run_again(damage, tmp_path):
     output = tmp_path / "damaged.parquet"
     folder = interrupted(output, *WORDS)
