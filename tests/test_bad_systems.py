@@ -117,6 +117,9 @@ CASES = [
     ("position with a velocity", 7, '<particle name="bob" mass="m" y="l*cos(theta) + omega"/>', 7, "cannot depend on velocities"),
     ("potential with an input", 8, "<potential>m*g*bob.y + tau*theta</potential>", 8, "cannot depend on inputs, but 'tau' does"),
     ("no inertia", 7, '<particle name="bob" mass="m" y="l"/>', 6, "coordinate 'theta' has no inertia"),
+    ("kinetic energy with a product alone", 6,
+     '<coordinate name="theta" velocity="omega" unit="rad"/><coordinate name="u" velocity="w" unit="rad"/>\n<parameter name="J" start="1" unit="kg.m2"/><kinetic>J*(w*omega + omega^2/2)</kinetic>',
+     6, "kinetic energy has no term with the square of 'w', .*not positive definite"),
     ("two coordinates for one motion", 7,
      '<coordinate name="phi" velocity="nu" unit="rad"/>\n'
      '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "structurally singular"),
@@ -474,3 +477,12 @@ def test_units_with_roots(tmp_path):
     text = (tmp_path / "out" / "modelDescription.xml").read_text()
     units = dict(re.findall(r'<ScalarVariable name="([abc])".*?<Real(?: unit="(.*?)")?/>', text, re.S))
     assert units == {"a": "", "b": "m", "c": "m"} and "0.5" not in text.split("ModelVariables")[0]
+
+
+def test_messages_name_functions_of_the_language(tmp_path):
+    """The derivative of max has a step inside, which the solver's messages call by what the author wrote."""
+    text = broken(8, "<potential>m*g*l*max(0, theta)</potential>").replace('method="erk"', 'method="taylor"')
+    result = compile_text(text, tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    code = (tmp_path / "out" / "system.c").read_text()
+    assert '"less"' not in code and "min or max" in code

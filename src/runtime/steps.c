@@ -23,7 +23,8 @@ enum { SLOW_STEPS = 50000 };
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
 
 static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
-                                   "parameters or other coordinates";
+                                   "parameters or other coordinates, or build with another <solver>: bdf where rates "
+                                   "differ much, erk where friction sticks, taylor for all else";
 
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
   struct Point point = solver_point(instance, time, state);

@@ -51,15 +51,30 @@ static long singular_coordinate(const struct Inertia *inertia, const double *val
   return (long)singular;
 }
 
+/* Whether M couples the coordinate with others. */
+static bool has_coupled_inertia(const struct Inertia *inertia, size_t coordinate) {
+  const struct InertiaBlock *block = inertia_block_of(inertia, coordinate);
+  for (size_t i = 0; i < block->count; i++)
+    if (block->coordinates[i] != coordinate && inertia_element(inertia, coordinate, block->coordinates[i]) != ZERO)
+      return true;
+  return false;
+}
+
 static bool has_all_inertias(const struct Model *model, const struct Inertia *inertia,
                              struct Diagnostics *diagnostics) {
   bool complete = true;
   for (size_t i = 0; i < inertia->count; i++) {
     if (inertia_element(inertia, i, i) != ZERO) continue;
-    report_error(diagnostics, model->coordinates.items[i].line,
-                 "the coordinate '%s' has no inertia: no mass moves with it; expected a <particle>, <body> or "
-                 "<kinetic> that depends on it",
-                 model->coordinates.items[i].name);
+    if (has_coupled_inertia(inertia, i))
+      report_error(diagnostics, model->coordinates.items[i].line,
+                   "the kinetic energy has no term with the square of '%s', but products with other velocities: it is "
+                   "not positive definite; expected one that is positive for every motion",
+                   model->velocities.items[i].name);
+    else
+      report_error(diagnostics, model->coordinates.items[i].line,
+                   "the coordinate '%s' has no inertia: no mass moves with it; expected a <particle>, <body> or "
+                   "<kinetic> that depends on it",
+                   model->coordinates.items[i].name);
     complete = false;
   }
   return complete;

@@ -134,8 +134,10 @@ static void check_function(struct CheckList *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
   const struct Function *function = &functions[vertex->operation];
-  check_by_rule(list, function->operand_limit, vertex->left, function->name);
-  check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], function->name);
+  /* What authors do not write comes from the derivatives of what they do. */
+  const char *name = function->is_internal ? "min or max" : function->name;
+  check_by_rule(list, function->operand_limit, vertex->left, name);
+  check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
   bool is_angle =
       function->recurrence == ANGLE && can_have_row(builder, vertex->left) && can_have_row(builder, vertex->right);
   if (is_angle) append(list, (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
