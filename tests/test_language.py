@@ -177,3 +177,15 @@ def test_a_long_chain_of_definitions_backwards(tmp_path):
     (tmp_path / "system.xml").write_text(text)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_an_empty_sum_names_nothing(tmp_path):
+    """What neighbours have in common, with one mass and no neighbour: sum(i, 2, 1, ...) is 0, also of x[2]."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="One"><constant name="N" value="1"/><for index="i" from="1" to="N"><coordinate name="x[i]" velocity="v[i]"/>'
+        '<particle mass="1" x="x[i]"/></for><potential>x[1]^2 + sum(i, 2, N, (x[i] - x[i-1])^2)</potential></system>'
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    result = lagc("system.xml", "-o", "out", "-D", "N=2", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")

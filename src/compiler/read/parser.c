@@ -180,6 +180,12 @@ static bool bounds_are_numbers(const char *begin, const char *end) {
   return begin == end;
 }
 
+/* Goes on to the parenthesis that closes the present one. What is passed over may name what is not there. */
+static void skip_to_end(struct Parser *parser) {
+  for (int depth = 0; *parser->next != '\0' && !(depth == 0 && *parser->next == ')'); parser->next++)
+    depth += (*parser->next == '(') - (*parser->next == ')');
+}
+
 /* sum(index, first, last, body): the body is read once for each value of the index. */
 static struct Quantity parse_repeated_sum(struct Parser *parser) {
   char buffer[32];
@@ -201,15 +207,13 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
-  /* An empty sum still reads its body once, to find where it ends; the result is dropped. */
-  for (long i = first; !parser->failed && (i <= last || i == first); i++) {
+  if (first > last) skip_to_end(parser);
+  for (long i = first; !parser->failed && i <= last; i++) {
     if (++parser->repetitions > REPETITION_LIMIT)
       FAIL(parser, "%s: sum(...) has more than %d terms", parser->place.what, REPETITION_LIMIT);
     parser->next = body;
     scope_set_number(parser->scope, index, (double)i);
-    struct Quantity term = parse_sum(parser);
-    if (first > last) continue;
-    total = quantity_add(parser, total, term);
+    total = quantity_add(parser, total, parse_sum(parser));
   }
   scope_remove(parser->scope, index);
   free(index);
