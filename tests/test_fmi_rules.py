@@ -152,11 +152,12 @@ def test_states_are_those_of_the_end(name, open_fmu):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear"])
 def test_every_end_is_on_the_closed_form(name, open_fmu):
-    instance = open_fmu(name).initialize(dict(theta=1.0, omega=0.0), tolerance=1e-10)
+    instance = open_fmu(name).initialize(dict(theta=1.0, omega=0.0), tolerance=1e-10, start_time=0.25)
     rate = math.sqrt(9.81)
     for i in range(40):
         instance.step(0.01 * (1 + i % 4))
-        angle = math.cos(rate * instance.time) if name.endswith("Linear") else pendulum_angle(1.0, rate, instance.time)
+        past = instance.time - 0.25
+        angle = math.cos(rate * past) if name.endswith("Linear") else pendulum_angle(1.0, rate, past)
         assert instance.get("theta") == pytest.approx(angle, abs=1e-8)
 
 
