@@ -10,7 +10,7 @@ struct Description {
   char *guid;
   double stop_time;
   bool has_states;
-  double states; /* how many */
+  double states;                   /* how many */
   fmi2ValueReference solver_steps; /* where it has states: how many the solver has taken */
   fmi2ValueReference shown[2];     /* the first coordinate and its velocity, or the first input and the first output */
 };

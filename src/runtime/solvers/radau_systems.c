@@ -62,7 +62,7 @@ static void fill(const struct RadauSystems *systems, struct Complex mu, struct C
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
       if (row < n || row >= 2 * n) continue;
-      struct Complex *element = &matrix[(row - n) * n + column % n];
+      struct Complex *element = &matrix[(row - n) * n + (column < n ? column : column - n)];
       double value = systems->values[e];
       element->real -= column < n ? value : value * mu.real;
       element->imaginary -= column < n ? 0.0 : value * mu.imaginary;
