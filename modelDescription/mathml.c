@@ -157,7 +157,11 @@ static struct Piece sum(struct Text *text, const char *separator) {
   return whole;
 }
 
+/* Nobody reads longer ones. */
+enum { LENGTH_LIMIT = 3000 };
+
 char *mathml_of_equation(const char *equation) {
+  if (strlen(equation) > LENGTH_LIMIT) return NULL;
   struct Text text = {.at = equation};
   char *left = fence(sum(&text, "")), *right = NULL;
   text.wrong |= !take(&text, "=");

@@ -4,6 +4,7 @@ import ctypes
 import math
 import re
 import subprocess
+import sys
 from ctypes import byref
 
 import fmpy
@@ -353,11 +354,11 @@ def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
     assert len(instance.messages) == before
 
 
-def test_a_simulation_that_cannot_start_tells_why(capfd):
+def test_a_simulation_that_cannot_start_tells_why():
     """FMPy's short form leaves debug logging off and prints what the logger gets."""
-    with pytest.raises(FMICallException):
-        fmpy.simulate_fmu(str(fmu.archive("SimplePendulum")), start_values={"l": 0})
-    assert "mass matrix is singular" in capfd.readouterr().out
+    call = f"import fmpy; fmpy.simulate_fmu({str(fmu.archive('SimplePendulum'))!r}, start_values={{'l': 0}})"
+    result = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True)
+    assert result.returncode != 0 and "mass matrix is singular" in result.stdout
 
 
 @pytest.mark.parametrize("category", CATEGORIES)

@@ -15,6 +15,37 @@ static void write_message(void *receiver, enum Status status, const char *messag
   fprintf(stderr, "%s\n", message);
 }
 
+struct Task {
+  struct Instance *instance;
+  double end;
+  int status; /* of the program */
+};
+
+/* Steps to the end. */
+static void go(void *argument) {
+  struct Task *task = argument;
+  struct Instance *instance = task->instance;
+  const struct Solver *solver = lagrangian.solver;
+  struct CommunicationStep step = {.end = task->end, .length = task->end};
+  const struct Span *last = &instance->situation->last_step;
+  double *state = calloc(lagrangian.state_count, sizeof *state);
+  task->status = 1;
+  if (state == NULL || !solver->create(instance) || (solver->restart != NULL && !solver->restart(instance, &step)))
+    return;
+  for (; last->end < task->end; step.count++) {
+    if (solver->advance(instance, &step) != NULL) return;
+    const double times[] = {last->start + (last->end - last->start) / 3.0, last->end};
+    printf("%.17g %.17g", last->start, last->end);
+    for (int i = 0; i < 2; i++) {
+      bool is_known = solver->interpolate(instance, times[i], state);
+      printf(" %d %.17g", is_known, state[0]);
+    }
+    putchar('\n');
+  }
+  free(state);
+  task->status = 0;
+}
+
 int main(int count, char **words) {
   const struct Solver *solver = lagrangian.solver;
   const struct Allocator memory = {calloc, free};
@@ -23,24 +54,12 @@ int main(int count, char **words) {
   double end = count == 2 ? strtod(words[1], NULL) : 0.0;
   struct Instance instance;
   if (!(end > 0.0) || !instance_create(&instance, KIND_CO_SIMULATION, &memory, &log)) return 2;
-  struct CommunicationStep step = {.end = end, .length = end};
-  struct Span *last = &instance.situation->last_step;
-  double *state = calloc(lagrangian.state_count, sizeof *state);
-  if (state == NULL || simulation_set_up(&instance, &experiment, "test") != STATUS_DONE ||
-      simulation_start(&instance, "test") != STATUS_DONE || !solver->create(&instance) ||
-      (solver->restart != NULL && !solver->restart(&instance, &step)))
+  if (simulation_set_up(&instance, &experiment, "test") != STATUS_DONE ||
+      simulation_start(&instance, "test") != STATUS_DONE)
     return 1;
-  for (; last->end < end; step.count++) {
-    if (solver->advance(&instance, &step) != NULL) return 1;
-    const double times[] = {last->start + (last->end - last->start) / 3.0, last->end};
-    printf("%.17g %.17g", last->start, last->end);
-    for (int i = 0; i < 2; i++) {
-      bool is_known = solver->interpolate(&instance, times[i], state);
-      printf(" %d %.17g", is_known, state[0]);
-    }
-    putchar('\n');
-  }
-  free(state);
+  struct Task task = {&instance, end, 1};
+  if (solver->run == NULL) go(&task);
+  else if (!solver->run(&instance, go, &task)) return 1;
   instance_destroy(&instance);
-  return 0;
+  return task.status;
 }
