@@ -21,7 +21,7 @@ BUILD = ROOT / "build" / "cost"
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 CHAINS, LATTICES = (1, 2, 4, 8, 16, 32), (100, 1000, 10000)
 WHOLE = [("ChainPendulum", 8), ("ChainPendulum", 32), ("ChainPendulum", 128), ("Lattice", 100), ("Lattice", 1000), ("Arm7", None)]
-STIFF = (10, 30, 100, 300)
+STIFF = (10, 30, 100, 300, 1000)
 
 
 def seconds_of(words):
@@ -161,7 +161,7 @@ def prepare_build(cases):
         (folder / "system.xml").write_text(text)
     subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, f"-DSYSTEMS={BUILD / 'systems'}", "--log-level=ERROR"],
                    check=True, stdout=subprocess.DEVNULL)  # fmt: skip
-    shared = [word for target in ("lagc", "icon", "interface", "solvers") for word in ("--target", target)]
+    shared = [word for target in ("lagc", "icon", "interface", "solvers", "list_global_names") for word in ("--target", target)]
     subprocess.run(["cmake", "--build", BUILD, "--parallel", "2", *shared], check=True, stdout=subprocess.DEVNULL)
 
 
