@@ -174,9 +174,17 @@ static SERIES_INLINE double series_middle(int k, const double *a, const double *
   return SERIES_IS_CONSTANT(k) ? series_middle_by_size(k, a, b) : series_middle_of_any_size(k, a, b);
 }
 
+static SERIES_INLINE double series_product_by_size(int k, const double *a, const double *b) {
+  return series_middle_by_size(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
+}
+
+static SERIES_NOT_INLINE double series_product_of_any_size(int k, const double *a, const double *b) {
+  return series_product_by_size(k, a, b);
+}
+
 /* (a b)_k */
 static SERIES_INLINE double series_product(int k, const double *a, const double *b) {
-  return series_middle(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
+  return SERIES_IS_CONSTANT(k) ? series_product_by_size(k, a, b) : series_product_of_any_size(k, a, b);
 }
 
 /* (a b)_k without its first term a_0 b_k */
