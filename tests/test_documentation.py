@@ -1,5 +1,6 @@
 """The documentation page is well-formed, and its typeset formulas say what their text says."""
 
+import html
 import random
 import re
 import xml.etree.ElementTree as ElementTree
@@ -66,7 +67,9 @@ def check(page):
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_formulas_of_every_system(name):
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
-    assert check(page) == page.count("<code>") > 0
+    # Very long ones are there as text alone.
+    short = [text for text in re.findall("<code>(.*?)</code>", page, re.S) if len(html.unescape(text)) <= 3000]
+    assert check(page) == len(short) > 0
 
 
 def test_typeset_forms(tmp_path):
