@@ -49,9 +49,7 @@ struct Point evaluate_point(const struct Instance *instance) {
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {
   instance->singular = lagrangian.derivatives(point, derivative);
   if (instance->singular != 0) return false;
-  double sum = 0.0;
-  for (size_t i = 0; i < lagrangian.state_count; i++) sum += derivative[i] - derivative[i];
-  return sum == 0.0; /* infinities and NaN leave a NaN */
+  return are_finite(derivative, lagrangian.state_count);
 }
 
 enum Status evaluate_situation(struct Instance *instance, double *derivative) {

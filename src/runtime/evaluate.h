@@ -4,6 +4,13 @@
 
 #include "instance.h"
 
+/* Whether all of value[count] are finite: infinities and NaN leave a NaN in the sum. */
+static inline bool are_finite(const double *value, size_t count) {
+  double sum = 0.0;
+  for (size_t i = 0; i < count; i++) sum += value[i] - value[i];
+  return sum == 0.0;
+}
+
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);
 

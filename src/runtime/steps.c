@@ -97,9 +97,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
 /* False where the state is not known or not finite. */
 static bool take_state(struct Instance *instance, double time) {
   if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
-  double sum = 0.0;
-  for (size_t i = 0; i < lagrangian.state_count; i++) sum += instance->state[i] - instance->state[i];
-  return sum == 0.0; /* infinities and NaN leave a NaN */
+  return are_finite(instance->state, lagrangian.state_count);
 }
 
 /* The state becomes that of the time which the solver came to, and says why it is not the end. */

@@ -159,7 +159,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series};
   for (int i = 0; i < 2; i++)
-    if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets, plans[i]->count);
+    if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets.nodes, plans[i]->targets.count);
   return targets;
 }
 

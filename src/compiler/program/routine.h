@@ -54,7 +54,6 @@ enum Role {
 
 /* What the writers need to know of an opcode. */
 struct OpcodeFacts {
-  const char *name;      /* the opcode's */
   const char *statement; /* of C: $0 is the result, $1, $2, $3 the operands, $f the function */
   enum Role result, operands[OPERAND_LIMIT];
   size_t operations;
@@ -62,6 +61,9 @@ struct OpcodeFacts {
 };
 
 const struct OpcodeFacts *opcode_facts(enum Opcode opcode);
+
+/* Whether the opcode has a place for its result. */
+bool opcode_has_result(enum Opcode opcode);
 
 /* How many operands the opcode has. */
 int opcode_arity(enum Opcode opcode);

@@ -6,11 +6,6 @@
 #include "algebra/differentiate.h"
 #include "algebra/functions.h"
 
-static void append(struct SeriesPlan *plan, Node node) {
-  plan->targets = reallocate(plan->targets, plan->count + 1, sizeof *plan->targets);
-  plan->targets[plan->count++] = node;
-}
-
 static Node auxiliary_of(struct Graph *graph, Node node) {
   const struct Function *row = &functions[graph->vertices[node].operation];
   return row->auxiliary != NULL ? row->auxiliary(graph, node) : ZERO;
@@ -20,13 +15,13 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
     if (!is_looped(equations, i)) {
-      append(plan, equations->acceleration[i]);
+      append_node(&plan->targets, equations->acceleration[i]);
       continue;
     }
-    append(plan, equations->right_side[i]);
+    append_node(&plan->targets, equations->right_side[i]);
     const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
     size_t row = equations->inertia->place_of[i];
-    for (size_t k = block->start[row]; k < block->start[row + 1]; k++) append(plan, block->mass[k]);
+    for (size_t k = block->start[row]; k < block->start[row + 1]; k++) append_node(&plan->targets, block->mass[k]);
   }
 }
 
@@ -45,12 +40,12 @@ static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
   size_t size = graph->count;
   bool *needed = allocate(size, sizeof *needed);
   Node *slope = allocate(size, sizeof *slope);
-  graph_mark(graph, plan->targets, plan->count, needed);
+  graph_mark(graph, plan->targets.nodes, plan->targets.count, needed);
   for (Node node = 0; node < size; node++) {
     Node operand = graph->vertices[node].left;
     if (!needed[node] || functions[graph->vertices[node].operation].recurrence != INTEGRAL) continue;
     if (slope[operand] == ZERO) slope[operand] = slope_of(graph, operand, time);
-    if (slope[operand] != ZERO) append(plan, slope[operand]);
+    if (slope[operand] != ZERO) append_node(&plan->targets, slope[operand]);
   }
   plan->slope = reallocate(slope, graph->count, sizeof *slope);
   for (size_t i = size; i < graph->count; i++) plan->slope[i] = ZERO;
@@ -66,14 +61,14 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
     bool *needed = allocate(size, sizeof *needed);
     visited = reallocate(visited, size, sizeof *visited);
     for (; known < size; known++) visited[known] = false;
-    graph_mark(graph, plan->targets, plan->count, needed);
+    graph_mark(graph, plan->targets.nodes, plan->targets.count, needed);
     grown = false;
     for (Node node = 0; node < size; node++) {
       if (!needed[node] || visited[node] || graph_is_constant_in_time(graph, node)) continue;
       visited[node] = grown = true;
       Node auxiliary = auxiliary_of(graph, node);
       bool is_known = auxiliary == ZERO || auxiliary == node || auxiliary == graph->vertices[node].left;
-      if (!is_known) append(plan, auxiliary);
+      if (!is_known) append_node(&plan->targets, auxiliary);
     }
     free(needed);
   }
@@ -86,7 +81,7 @@ static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
   append_slopes(plan, graph);
   size_t size = graph->count;
   bool *needed = allocate(size, sizeof *needed);
-  graph_mark(graph, plan->targets, plan->count, needed);
+  graph_mark(graph, plan->targets.nodes, plan->targets.count, needed);
   plan->auxiliary = allocate(size, sizeof *plan->auxiliary);
   for (Node node = 0; node < size; node++)
     if (needed[node] && !graph_is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
@@ -97,19 +92,19 @@ static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power) {
   struct SeriesPlan *plan = allocate(1, sizeof *plan);
   append_equations(plan, equations);
-  if (with_power) append(plan, equations->power);
+  if (with_power) append_node(&plan->targets, equations->power);
   return finish(plan, graph);
 }
 
 struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count) {
   struct SeriesPlan *plan = allocate(1, sizeof *plan);
-  for (size_t i = 0; i < count; i++) append(plan, outputs[i]);
+  append_nodes(&plan->targets, outputs, count);
   return finish(plan, graph);
 }
 
 void series_plan_free(struct SeriesPlan *plan) {
   if (plan == NULL) return;
-  free(plan->targets);
+  free(plan->targets.nodes);
   free(plan->auxiliary);
   free(plan->slope);
   free(plan);

@@ -3,14 +3,14 @@
 #define SERIES_PLAN_H
 
 #include "mechanics/lagrange.h"
+#include "program/node_list.h"
 
 /*
  * The nodes whose series are computed: accelerations (or M and the right side of large blocks), the power of the
  * forces where its work is asked for, and the auxiliary nodes that recurrences rest on, such as cos(x) for sin(x).
  */
 struct SeriesPlan {
-  Node *targets;
-  size_t count;
+  struct NodeList targets;
   Node
       *slope; /* for each node of the graph: its constant time derivative where it is linear in time; ZERO: it is not */
   Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */

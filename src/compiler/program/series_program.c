@@ -10,7 +10,8 @@ static void find_computed(struct SeriesBuilder *builder) {
   struct Needs *needs = builder->needs;
   const struct Cone *cone = needs->cone;
   bool *below = allocate(cone->count, sizeof *below);
-  for (size_t i = 0; i < builder->plan->count; i++) below[cone_place(cone, builder->plan->targets[i])] = true;
+  for (size_t i = 0; i < builder->plan->targets.count; i++)
+    below[cone_place(cone, builder->plan->targets.nodes[i])] = true;
   for (size_t i = cone->count; i-- > 0;) {
     Node node = cone->nodes[i];
     if (!below[i] || is_fetched(needs, node)) continue;
@@ -39,7 +40,7 @@ static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const
                                     .is_done = allocate(size, sizeof(bool)),
                                     .rate = allocate(size, sizeof(size_t)),
                                     .inverse = allocate(size, sizeof(size_t))};
-  needs_collect(builder->needs, plan->targets, plan->count, false);
+  needs_collect(builder->needs, plan->targets.nodes, plan->targets.count, false);
   find_computed(builder);
   return builder;
 }
@@ -318,8 +319,8 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
 }
 
 static bool uses_accelerations(const struct SeriesPlan *plan, const struct Graph *graph) {
-  for (size_t i = 0; i < plan->count; i++)
-    if (graph_depends_on(graph, plan->targets[i], ACCELERATION)) return true;
+  for (size_t i = 0; i < plan->targets.count; i++)
+    if (graph_depends_on(graph, plan->targets.nodes[i], ACCELERATION)) return true;
   return false;
 }
 

@@ -19,15 +19,11 @@ static void extend(struct Accesses *accesses, Place place) {
   if (index_in(place) >= accesses->count[space_of(place)]) accesses->count[space_of(place)] = index_in(place) + 1;
 }
 
-static bool has_result(const struct OpcodeFacts *facts) {
-  return facts->result != NUMBER && facts->result != BLOCK;
-}
-
 static struct Accesses accesses_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
   struct Accesses accesses = {0};
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
-    if (has_result(opcode_facts(instruction->opcode))) extend(&accesses, instruction->result);
+    if (opcode_has_result(instruction->opcode)) extend(&accesses, instruction->result);
     for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(&accesses, instruction->operands[j]);
   }
   if (blocks->mass_count > accesses.count[SPACE_MASS]) accesses.count[SPACE_MASS] = blocks->mass_count;
@@ -72,7 +68,7 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
     return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
     if (facts->operands[j] != ROW_OF_PAST) level = later(level, access_of(accesses, instruction->operands[j])->written);
-  if (has_result(facts)) {
+  if (opcode_has_result(instruction->opcode)) {
     const struct Access *result = access_of(accesses, instruction->result);
     level = later(level, later(result->written, result->read));
   }
@@ -81,7 +77,7 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
     struct Access *operand = access_of(accesses, instruction->operands[j]);
     if (facts->operands[j] != ROW_OF_PAST) operand->read = later(operand->read, level);
   }
-  if (has_result(facts)) access_of(accesses, instruction->result)->written = level;
+  if (opcode_has_result(instruction->opcode)) access_of(accesses, instruction->result)->written = level;
   return level;
 }
 
@@ -107,7 +103,7 @@ static int compare(const void *first, const void *second) {
 }
 
 uint32_t spaces_of(const struct Instruction *instruction) {
-  uint32_t spaces = has_result(opcode_facts(instruction->opcode)) ? space_of(instruction->result) : 0;
+  uint32_t spaces = opcode_has_result(instruction->opcode) ? space_of(instruction->result) : 0;
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
     spaces |= (uint32_t)space_of(instruction->operands[j]) << (j + 1) * SPACE_BITS;
   return spaces;

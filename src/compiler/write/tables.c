@@ -148,7 +148,6 @@ static void write_run(struct CodeLine *line, const struct TableContext *context,
                       const size_t *schedule, size_t first, size_t end) {
   const struct Instruction *instructions = routine->instructions;
   enum Opcode opcode = instructions[schedule[first]].opcode;
-  const struct OpcodeFacts *facts = opcode_facts(opcode);
   write_word(line, opcode);
   write_word(line, (uint32_t)(end - first));
   write_word(line, spaces_of(&instructions[schedule[first]]));
@@ -156,8 +155,7 @@ static void write_run(struct CodeLine *line, const struct TableContext *context,
     write_word(line, (uint32_t)context->function[instructions[schedule[first]].function] - 1);
   for (size_t i = first; i < end; i++) {
     const struct Instruction *instruction = &instructions[schedule[i]];
-    bool is_place = facts->result != NUMBER && facts->result != BLOCK;
-    write_word(line, is_place ? index_of(context, instruction->result) : instruction->result);
+    write_word(line, opcode_has_result(opcode) ? index_of(context, instruction->result) : instruction->result);
     for (int j = 0; j < opcode_arity(opcode); j++) write_word(line, index_of(context, instruction->operands[j]));
   }
 }

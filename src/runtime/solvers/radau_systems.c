@@ -32,9 +32,7 @@ bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *syst
   struct Point point = solver_point(instance, time, state);
   instance->situation->statistics[STATISTIC_JACOBIANS]++;
   instance->singular = lagrangian.jacobian(&point, systems->values);
-  double sum = 0.0;
-  for (size_t i = 0; i < lagrangian.jacobian_pattern.count; i++) sum += systems->values[i] - systems->values[i];
-  return instance->singular == 0 && sum == 0.0;
+  return instance->singular == 0 && are_finite(systems->values, lagrangian.jacobian_pattern.count);
 }
 
 static struct Complex times(struct Complex a, struct Complex b) {
