@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import fmu
+from closed_forms import pendulum_angle
 
 TEXTS = {
     # x'' = -b v - k x, overdamped by up to twelve decades
@@ -19,6 +20,9 @@ TEXTS = {
     "Pair": '<parameter name="k" start="1e8"/><coordinate name="x" velocity="v"/><coordinate name="s" velocity="w" start="1e-3"/>'
     '<particle mass="1" x="x"/><particle mass="2" x="x + s"/><potential>k*s^2/2 + x^2/2</potential>'
     '<dissipation>1e5*w^2/2</dissipation>',
+    # far from linear
+    "Pendulum": '<coordinate name="theta" velocity="omega" start="3"/><particle mass="1" x="sin(theta)" y="-cos(theta)"/>'
+    '<potential>-9.81*cos(theta)</potential>',
     "Oscillator": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>x^2/2</potential>',
 }  # fmt: skip
 
@@ -61,6 +65,14 @@ def test_orders(open_fmu):
         assert instance.get("x") == pytest.approx(math.cos(10.0), abs=50 * tolerance)
         steps.append(instance.fmu.getInteger(instance.vr("solverSteps"))[0])
     assert steps[-1] < 400
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
+def test_nonlinear_motions(tolerance, open_fmu):
+    """Newton's method goes on until its error is below the tolerance, in every step."""
+    instance = open_fmu("RadauPendulum").initialize(tolerance=tolerance)
+    instance.step(20.0)
+    assert instance.get("theta") == pytest.approx(float(pendulum_angle(3.0, math.sqrt(9.81), 20.0)), abs=200 * tolerance)
 
 
 @pytest.mark.parametrize("mu, end, x", [(1e3, 1.0, None), (1e2, 80.0, None)])

@@ -236,7 +236,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
   double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
   predict(radau, method, step);
   to_eigenvectors(method, radau->z, radau->w);
-  *contraction = 0.0;
+  *contraction = expected; /* what one iteration tells nothing about grows from step to step */
   for (int iteration = 1; iteration <= ITERATION_LIMIT; iteration++) {
     if (!evaluate_stages(instance, radau, method, time, step)) return 0;
     double change = iterate(radau, method);
@@ -270,9 +270,9 @@ static double estimate(struct Radau *radau, const struct RadauMethod *method, co
 
 /* A second filtering with f at the state moved by the estimate takes what is stiff out of it. */
 static double estimate_error(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
-                             double time, double step) {
+                             double time, double step, bool is_sudden) {
   double error = estimate(radau, method, radau->first, step);
-  if (error < 1.0) return fmax(error, 1e-10);
+  if (error < 1.0 || !is_sudden) return fmax(error, 1e-10);
   size_t states = lagrangian.state_count;
   for (size_t k = 0; k < states; k++) radau->trial[k] += radau->state[k];
   if (!solver_derivatives(instance, time, radau->trial, radau->rates)) return error;
@@ -293,8 +293,7 @@ static double factor_of_step(const struct Saved *saved, const struct RadauMethod
 /* A first step that moves the state by a small share of its scale. */
 static double first_step(const struct Instance *instance, const struct Radau *radau, double length) {
   double rate = norm(radau, radau->first) * relative_tolerance(instance);
-  double step = rate > 0.0 ? 1e-3 / rate : length;
-  return fmin(step, length);
+  return rate * length > 1.0 ? 1e-3 / rate : 1e-3 * length;
 }
 
 /* Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. */
@@ -341,7 +340,7 @@ static const char *advance(struct Instance *instance, const struct Communication
     int iterations = 0;
     if (radau_systems_factor(&radau->systems, method, step))
       iterations = solve_stages(instance, radau, method, time, step, &contraction);
-    if (iterations > 0) error = estimate_error(instance, radau, method, time, step);
+    if (iterations > 0) error = estimate_error(instance, radau, method, time, step, saved->step == 0.0 || attempt > 0);
     double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
     if (error < 1.0) {
       accept(instance, radau, method, time, step);
