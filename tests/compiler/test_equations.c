@@ -173,6 +173,41 @@ static void test_linearization(void **state) {
   derived_free(&cart);
 }
 
+/* (5 + 2 x^2) a + 2 cos(theta) alpha = F x - 20 x^3 - 2 x v^2 + 2 sin(theta) omega^2,  2 cos(theta) a + 2 alpha = -18 sin(theta) */
+static void test_equations_of_coupled_coordinates(void **state) {
+  (void)state;
+  struct Derived cart = derive(CART, NULL);
+  assert_int_equal(cart.diagnostics.errors, 0);
+  const double x = 0.6, theta = 2.5, v = 1.2, omega = -1.1, force = 3, a = 0.7, alpha = -1.9;
+  const struct Given at[] = {{"x", x},      {"theta", theta},     {"v", v}, {"omega", omega}, {"F", force},
+                             {"der(v)", a}, {"der(omega)", alpha}};
+  double m[2][2] = {{5 + 2 * x * x, 2 * cos(theta)}, {2 * cos(theta), 2}};
+  double right[] = {force * x - 20 * x * x * x - 2 * x * v * v + 2 * sin(theta) * omega * omega, -18 * sin(theta)};
+  double determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  for (int i = 0; i < 2; i++) {
+    double solution = (m[1 - i][1 - i] * right[i] - m[i][1 - i] * right[1 - i]) / determinant;
+    assert_value(&cart, cart.equations->acceleration[i], at, 7, solution, 1e-13);
+    assert_value(&cart, cart.equations->right_side[i], at, 7, right[i], 1e-13);
+    assert_value(&cart, cart.equations->residual[i], at, 7, m[i][0] * a + m[i][1] * alpha - right[i], 1e-13);
+  }
+  derived_free(&cart);
+}
+
+/* (q + s)^2 - (q - s)^2 - 4 q s: an element that vanishes only once it is multiplied out couples nothing. */
+static void test_elements_that_vanish(void **state) {
+  (void)state;
+  struct Derived pair =
+      derive("<system name='Pair'><coordinate name='q' velocity='v'/><coordinate name='s' velocity='w'/>"
+             "<particle mass='1' x='(q + s)^2/2' y='(q - s)^2/2'/><kinetic>v^2 + w^2 - 4*q*s*v*w</kinetic></system>",
+             NULL);
+  assert_int_equal(pair.diagnostics.errors, 0);
+  assert_int_equal(pair.equations->inertia->block_count, 2);
+  assert_int_equal(inertia_element(pair.equations->inertia, 0, 1), ZERO);
+  const struct Given at[] = {{"q", 0.3}, {"s", 0.8}};
+  assert_value(&pair, inertia_element(pair.equations->inertia, 1, 1), at, 2, 2 + 1.21 + 0.25, 1e-14);
+  derived_free(&pair);
+}
+
 /* theta'' = -9 sin(theta) + u cos(theta), about theta = 1 and u = 2. */
 static void test_linear_system_with_its_constant(void **state) {
   (void)state;
@@ -258,6 +293,8 @@ static void test_mass_matrices_that_are_singular_everywhere(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_magnetic_terms),
+      cmocka_unit_test(test_equations_of_coupled_coordinates),
+      cmocka_unit_test(test_elements_that_vanish),
       cmocka_unit_test(test_linearization),
       cmocka_unit_test(test_linear_system_with_its_constant),
       cmocka_unit_test(test_points_without_a_linearization),

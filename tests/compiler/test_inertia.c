@@ -87,30 +87,51 @@ static void test_components_of_a_chain(void **state) {
   }
 }
 
-/* Factors a block of two coordinates. */
-static struct Inertia factor(struct Expressions *e, struct InertiaBlock *block, const char *const mass[3]) {
-  static size_t start[] = {0, 1, 3}, column[] = {0, 0, 1}, coordinates[] = {1, 0};
-  static Node nodes[3];
-  for (int k = 0; k < 3; k++) nodes[k] = parse(e, mass[k]);
+enum { SIZE = 3, FULL = SIZE * (SIZE + 1) / 2 };
+
+/* Factors a block of three coordinates; mass: its lower triangle by rows. */
+static struct Inertia factor(struct Expressions *e, struct InertiaBlock *block, const char *const mass[FULL]) {
+  static size_t start[] = {0, 1, 3, 6}, column[] = {0, 0, 1, 0, 1, 2}, coordinates[] = {2, 0, 1};
+  static Node nodes[FULL];
+  for (int k = 0; k < FULL; k++) nodes[k] = parse(e, mass[k]);
   *block = (struct InertiaBlock){
-      .count = 2, .coordinates = coordinates, .is_unrolled = true, .start = start, .column = column, .mass = nodes};
-  struct Inertia inertia = {.count = 2, .blocks = block, .block_count = 1};
+      .count = SIZE, .coordinates = coordinates, .is_unrolled = true, .start = start, .column = column, .mass = nodes};
+  struct Inertia inertia = {.count = SIZE, .blocks = block, .block_count = 1};
   pivots_factor(e->graph, &inertia);
   return inertia;
 }
 
-/* M = [[p, q], [q, r]] is [[1, 0], [q/p, 1]] diag(p, r - q^2/p) times the transpose. */
+/* L D L^T is M, and the solution of M x = b solves it, at numbers. */
 static void test_symbolic_factors(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
   struct InertiaBlock block;
-  struct Inertia inertia = factor(&e, &block, (const char *const[]){"x + 2", "y*z", "5 + y^2"});
-  const double x = 0.7, y = -1.3, z = 2.1, p = x + 2, q = y * z, r = 5 + y * y, expected[] = {p, q / p, r - q * q / p};
-  for (int k = 0; k < 3; k++) assert_true(fabs(value_at(&e, block.factor[k], x, y, z) - expected[k]) < 1e-14);
-  assert_int_equal(inertia.pivot_count, 2);
-  assert_true(inertia.pivots[0].coordinate == 1 && inertia.pivots[1].coordinate == 0);
-  assert_int_equal(inertia.pivots[1].value, block.factor[2]);
-  assert_int_equal(inertia.pivots[1].diagonal, block.mass[2]);
+  struct Inertia inertia = factor(&e, &block, (const char *const[]){"x + 2", "y*z", "5 + y^2", "x", "sin(z)", "7"});
+  const double x = 0.7, y = -1.3, z = 2.1;
+  const double m[SIZE][SIZE] = {{x + 2, y * z, x}, {y * z, 5 + y * y, sin(z)}, {x, sin(z), 7}};
+  double lower[SIZE][SIZE] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, diagonal[SIZE];
+  for (int i = 0, k = 0; i < SIZE; i++) {
+    for (int j = 0; j < i; j++) lower[i][j] = value_at(&e, block.factor[k++], x, y, z);
+    diagonal[i] = value_at(&e, block.factor[k++], x, y, z);
+  }
+  Node solution[] = {parse(&e, "1"), parse(&e, "x"), parse(&e, "y*z")};
+  const double right[] = {1, x, y * z};
+  block_solve(e.graph, &block, solution);
+  for (int i = 0; i < SIZE; i++) {
+    double product = 0;
+    for (int j = 0; j < SIZE; j++) {
+      double sum = 0;
+      for (int k = 0; k < SIZE; k++) sum += lower[i][k] * diagonal[k] * lower[j][k];
+      assert_true(fabs(sum - m[i][j]) < 1e-14);
+      product += m[i][j] * value_at(&e, solution[j], x, y, z);
+    }
+    assert_true(fabs(product - right[i]) < 1e-14);
+    const struct Pivot *pivot = &inertia.pivots[i];
+    assert_int_equal(pivot->coordinate, block.coordinates[i]);
+    assert_int_equal(pivot->value, block.factor[block.start[i + 1] - 1]);
+    assert_int_equal(pivot->diagonal, block.mass[block.start[i + 1] - 1]);
+  }
+  assert_int_equal(inertia.pivot_count, SIZE);
   free(inertia.pivots);
   free(block.factor);
   expressions_free(&e);
@@ -134,7 +155,7 @@ static void test_scales_of_pivots(void **state) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     struct Expressions e = expressions_create();
     struct InertiaBlock block;
-    struct Inertia inertia = factor(&e, &block, (const char *const[]){cases[i].mass, "0", "1"});
+    struct Inertia inertia = factor(&e, &block, (const char *const[]){cases[i].mass, "0", "1", "0", "0", "1"});
     double scale = value_at(&e, inertia.pivots[0].scale, 3, 0.5, 2);
     if (!(fabs(scale - cases[i].scale) < 1e-12)) fail_msg("the scale of %s is %.17g", cases[i].mass, scale);
     free(inertia.pivots);
