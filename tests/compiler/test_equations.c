@@ -229,6 +229,27 @@ static void test_linear_system_with_its_constant(void **state) {
   derived_free(&rod);
 }
 
+#define SPRING(force)                                                                                                  \
+  "<system name='Spring'><coordinate name='x' velocity='v'/><particle mass='2' x='x'/><force coordinate='x'>" force    \
+  "</force></system>"
+
+static void test_systems_that_are_not_linear(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    bool is_linear;
+  } cases[] = {{SPRING("3 - x - 2*v"), true}, {SPRING("sin(time) - x"), false}, {SPRING("-x*time"), false},
+               {SPRING("-x^3"), false},       {SPRING("x*v"), false},           {SPRING("-abs(v)"), false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct Derived spring = derive(cases[i].text, NULL);
+    assert_int_equal(spring.diagnostics.errors, 0);
+    struct LinearSystem *system = linear_system_of(spring.model, spring.equations, &spring.diagnostics);
+    assert_true((system != NULL) == cases[i].is_linear && (spring.diagnostics.errors == 0) == cases[i].is_linear);
+    linear_system_free(system);
+    derived_free(&spring);
+  }
+}
+
 static void test_points_without_a_linearization(void **state) {
   (void)state;
   const char *const polar =
@@ -297,6 +318,7 @@ int main(void) {
       cmocka_unit_test(test_elements_that_vanish),
       cmocka_unit_test(test_linearization),
       cmocka_unit_test(test_linear_system_with_its_constant),
+      cmocka_unit_test(test_systems_that_are_not_linear),
       cmocka_unit_test(test_points_without_a_linearization),
       cmocka_unit_test(test_symbolic_solution_of_larger_systems),
       cmocka_unit_test(test_mass_matrices_that_are_singular_everywhere),
