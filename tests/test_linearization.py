@@ -92,3 +92,18 @@ def test_how_near_to_an_equilibrium(tmp_path):
     assert warnings_at("x=0,v=0", tmp_path) == warnings_at("x=2e-10,v=-2e-10", tmp_path) == []
     assert warnings_at("x=1e-8", tmp_path) == [("0", "-1e-08")] and warnings_at("x=-1e-8", tmp_path) == [("0", "1e-08")]
     assert warnings_at("v=1e-8", tmp_path) == [("1e-08", "0")] and warnings_at("v=-1e-8", tmp_path) == [("-1e-08", "0")]
+
+
+def test_a_linearization_has_a_solver_of_its_own(tmp_path):
+    """Neither the method nor the limits of the system that it is of."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Spring"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><potential>x^4 + x^2</potential>'
+        '<solver method="erk" maxStep="0.1" maxSteps="50"/></system>'
+    )
+    line = '<linearization of="system.xml" name="Line"><at name="x" value="0"/>{}</linearization>'
+    for element, solver, step in (("", "exact", "INFINITY"), ('<solver method="taylor"/>', "taylor", "INFINITY"), ('<solver method="bdf" maxStep="0.5"/>', "bdf", "0.5")):
+        (tmp_path / "line.xml").write_text(line.format(element))
+        result = lagc("line.xml", "-o", "out", cwd=tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        code = (tmp_path / "out" / "system.c").read_text()
+        assert f".solver = &solver_{solver}," in code and f".max_step = {step}," in code and ".max_steps = 50" not in code
