@@ -265,6 +265,7 @@ QUIET = [
     ("no repetitions", 11, '<constant name="N" value="0"/><for index="i" from="1" to="N"></for>'),
     ("none for the first index", 11,
      '<for index="i" from="1" to="3"><for index="j" from="2" to="i-1"><potential>m*g*l</potential></for></for>'),
+    ("logarithm of a time that begins later", 12, '<experiment startTime="1" stopTime="10"/><output name="o">log(time)</output>'),
     ("longest sum", 8, "<potential>m*g*l*sum(i, 1, 100000, 1)</potential>"),
     ("longest repetition", 11, '<for index="i" from="1" to="10000"></for>'),
     ("index again", 8, "<potential>m*g*l*(sum(i, 1, 2, i) + sum(i, 1, 3, i))</potential>"),

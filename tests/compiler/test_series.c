@@ -22,8 +22,25 @@ static void assert_near(double value, double expected) {
   CHECK(2)                                                                                                             \
   CHECK(3)                                                                                                             \
   CHECK(4)                                                                                                             \
-  CHECK(5) CHECK(6) CHECK(7) CHECK(8) CHECK(9) CHECK(10) CHECK(11) CHECK(12) CHECK(13) CHECK(14) CHECK(15) CHECK(16)   \
-      CHECK(17) CHECK(18) CHECK(19) CHECK(20) CHECK(21) CHECK(22) CHECK(23)
+  CHECK(5)                                                                                                             \
+  CHECK(6)                                                                                                             \
+  CHECK(7)                                                                                                             \
+  CHECK(8)                                                                                                             \
+  CHECK(9)                                                                                                             \
+  CHECK(10)                                                                                                            \
+  CHECK(11)                                                                                                            \
+  CHECK(12)                                                                                                            \
+  CHECK(13)                                                                                                            \
+  CHECK(14)                                                                                                            \
+  CHECK(15)                                                                                                            \
+  CHECK(16)                                                                                                            \
+  CHECK(17)                                                                                                            \
+  CHECK(18)                                                                                                            \
+  CHECK(19)                                                                                                            \
+  CHECK(20)                                                                                                            \
+  CHECK(21)                                                                                                            \
+  CHECK(22)                                                                                                            \
+  CHECK(23)
 
 static void test_products(void **state) {
   (void)state;
