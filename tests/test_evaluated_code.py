@@ -10,10 +10,10 @@ import sympy as sp
 from fmu import BUILD, ROOT, lagc
 from mechanics import System, time
 
-# Three coordinates whose block of M is sparse and factored at run time, and one by itself.
+# Three coordinates whose block of M is sparse, factored at run time, and not in the order of the file; and one by itself.
 TEXT = """<system name="Code">
   <parameter name="a" start="1.5"/><parameter name="b" start="0.7"/><input name="u"/>
-  <coordinate name="q" velocity="v"/><coordinate name="r" velocity="w"/><coordinate name="s" velocity="x"/>
+  <coordinate name="r" velocity="w"/><coordinate name="q" velocity="v"/><coordinate name="s" velocity="x"/>
   <coordinate name="p" velocity="y" start="1"/>
   <particle mass="a" x="q" y="sin(r)"/>
   <kinetic>(2 + cos(q))*(v - w)^2/2 + w^2/2 + b*(w + x*s)^2/2 + x^2</kinetic>
@@ -28,8 +28,8 @@ TEXT = """<system name="Code">
 </system>"""
 q, r, s, p, v, w, x, y, u, a, b = sp.symbols("q r s p v w x y u a b")
 FORCES = [
-    u * sp.cos(time) - sp.Rational(3, 10) * v**3,
     sp.Integer(0),
+    u * sp.cos(time) - sp.Rational(3, 10) * v**3,
     sp.Max(u, r) * sp.Abs(x) + sp.sign(q) - x / (3 + v**2) + sp.Min(p, u),
     -y * p**-3 + sp.tanh(u * p) + sp.atan2(p, q) - 5 * p * time + sp.log(p) * p ** sp.Rational(3, 2),
 ]
@@ -38,8 +38,8 @@ KINETIC = (
     + sp.exp(p / 2) * y**2
 )  # fmt: skip
 POTENTIAL = a * q**4 + 1 / (2 + r**2) + sp.sqrt(1 + s**2) + q * r * s * b + p**-2 + a**b * p
-VELOCITIES = [v, w, x, y]
-SYSTEM = System([q, r, s, p], VELOCITIES, KINETIC, POTENTIAL, FORCES, [u], [a, b])
+VELOCITIES = [w, v, x, y]
+SYSTEM = System([r, q, s, p], VELOCITIES, KINETIC, POTENTIAL, FORCES, [u], [a, b])
 POWER = sum(force * velocity for force, velocity in zip(FORCES, VELOCITIES))
 OTHERS = sp.lambdify(SYSTEM.arguments, [POWER, KINETIC, POTENTIAL], modules="mpmath")
 
@@ -52,8 +52,8 @@ def derivatives(values):
 
 
 def output(values):
-    t, q_, p_, v_, u_, b_ = (values[i] for i in (0, 1, 4, 5, 9, 11))
-    return derivatives(values)[5] * q_ + mpmath.sqrt(p_) / b_ - u_ * v_ + t**2
+    t, q_, p_, v_, u_, b_ = (values[i] for i in (0, 2, 4, 6, 9, 11))
+    return derivatives(values)[4] * q_ + mpmath.sqrt(p_) / b_ - u_ * v_ + t**2
 
 
 def program(method, form, folder):
