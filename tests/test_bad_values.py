@@ -57,7 +57,7 @@ def test_no_inertia(name, parameter, open_fmu):
     instance.fmu.enterInitializationMode()
     with instance.fails(ERROR, "mass matrix is singular"):
         instance.fmu.exitInitializationMode()
-    assert any(parameter in text for _, _, text in instance.messages)
+    assert re.search(rf"it depends on [^:]*\b{parameter}\b", instance.messages[-2][2])
     works_again(instance, name)
     assert all(math.isfinite(value) for value in instance.fmu.getReal(instance.vr(*states)))
 

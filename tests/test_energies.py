@@ -63,6 +63,7 @@ BALANCES = [
     (TWO_MASSES + "<potential>b*x^2</potential>", "totalEnergy is constant"),
     (TWO_MASSES + '<force coordinate="x">b</force>', "its derivative is P"),
     ("<kinetic>a*(v^4 + w^4)</kinetic>", "totalEnergy is constant"),
+    ("<kinetic>a*b^2*(1 - sqrt(1 - (v^2 + w^2)/b^2))</kinetic>", "totalEnergy is constant"),
     (TWO_MASSES + "<potential>b*x*time</potential>", "L depends on time explicitly"),
     (TWO_MASSES + '<particle mass="b" x="x + sin(time)"/>', "so that it is not constant either"),
     (TWO_MASSES + '<particle mass="b" x="x*cos(time)" y="x*sin(time)"/>', "so that it is constant without forces"),

@@ -14,4 +14,4 @@ from faults import FAULTS
 def test_fault_can_be_planted(place):
     file, right, wrong, (kind, test, *_) = FAULTS[place]
     assert (ROOT / file).read_text().count(right) == 1 and right != wrong
-    assert (ROOT / (test if kind == "pytest" else f"tests/compiler/{test}.c")).exists()
+    assert (ROOT / "tests" / (f"compiler/{test}.c" if kind == "ctest" else f"{test}.py")).exists()

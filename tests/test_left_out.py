@@ -129,7 +129,10 @@ def test_sizes():
 
 @pytest.mark.parametrize(
     "force, solver",
-    [("u*sin(q)", "taylor"), ("u - abs(w)*w", "taylor"), ("u - sign(w)", "taylor"), ("asin(sin(q))", "erk")],
+    [
+        ("u*sin(q)", "taylor"), ("u - abs(w)*w", "taylor"), ("u - sign(w)", "taylor"), ("sin(asin(q/9))", "taylor"),
+        ("asin(sin(q))", "erk"), ("asin(cos(q))", "erk"), ("acos(cos(q))", "erk"), ("atan(tan(q))", "erk"), ("acosh(cosh(q))", "erk"),
+    ],  # fmt: skip
 )
 def test_default_solver(force, solver, tmp_path):
     """Taylor series where the equations have them, else the method that steps across jumps."""

@@ -364,7 +364,10 @@ def test_reset_is_a_new_instance(name, open_fmu):
         instance.initialize({parameter: 1.5}, tolerance=1e-3)
         instance.step(0.02)
         instance.reset()
-    assert drive(instance.initialize(tolerance=1e-6), name, 5) == fresh
+    instance.initialize(tolerance=1e-6)
+    counts = [v.name for v in instance.description.modelVariables if v.type == "Integer"]
+    assert instance.fmu.getInteger(instance.vr(*counts)) == [0] * len(counts)
+    assert drive(instance, name, 5) == fresh
 
 
 @pytest.mark.parametrize("name", fmu.all_names())

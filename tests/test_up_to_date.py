@@ -117,11 +117,12 @@ def derivatives_of_output(name, x, v, t, u, orders):
 def test_derivatives_of_an_output_in_time(name, open_fmu):
     """Of an output that depends on time, an input and an acceleration; each order by itself, so that none is a highest."""
     instance = open_fmu(name).initialize(tolerance=1e-10, start_time=0.5)
-    slope, curvature = 0.3, -0.2
-    instance.fmu.setRealInputDerivatives(instance.vr("u") * 2, [1, 2], [slope, curvature])
-    instance.fmu.doStep(0.5, 0.25)
+    slope, curvature, third, h = 0.3, -0.2, 0.9, 0.25
+    instance.fmu.setRealInputDerivatives(instance.vr("u") * 3, [1, 2, 3], [slope, curvature, third])
+    instance.fmu.doStep(0.5, h)
     x, v, u = instance.get("x", "v", "u")
-    inputs = [0.25 * slope + 0.25**2 / 2 * curvature, slope + 0.25 * curvature, curvature] + [0.0] * 6
+    inputs = [h * slope + h**2 / 2 * curvature + h**3 / 6 * third, slope + h * curvature + h**2 / 2 * third, curvature + h * third, third]
+    inputs += [0.0] * 6
     assert u == pytest.approx(inputs[0])
     orders = range(1, min(6, instance.description.coSimulation.maxOutputDerivativeOrder) + 1)
     for order in orders:

@@ -107,6 +107,28 @@ static void test_no_expression_swell(void **state) {
   expressions_free(&e);
 }
 
+/* x^p along x and p: a base that is not positive has a derivative where p is not varied, and log(x) counts where it is. */
+static void test_varied_exponents(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  Node p = graph_symbol(e.graph, PARAMETER, 0, "p"), seed = graph_symbol(e.graph, SEED_PARAMETER, 0, "seed of p");
+  Node target = power(e.graph, e.x, p), along, seeds[] = {ONE, ZERO, ZERO, seed, ZERO};
+  derivative_along(e.graph, &target, 1, seeds, &along);
+  const struct {
+    double x, p, seed, value;
+  } cases[] = {{-2, 3, 0, 12},
+               {0.5, 2, 1, 1 - 0.25 * 0.6931471805599453},
+               {0.5, 2, -2, 1 + 0.5 * 0.6931471805599453},
+               {3, 2, 0, 6}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const double symbols[] = {cases[i].x, 0, 0, cases[i].p, cases[i].seed};
+    double *values = graph_evaluate(e.graph, symbols);
+    assert_true(fabs(values[along] - cases[i].value) < 1e-14);
+    free(values);
+  }
+  expressions_free(&e);
+}
+
 static void test_substitution(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -121,6 +143,7 @@ int main(void) {
       cmocka_unit_test(test_every_operation),     cmocka_unit_test(test_directions_and_weights),
       cmocka_unit_test(test_sparse_gradient),     cmocka_unit_test(test_long_sums),
       cmocka_unit_test(test_no_expression_swell), cmocka_unit_test(test_substitution),
+      cmocka_unit_test(test_varied_exponents),
   };
   return cmocka_run_group_tests_name("differentiate", tests, NULL, NULL);
 }

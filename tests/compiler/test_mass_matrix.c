@@ -46,6 +46,23 @@ static void test_matrices_that_are_not_definite(void **state) {
   assert_int_equal(ldlt_factor(1, NULL, NULL, nan), 1);
 }
 
+/* Pivots that rounding alone leaves are none, of whatever sign; a small one with digits is. By rows of the lower triangle. */
+static void test_pivots_near_zero(void **state) {
+  (void)state;
+  const size_t start[] = {0, 1, 3}, column[] = {0, 0, 1};
+  for (int i = 1; i <= 200; i++) {
+    double a = 1.0 / 3, b = i / 7.0, full[] = {a * a, a * b, b * b}, sparse[] = {a * a, a * b, b * b};
+    assert_int_equal(ldlt_factor(2, NULL, NULL, full), 2);
+    assert_int_equal(ldlt_factor(2, start, column, sparse), 2);
+  }
+  double full[] = {1.0, 1.0, 1.0 + 1e-9}, sparse[] = {1.0, 1.0, 1.0 + 1e-9}, x[] = {0.0, 1e-9}, y[] = {0.0, 1e-9};
+  assert_int_equal(ldlt_factor(2, NULL, NULL, full), 0);
+  assert_int_equal(ldlt_factor(2, start, column, sparse), 0);
+  ldlt_solve(2, NULL, NULL, full, x);
+  ldlt_solve(2, start, column, sparse, y);
+  assert_true(fabs(x[0] + 1) < 1e-6 && fabs(x[1] - 1) < 1e-6 && fabs(y[0] + 1) < 1e-6 && fabs(y[1] - 1) < 1e-6);
+}
+
 enum { SPARSE = 40, POSITIONS = SPARSE * (SPARSE + 1) / 2 };
 
 static unsigned next(unsigned *seed) {
@@ -145,6 +162,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_solution),
       cmocka_unit_test(test_matrices_that_are_not_definite),
+      cmocka_unit_test(test_pivots_near_zero),
       cmocka_unit_test(test_sparse_patterns),
       cmocka_unit_test(test_order_of_elimination),
       cmocka_unit_test(test_sparse_matrices_that_are_not_definite),

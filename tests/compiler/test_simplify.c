@@ -46,6 +46,53 @@ static void test_roots_of_even_powers(void **state) {
   expressions_free(&e);
 }
 
+/* More factors than are looked at, and longer products; something in them cancels. */
+static void test_long_products_keep_values(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  Node different = ONE, alternating = ONE;
+  double of_different = 1.0, of_alternating = 1.0;
+  for (int i = 1; i <= 14; i++) {
+    different = multiply(e.graph, different, function(e.graph, COSINE, scale(e.graph, i, e.x), ZERO));
+    of_different *= cos(0.1 * i);
+    different = divide(e.graph, different, function(e.graph, COSINE, e.x, ZERO));
+    of_different /= cos(0.1);
+    assert_true(fabs(value_at(&e, different, 0.1, 0, 0) - of_different) < 1e-12 * fabs(of_different));
+  }
+  for (int i = 0; i < 75; i++) {
+    alternating = multiply(e.graph, alternating, i % 2 == 0 ? e.x : e.y);
+    of_alternating *= i % 2 == 0 ? 1.1 : 0.9;
+    Node quotient = divide(e.graph, alternating, e.x);
+    assert_true(fabs(value_at(&e, quotient, 1.1, 0.9, 0) - of_alternating / 1.1) < 1e-12);
+  }
+  expressions_free(&e);
+}
+
+/* Functions of equal operands, of abs and of what is negative: at x = -3, y = 0.5. */
+static void test_functions_of_special_operands(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    double value;
+  } cases[] = {{"atan2(x, x)", -2.356194490192345},
+               {"min(x, x) + max(y, y)", -2.5},
+               {"abs(x)^3", 27.0},
+               {"abs(x)^2", 9.0},
+               {"acos(-y)", 2.0943951023931957},
+               {"asin(-y)", -0.5235987755982989},
+               {"abs(-x^3)", 27.0},
+               {"sqrt(x^2)^3", 27.0},
+               {"abs(x)*x", -9.0},
+               {"cosh(-x) - cosh(x)", 0.0},
+               {"log(-x)", 1.0986122886681098}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct Expressions e = expressions_create();
+    double value = value_at(&e, parse(&e, cases[i].text), -3, 0.5, 0);
+    if (!(fabs(value - cases[i].value) < 1e-14)) fail_msg("%s is %.17g", cases[i].text, value);
+    expressions_free(&e);
+  }
+}
+
 static void test_signs_and_precedence(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -166,9 +213,10 @@ static void test_fractions_cancel(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_simplifications),      cmocka_unit_test(test_signs_and_precedence),
-      cmocka_unit_test(test_algebra_keeps_values), cmocka_unit_test(test_printed_text_reads_back),
-      cmocka_unit_test(test_fractions_cancel),     cmocka_unit_test(test_roots_of_even_powers),
+      cmocka_unit_test(test_simplifications),           cmocka_unit_test(test_signs_and_precedence),
+      cmocka_unit_test(test_algebra_keeps_values),      cmocka_unit_test(test_printed_text_reads_back),
+      cmocka_unit_test(test_fractions_cancel),          cmocka_unit_test(test_roots_of_even_powers),
+      cmocka_unit_test(test_long_products_keep_values), cmocka_unit_test(test_functions_of_special_operands),
   };
   return cmocka_run_group_tests_name("simplify", tests, NULL, NULL);
 }

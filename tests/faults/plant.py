@@ -1,5 +1,5 @@
 """
-Plants each fault of faults.py in a copy of the project, builds what the tests need, and runs the tests that should see it:
+Plants each fault of faults.py in a copy of the project, builds what its test needs, and runs the test that should see it:
 scripts/faults [PLACE IN THE LIST ...]. Fails where one is not seen, or where these tests fail without a fault.
 """
 
@@ -7,22 +7,29 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from faults import FAULTS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TREE = ROOT / "build" / "faults"
-SYSTEMS = {"SimplePendulum", "SimplePendulumLinear", "DampedPendulum", "ElasticPendulum", "ParticlePolar"}  # few, to build them often
+PASSES, FAILS, ABSENT = range(3)
+
+
+def place_in_copy(file):
+    """Where a file of the project goes. Systems of tests/systems that a test of the list needs stand beside those of fmu/."""
+    parts = Path(file).parts
+    is_needed = parts[:2] == ("tests", "systems") and any(parts[2] in test[3:] for *_, test in FAULTS)
+    return TREE / "fmu" / Path(*parts[2:]) if is_needed else TREE / file
 
 
 def copy_project():
     words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     for file in subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n"):
-        parts = Path(file).parts
-        if not file or not (ROOT / file).is_file() or (len(parts) == 3 and parts[0] == "fmu" and parts[1] not in SYSTEMS):
+        if not (ROOT / file).is_file():
             continue
-        target = TREE / file
+        target = place_in_copy(file)
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != (ROOT / file).read_bytes():
             shutil.copyfile(ROOT / file, target)
@@ -32,47 +39,69 @@ def copy_project():
         (TREE / "build" / "venv").symlink_to((ROOT / "build" / "venv").resolve())
 
 
-def build():
-    return subprocess.run(["scripts/build", "build", "-DBUILD_TESTS=ON"], cwd=TREE, capture_output=True, text=True).returncode == 0
+def succeeds(*words):
+    return subprocess.run(words, cwd=TREE, capture_output=True).returncode == 0
 
 
-def passes(words):
-    """True or False; None where there is no such test."""
-    kind, *rest = words
+def build(targets):
+    return succeeds("cmake", "--build", "build", "--parallel", str(os.cpu_count()), "--target", *targets)
+
+
+def targets_of(kind, test, keyword="", *systems):
+    """What a test needs: itself, or the compiler, and FMUs. The others stay as they were without a fault."""
+    return [test] if kind == "ctest" else ["lagc", *(f"fmu_{name}" for name in systems)]
+
+
+def run(kind, test, keyword="", *_):
+    """PASSES, FAILS, or ABSENT where there is no such test."""
     if kind == "ctest":
-        command = ["ctest", "--test-dir", "build", "--no-tests=error", "-R", f"^{rest[0]}$"]
+        command = ["ctest", "--test-dir", "build", "--no-tests=error", "-R", f"^({test})$"]
     else:
-        command = ["build/venv/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *rest]
+        command = ["build/venv/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", f"tests/{test}.py", "-k", keyword]
     environment = {name: value for name, value in os.environ.items() if name != "FMU_BUILD"}
-    result = subprocess.run(command, cwd=TREE, capture_output=True, text=True, env=environment)
-    return {0: True, 1: False, 8: False}.get(result.returncode)
+    code = subprocess.run(command, cwd=TREE, capture_output=True, env=environment).returncode
+    return {0: PASSES, 1: FAILS, 8: FAILS}.get(code, ABSENT)
 
 
-def outcome(file, right, wrong, words):
+def outcome(file, right, wrong, test):
     path = TREE / file
     text = path.read_text()
     path.write_text(text.replace(right, wrong))
     try:
-        if not build():
-            return "does not compile"
-        return {True: "NOT SEEN", False: "seen", None: "has no test"}[passes(words)]
+        is_built = build(targets_of(*test))
+        result = run(*test) if is_built else None
     finally:
         path.write_text(text)
+    if not is_built:
+        build(targets_of(*test))  # else what could not be made is missing from now on
+        return "DOES NOT COMPILE"
+    return {PASSES: "NOT SEEN", FAILS: "seen", ABSENT: "HAS NO TEST"}[result]
+
+
+def check_without_faults(tests):
+    """Builds everything once, and runs the tests, those of one kind or module together."""
+    if not succeeds("scripts/build", "build", "-DBUILD_TESTS=ON"):
+        sys.exit("the project does not build")
+    together = [("ctest", "|".join({test for kind, test, *_ in tests if kind == "ctest"}))]
+    for module in sorted({test for kind, test, *_ in tests if kind == "pytest"}):
+        keywords = {test[2] for test in tests if test[1] == module}
+        together.append(("pytest", module, "" if "" in keywords else " or ".join(f"({keyword})" for keyword in sorted(keywords))))
+    for test in together:
+        if test[1] and run(*test) != PASSES:
+            sys.exit(f"fails without a fault: {' '.join(test)}")
 
 
 def main():
+    started = time.monotonic()
     chosen = [FAULTS[int(place)] for place in sys.argv[1:]] or FAULTS
     copy_project()
-    if not build():
-        sys.exit("the project does not build")
-    for words in {tuple(fault[3]) for fault in chosen}:
-        if not passes(words):
-            sys.exit(f"fails without a fault: {' '.join(words)}")
+    check_without_faults([fault[3] for fault in chosen])
     unseen = 0
     for fault in chosen:
         result = outcome(*fault)
         unseen += result != "seen"
         print(f"{FAULTS.index(fault):3} {result}: {fault[0]}: {fault[1].strip()}  ->  {fault[2].strip()}", flush=True)
+    print(f"{len(chosen)} faults in {time.monotonic() - started:.0f} s")
     sys.exit(f"{unseen} of {len(chosen)} faults were not seen" if unseen else 0)
 
 

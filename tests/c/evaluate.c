@@ -1,0 +1,93 @@
+/*
+ * Prints what the functions of a generated system, which is linked in, give at a point and along a direction. Reads
+ * both from the standard input, each as time, state, inputs and parameters.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "lagrangian.h"
+
+enum { ORDER = 10 };
+
+static void *zeros(size_t count, size_t size) {
+  void *values = calloc(count + 1, size);
+  if (values == NULL) exit(2);
+  return values;
+}
+
+static double *read_numbers(size_t count) {
+  double *numbers = zeros(count, sizeof *numbers);
+  for (size_t i = 0; i < count; i++)
+    if (scanf("%lf", &numbers[i]) != 1) exit(3);
+  return numbers;
+}
+
+static void print(const char *name, const double *values, size_t count) {
+  printf("%s", name);
+  for (size_t i = 0; i < count; i++) printf(" %.17g", values[i]);
+  printf("\n");
+}
+
+static void print_jacobian(const struct Point *point) {
+  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  double *values = zeros(pattern->count, sizeof *values), *column = zeros(lagrangian.state_count, sizeof *column);
+  if (lagrangian.jacobian(point, values) != 0) exit(1);
+  for (size_t j = 0; j < lagrangian.state_count; j++) {
+    for (size_t i = 0; i < lagrangian.state_count; i++) column[i] = 0.0;
+    for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) column[pattern->row[k]] = values[k];
+    print("jacobian", column, lagrangian.state_count);
+  }
+  free(values);
+  free(column);
+}
+
+static void print_series(const struct Point *point) {
+  size_t states = lagrangian.state_count;
+  Series *x = zeros(states, sizeof *x), *work = zeros(lagrangian.series_rows, sizeof *work);
+  Series *input = zeros(lagrangian.input_count, sizeof *input);
+  double *derivative = zeros(states, sizeof *derivative);
+  if (lagrangian.start(point, derivative, work) != 0) exit(1);
+  print("start", derivative, states);
+  for (size_t i = 0; i < states; i++) {
+    x[i][0] = point->state[i];
+    x[i][1] = derivative[i];
+  }
+  for (size_t i = 0; i < lagrangian.input_count; i++) input[i][0] = point->input[i];
+  lagrangian.series(point, ORDER, (const Series *)input, x, work);
+  for (size_t i = 0; i < states; i++) print("series", x[i], ORDER + 1);
+  free(x);
+  free(work);
+  free(input);
+  free(derivative);
+}
+
+int main(void) {
+  size_t states = lagrangian.state_count, inputs = lagrangian.input_count, parameters = lagrangian.parameter_count;
+  size_t count = 1 + states + inputs + parameters, n = lagrangian.coordinate_count;
+  double *at = read_numbers(count), *direction = read_numbers(count);
+  double *prepared = zeros(lagrangian.prepared_count, sizeof *prepared);
+  double *work = zeros(lagrangian.work_count, sizeof *work);
+  double *derivative = zeros(states, sizeof *derivative), *along = zeros(states, sizeof *along);
+  const double *parameter = at + 1 + states + inputs;
+  struct Point point = {at[0], at + 1, at + 1 + states, parameter, prepared, work};
+  struct Seed seed = {direction[0], direction + 1, direction + 1 + states, direction + 1 + states + inputs};
+  if (lagrangian.prepare(parameter, prepared) != 0 || lagrangian.derivatives(&point, derivative) != 0 ||
+      lagrangian.directional(&point, &seed, along) != 0)
+    return 1;
+  print("derivatives", derivative, states);
+  print("directional", along, states);
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    if (variable->kind != VARIABLE_RESULT) continue;
+    double value = lagrangian.result(&point, derivative + n, variable->index);
+    print(variable->name, &value, 1);
+    if (!variable->is_output) continue;
+    value = lagrangian.result_along(&point, &seed, derivative + n, along + n, variable->index);
+    print("along", &value, 1);
+  }
+  if (lagrangian.jacobian != NULL) print_jacobian(&point);
+  else print_series(&point);
+  double *const arrays[] = {at, direction, prepared, work, derivative, along};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+  return 0;
+}

@@ -1,0 +1,175 @@
+/* The mass matrix as expressions: which coordinates it couples, and its symbolic factors. */
+#include "expressions.h"
+#include "mechanics/mass_elements.h"
+#include "mechanics/pivots.h"
+
+enum { COORDINATES = 12, ELEMENTS = COORDINATES * (COORDINATES + 1) / 2 };
+
+/* Whether each pair is coupled, directly or by way of others: the transitive closure, by Warshall. */
+static void close_pattern(bool coupled[COORDINATES][COORDINATES]) {
+  for (size_t k = 0; k < COORDINATES; k++)
+    for (size_t i = 0; i < COORDINATES; i++)
+      for (size_t j = 0; j < COORDINATES; j++) coupled[i][j] |= coupled[i][k] && coupled[k][j];
+}
+
+/* Elements at positions (i, j), j <= i, of a matrix that has all of its diagonal. The node of an element tells it again. */
+static void check_components(struct Position *positions, size_t count) {
+  struct Elements elements = {.count = count, .capacity = count};
+  bool coupled[COORDINATES][COORDINATES] = {{false}};
+  elements.positions = malloc(count * sizeof *elements.positions);
+  elements.nodes = malloc(count * sizeof *elements.nodes);
+  for (size_t k = 0; k < count; k++) {
+    elements.positions[k] = positions[k];
+    elements.nodes[k] = (Node)(positions[k].row * COORDINATES + positions[k].column);
+    coupled[positions[k].row][positions[k].column] = coupled[positions[k].column][positions[k].row] = true;
+  }
+  close_pattern(coupled);
+  struct Components components = find_components(COORDINATES, &elements);
+  size_t found = 0;
+  for (size_t i = 0; i < COORDINATES; i++) {
+    for (size_t j = 0; j < COORDINATES; j++) assert_int_equal(components.of[i] == components.of[j], coupled[i][j]);
+    bool is_first = true;
+    for (size_t j = 0; j < i; j++) is_first &= !coupled[i][j];
+    if (is_first) assert_int_equal(components.of[i], found++);
+  }
+  assert_int_equal(components.count, found);
+  size_t *start = sort_by_components(&elements, &components);
+  assert_true(start[0] == 0 && start[components.count] == count);
+  for (size_t b = 0; b < components.count; b++)
+    for (size_t k = start[b]; k < start[b + 1]; k++) {
+      assert_int_equal(components.of[elements.positions[k].row], b);
+      assert_int_equal(elements.nodes[k], elements.positions[k].row * COORDINATES + elements.positions[k].column);
+    }
+  free(start);
+  free(components.of);
+  elements_free(&elements);
+}
+
+static void shuffle(struct Position *positions, size_t count, unsigned *seed) {
+  for (size_t i = count; i > 1; i--) {
+    *seed = *seed * 1103515245u + 12345u;
+    size_t j = (*seed >> 16) % i;
+    struct Position other = positions[i - 1];
+    positions[i - 1] = positions[j];
+    positions[j] = other;
+  }
+}
+
+static void test_components(void **state) {
+  (void)state;
+  unsigned seed = 5;
+  for (int trial = 0; trial < 2000; trial++) {
+    struct Position positions[ELEMENTS];
+    size_t count = 0;
+    for (size_t i = 0; i < COORDINATES; i++)
+      for (size_t j = 0; j <= i; j++) {
+        seed = seed * 1103515245u + 12345u;
+        if (i == j || (seed >> 16) % 100 < 10) positions[count++] = (struct Position){i, j};
+      }
+    shuffle(positions, count, &seed);
+    check_components(positions, count);
+  }
+}
+
+/* A tridiagonal matrix is one component, whatever the order of its elements; without an element, two. */
+static void test_components_of_a_chain(void **state) {
+  (void)state;
+  struct Position chain[2 * COORDINATES];
+  unsigned seed = 3;
+  for (int trial = 0; trial < 100; trial++) {
+    size_t count = 0;
+    for (size_t i = 0; i < COORDINATES; i++) {
+      chain[count++] = (struct Position){i, i};
+      if (i > 0 && (trial % 2 == 0 || i != 5)) chain[count++] = (struct Position){i, i - 1};
+    }
+    shuffle(chain, count, &seed);
+    check_components(chain, count);
+  }
+}
+
+enum { SIZE = 3, FULL = SIZE * (SIZE + 1) / 2 };
+
+/* Factors a block of three coordinates; mass: its lower triangle by rows. */
+static struct Inertia factor(struct Expressions *e, struct InertiaBlock *block, const char *const mass[FULL]) {
+  static size_t start[] = {0, 1, 3, 6}, column[] = {0, 0, 1, 0, 1, 2}, coordinates[] = {2, 0, 1};
+  static Node nodes[FULL];
+  for (int k = 0; k < FULL; k++) nodes[k] = parse(e, mass[k]);
+  *block = (struct InertiaBlock){
+      .count = SIZE, .coordinates = coordinates, .is_unrolled = true, .start = start, .column = column, .mass = nodes};
+  struct Inertia inertia = {.count = SIZE, .blocks = block, .block_count = 1};
+  pivots_factor(e->graph, &inertia);
+  return inertia;
+}
+
+/* L D L^T is M, and the solution of M x = b solves it, at numbers. */
+static void test_symbolic_factors(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  struct InertiaBlock block;
+  struct Inertia inertia = factor(&e, &block, (const char *const[]){"x + 2", "y*z", "5 + y^2", "x", "sin(z)", "7"});
+  const double x = 0.7, y = -1.3, z = 2.1;
+  const double m[SIZE][SIZE] = {{x + 2, y * z, x}, {y * z, 5 + y * y, sin(z)}, {x, sin(z), 7}};
+  double lower[SIZE][SIZE] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, diagonal[SIZE];
+  for (int i = 0, k = 0; i < SIZE; i++) {
+    for (int j = 0; j < i; j++) lower[i][j] = value_at(&e, block.factor[k++], x, y, z);
+    diagonal[i] = value_at(&e, block.factor[k++], x, y, z);
+  }
+  Node solution[] = {parse(&e, "1"), parse(&e, "x"), parse(&e, "y*z")};
+  const double right[] = {1, x, y * z};
+  block_solve(e.graph, &block, solution);
+  for (int i = 0; i < SIZE; i++) {
+    double product = 0;
+    for (int j = 0; j < SIZE; j++) {
+      double sum = 0;
+      for (int k = 0; k < SIZE; k++) sum += lower[i][k] * diagonal[k] * lower[j][k];
+      assert_true(fabs(sum - m[i][j]) < 1e-14);
+      product += m[i][j] * value_at(&e, solution[j], x, y, z);
+    }
+    assert_true(fabs(product - right[i]) < 1e-14);
+    const struct Pivot *pivot = &inertia.pivots[i];
+    assert_int_equal(pivot->coordinate, block.coordinates[i]);
+    assert_int_equal(pivot->value, block.factor[block.start[i + 1] - 1]);
+    assert_int_equal(pivot->diagonal, block.mass[block.start[i + 1] - 1]);
+  }
+  assert_int_equal(inertia.pivot_count, SIZE);
+  free(inertia.pivots);
+  free(block.factor);
+  expressions_free(&e);
+}
+
+/* The size of the terms of a diagonal element with |sin| and |cos| taken as 1, at x = 3, y = 0.5, z = 2. */
+static void test_scales_of_pivots(void **state) {
+  (void)state;
+  static const struct {
+    const char *mass;
+    double scale;
+  } cases[] = {
+      {"x^2*sin(y)^2", 9},
+      {"x^2 + y^2 - 2*x*y*cos(z)", 9 + 0.25 + 3},
+      {"x^2*(2 - 2*cos(y))", 36},
+      {"x*(sin(y) - y*cos(z))^2", 3 * 1.5 * 1.5},
+      {"5*sin(y)^4*cos(z)^2", 5},
+      {"(4 + cos(y))^-1", 1 / (4 + 0.8775825618903728)}, /* of a quotient: itself */
+      {"exp(x)*cos(z)^2", 20.085536923187668},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct Expressions e = expressions_create();
+    struct InertiaBlock block;
+    struct Inertia inertia = factor(&e, &block, (const char *const[]){cases[i].mass, "0", "1", "0", "0", "1"});
+    double scale = value_at(&e, inertia.pivots[0].scale, 3, 0.5, 2);
+    if (!(fabs(scale - cases[i].scale) < 1e-12)) fail_msg("the scale of %s is %.17g", cases[i].mass, scale);
+    free(inertia.pivots);
+    free(block.factor);
+    expressions_free(&e);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_components),
+      cmocka_unit_test(test_components_of_a_chain),
+      cmocka_unit_test(test_symbolic_factors),
+      cmocka_unit_test(test_scales_of_pivots),
+  };
+  return cmocka_run_group_tests_name("inertia", tests, NULL, NULL);
+}
