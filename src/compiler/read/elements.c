@@ -228,8 +228,7 @@ static char *meant_body(const struct Reader *reader, const char *name) {
   struct Similar similar = {.wanted = name};
   for (size_t i = 0; i < reader->bodies->capacity && are_shown(reader); i++)
     if (reader->bodies->places[i].text != NULL) similar_consider(&similar, reader->bodies->places[i].text);
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
-                              : copy_text("expected the name of one");
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
 }
 
 /* The coordinate of this name, NULL where there is none. */
