@@ -413,6 +413,18 @@ def test_bad_command_lines(words, message, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_files_beyond_the_limit_of_the_user(tmp_path):
+    """One line, as for a full disk, and no half of a file."""
+    (tmp_path / "system.xml").write_text(RIGHT)
+    result = subprocess.run(
+        [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)),
+    )  # fmt: skip
+    assert result.returncode == 1
+    assert re.fullmatch("system.xml: cannot write into 'out': File too large; expected .*\n", result.stderr)
+    assert not [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+
+
 def test_point_that_is_no_equilibrium(tmp_path):
     """A warning: the linear system is then the tangent there, with a constant part."""
     (tmp_path / "system.xml").write_text(RIGHT)
