@@ -24,7 +24,7 @@ from fmpy.fmi2 import (
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
-LAGC = BUILD / "bin" / "lagc"
+LAGC = ROOT / "build" / "bin" / "lagc"
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
 
@@ -53,9 +53,22 @@ def archive(name):
     return folder / "fmu" / f"{name}.fmu"
 
 
+@functools.cache
+def bring_up_to_date(build):
+    """What build_systems() takes from another build; its lock is that of scripts/build."""
+    with open(build / "build.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        tools = ["lagc", "icon", "interface", "solvers"]
+        subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
+
+
 def build_systems(folder, texts, *words):
-    """Builds FMUs of systems that a test writes itself, by name, in a folder of the build; other processes wait. Words are for CMake."""
+    """
+    Builds FMUs of systems that a test writes itself, by name, in a folder of the build, with the tools of the build around
+    it; other processes wait. Words are for CMake.
+    """
     build = BUILD / folder
+    bring_up_to_date(build.parent)
     build.mkdir(parents=True, exist_ok=True)
     with open(build / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -67,7 +80,8 @@ def build_systems(folder, texts, *words):
         for path in (build / "systems").iterdir():
             if path.name not in texts:
                 shutil.rmtree(path)
-        subprocess.run([ROOT / "scripts" / "build", build, f"-DSYSTEMS={build / 'systems'}", *words], check=True)
+        choices = [f"-DSYSTEMS={build / 'systems'}", f"-DTOOLS={build.parent}"]
+        subprocess.run([ROOT / "scripts" / "build", build, *choices, *words], check=True)
     for name in texts:
         built_by_tests[name] = build / "fmu" / f"{name}.fmu"
 

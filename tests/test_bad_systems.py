@@ -29,23 +29,24 @@ RIGHT = """\
 # What is wrong, the line replaced, its new text (several lines are fine), the line and message expected.
 CASES = [
     ("not XML", 7, "<particle <", 7, "'<' begins an element"),
-    ("tag not closed", 8, "<potential>m*g*l", 0, "mismatch"),
-    ("unknown element", 8, "<potentail>m*g*bob.y</potentail>", 8, "potentail.*not expected.*potential"),
-    ("unknown attribute", 6, '<coordinate name="theta" speed="omega" unit="rad"/>', 6, "speed"),
-    ("velocity missing", 6, '<coordinate name="theta" unit="rad"/>', 6, "velocity.*required"),
-    ("parameter without start", 2, '<parameter name="m" unit="kg"/>', 2, "start.*required"),
-    ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, "m 1"),
-    ("unknown solver", 11, '<solver method="euler"/>', 11, "euler"),
-    ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, "-1"),
+    ("tag not closed", 8, "<potential>m*g*l", 13, "</system> stands where <potential> of line 8 is still open"),
+    ("unknown element", 8, "<potentail>m*g*bob.y</potentail>", 8, "<potentail> is no element of <system>; did you mean 'potential'"),
+    ("unknown attribute", 6, '<coordinate name="theta" speed="omega" unit="rad"/>', 6,
+     "<coordinate> has no attribute 'speed'; expected name, unit, description, start, nominal, velocity, "),
+    ("velocity missing", 6, '<coordinate name="theta" unit="rad"/>', 6, "<coordinate> needs the attribute 'velocity'"),
+    ("parameter without start", 2, '<parameter name="m" unit="kg"/>', 2, "<parameter> needs the attribute 'start'"),
+    ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, 'name="m 1" of <parameter> is no name; expected letters'),
+    ("unknown solver", 11, '<solver method="euler"/>', 11, 'method="euler" of <solver> is not known; expected taylor, erk'),
+    ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, 'tolerance="-1" of <solver> is not above 0'),
     ("tolerance of 5", 11, '<solver method="erk" tolerance="5"/>', 11, "tolerance 5; expected a number between 0 and 1"),
     ("tolerance by a constant", 11, '<constant name="INF" value="-1"/><solver method="erk" tolerance="INF"/>', 11,
      "tolerance -1; expected"),
     ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize 0; expected"),
-    ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, "'0'"),
+    ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, 'maxStep="0" of <solver> is not above 0'),
     ("largest step of the exact method", 11, '<solver method="exact" maxStep="0.1"/>', 11, "expected no maxStep"),
     ("half a step at most", 11, '<solver method="erk" maxSteps="0.5"/>', 11, "maxSteps 0.5; expected a whole number from 1 to 1e9"),
     ("number of steps of the exact method", 11, '<solver method="exact" maxSteps="10"/>', 11, "expected no maxSteps"),
-    ("step of zero", 12, '<experiment stepSize="0"/>', 12, "'0'"),
+    ("step of zero", 12, '<experiment stepSize="0"/>', 12, 'stepSize="0" of <experiment> is not above 0'),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
     ("second solver", 12, '<solver method="bdf"/>', 12, "second <solver>"),
     ("second experiment", 11, '<experiment stopTime="3"/>', 12, "second <experiment>"),
@@ -183,7 +184,7 @@ CASES = [
     ("acceleration in a force", 9, '<force coordinate="theta">tau*der(omega)</force>', 9, "cannot depend on accelerations"),
     ("ampersand", 8, "<potential>m*g & l</potential>", 8, "'&' stands in a text; write &amp;"),
     ("less than", 8, "<potential>m*g*max(0, l < 1)</potential>", 8, "'<' begins an element .*write &lt;"),
-    ("less than in an attribute", 7, '<particle name="bob" mass="m" x="l<2"/>', 7, "'<' stands in an attribute; write &lt;"),
+    ("less than in an attribute", 7, '<particle name="bob" mass="m" x="l<2"/>', 7, "'<' stands in an attribute, .*; write &lt;"),
     ("condition", 8, "<potential>m*g*l*(theta &lt; 1)</potential>", 8, "no conditions: min, max, abs and sign"),
     ("choice", 8, "<potential>if(theta>0,1,2)*m*g*l</potential>", 8, "'if'; there are no conditions: min, max"),
     ("comma in a number", 4, '<parameter name="g" start="9,81" unit="m/s2"/>', 4, "write a point in numbers, as in 9.81"),
@@ -201,6 +202,70 @@ CASES = [
     ("definition named like an index", 11, '<for index="i" from="1" to="2"><define name="i">m</define></for>', 11, "'i' is the index of a <for> around it"),
     ("attribute without quotes", 2, '<parameter name=m start="1"/>', 2, "the value of an attribute is not in quotes"),
     ("no end", 13, "", 13, "the file ends inside an element"),
+    ("attribute with another letter", 2, '<parameter name="m" start="1" units="kg"/>', 2, "<parameter> has no attribute 'units'; did you mean 'unit'"),
+    ("attribute in upper case", 2, '<parameter Name="m" start="1"/>', 2, "no attribute 'Name'; did you mean 'name'"),
+    ("attribute of a body at a particle", 7, '<particle name="bob" mass="m" y="l*cos(theta)" inertia="m*l^2"/>', 7,
+     "<particle> has no attribute 'inertia'; expected name, mass, x, y or z"),
+    ("body without its angle", 7, '<body name="bob" mass="m" y="l*cos(theta)" inertia="m*l^2"/>', 7, "<body> needs the attribute 'angle'"),
+    ("attribute of an energy", 8, '<potential name="U">m*g*bob.y</potential>', 8, "<potential> has no attribute 'name'; expected none"),
+    ("element in upper case", 2, '<Parameter name="m" start="1"/>', 2, "<Parameter> is no element of <system>; did you mean 'parameter'"),
+    ("element of another language", 8, "<lagrangian>-m*g*bob.y</lagrangian>", 8, "<lagrangian> is no element of <system>; write .*<kinetic> and <potential>"),
+    ("element that is unknown", 8, "<rope/>", 8, "<rope> is no element of <system>; expected constant, parameter, .* work, solver or experiment"),
+    ("element that stands elsewhere", 12, '<for index="i" from="1" to="2"><experiment/></for>', 12,
+     "<experiment> cannot stand in <for>; expected constant, .*, output or for$"),
+    ("element in an element without content", 7, '<particle name="bob" mass="m" y="l*cos(theta)"><potential>m*g*bob.y</potential></particle>', 7,
+     "<potential> stands inside of <particle>; expected the end of <particle> before it"),
+    ("element in an expression", 8, "<potential>\n m*g*<b>bob.y</b></potential>", 9, "<b> stands inside of <potential>"),
+    ("text among elements", 8, "<potential>m*g*bob.y</potential>\n\n  m*g + l", 10, "the text 'm\\*g' stands in <system>; expected it in an element"),
+    ("text in an element without content", 11, "<solver method='erk'>bdf</solver>", 11, "the text 'bdf' stands in <solver>; expected it in an attribute"),
+    ("empty element", 8, "<potential/>", 8, "<potential> is empty; expected an expression in it"),
+    ("empty attribute", 2, '<parameter name="m" start=""/>', 2, 'start="" of <parameter> is empty; expected a value'),
+    ("name of Greek letters", 6, '<coordinate name="θ" velocity="omega"/>', 6, 'name="θ" of <coordinate> is no name; expected letters a to z.*index as in'),
+    ("name that is too long", 2, f'<parameter name="{201 * "m"}" start="1"/>', 2, "of <parameter> is too long; expected at most 200 characters"),
+    ("solver in upper case", 11, '<solver method="Taylor"/>', 11, "is not known; did you mean 'taylor'"),
+    ("time with its unit", 12, '<experiment stopTime="10 s"/>', 12, 'stopTime="10 s" of <experiment> is no number; expected one such as'),
+    ("name of a system with a dash", 1, '<system name="my-system">', 1, 'name="my-system" of <system> is no name; expected letters a to z, digits and _, with no digit first$'),
+    ("another root", 1, "<model/>", 2, "the file goes on after the end of its first element"),
+    ("namespace", 1, '<system name="Broken" xmlns="urn:mine">', 1, "<system> belongs to the namespace 'urn:mine'; expected no xmlns"),
+    ("quote missing", 2, '<parameter name="m start="1"/>', 2, "attributes do not follow each other; expected .*both quotes and a blank"),
+    ("attribute without a value", 2, '<parameter name="m" start/>', 2, "the attribute 'start' has no value"),
+    ("attribute twice", 2, '<parameter name="m" start="1" start="2"/>', 2, "the attribute 'start' is given twice"),
+    ("dashes in a comment", 2, '<!-- mass -- of the bob --><parameter name="m" start="1"/>', 2, "'--' stands inside of <!--"),
+    ("comment without end", 2, '<!-- mass', 13, "a comment has no end; expected -->"),
+    ("entity of other languages", 8, "<potential>m&middot;g*bob.y</potential>", 8, "'&middot;' is not known; .* \\* for a product"),
+    ("declaration further down", 1, '\n<?xml version="1.0"?><system name="Broken">', 2, "<.xml ....> stands further down; expected it at the very beginning"),
+    ("unknown encoding", 1, '<?xml version="1.0" encoding="mine"?><system name="Broken">', 1, "not in the encoding that its first line names.*expected UTF-8"),
+    ("control character", 8, "<potential>m*g\a*bob.y</potential>", 8, "an invisible character stands here"),
+    ("function without parentheses", 7, '<particle name="bob" mass="m" y="l*cos theta"/>', 7, r"'cos' is no variable but a function; .*as in cos\(...\)"),
+    ("result in an expression", 10, '<output name="a">kineticEnergy</output>', 10, "'kineticEnergy' is no variable but a result"),
+    ("thousands", 2, '<parameter name="m" start="1,000"/>', 2, "found ','; write a point in numbers, .* nothing between thousands"),
+    ("thousands with a blank", 2, '<parameter name="m" start="1 000"/>', 2, "found '000'; .* nothing between thousands"),
+    ("no number as a value", 2, '<parameter name="m" start="NaN"/>', 2, "unknown name 'NaN'; a value must be a finite number"),
+    ("limit that is infinite", 2, '<parameter name="m" start="1" max="inf"/>', 2, "a limit that is not there is left out"),
+    ("unknown name in a number", 2, '<parameter name="m" start="mass"/>', 2, "unknown name 'mass'; expected a number, or a constant that stands further up"),
+    ("time of other languages", 9, '<force coordinate="theta">tau*sin(t)</force>', 9, "unknown name 't'; write time"),
+    ("velocity of other languages", 10, '<output name="a">theta_dot</output>', 10, r"unknown name 'theta_dot'; write der\(...\)"),
+    ("component that is not there", 10, '<output name="a">bob.z</output>', 10, r"unknown name 'bob\.z'; expected bob\.x or bob\.y"),
+    ("particle as a value", 8, '<define name="a">bob</define><potential>m*g*bob.y</potential>', 8, r"unknown name 'bob'; expected bob\.x or bob\.y"),
+    ("equation", 8, "<potential>U = m*g*bob.y</potential>", 8, "unknown name 'U'; write the value alone, without a name and ="),
+    ("index in parentheses", 11, '<parameter name="k[1]" start="1"/><potential>m*g*l*k(1)</potential>', 11, r"'k' is no function; write k\[...\] for an index"),
+    ("degrees in a number", 6, '<coordinate name="theta" velocity="omega" start="30°"/>', 6, "found '°'; write radians, as in 30\\*pi/180"),
+    ("blank that is none", 8, "<potential>m*g*\u00a0bob.y</potential>", 8, "write a plain blank"),
+    ("velocity in place of its coordinate", 9, '<force coordinate="omega">tau</force>', 9, "no coordinate 'omega' for this force; did you mean 'theta', whose velocity"),
+    ("coordinate in upper case", 9, '<force coordinate="Theta">tau</force>', 9, "no coordinate 'Theta' for this force; did you mean 'theta'"),
+    ("particle in upper case", 9, '<force on="Bob" x="tau/l"/>', 9, "no particle or body 'Bob' for this force; did you mean 'bob'"),
+    ("one name in all repetitions", 11, '<for index="i" from="1" to="2"><parameter name="k" start="1"/></for>', 11,
+     r"the name 'k' is already defined on line 11; .* or an index such as \[i\]"),
+    ("exponent of other languages", 4, '<parameter name="g" start="9.81" unit="m/s^2"/>', 4, "expected exponents as plain digits, as in m2"),
+    ("product of units", 5, '<input name="tau" unit="N*m"/>', 5, r"expected a point between units, as in N\.m"),
+    ("unit in words", 2, '<parameter name="m" start="1" unit="kilogram"/>', 2, "'kilogram' is not known: expected kg$"),
+    ("unit that is empty", 2, '<parameter name="m" start="1" unit=""/>', 2, "expected 1 for a pure number, or no unit"),
+    ("unit in brackets", 2, '<parameter name="m" start="1" unit="[kg]"/>', 2, "expected it without brackets"),
+    ("negative kinetic energy", 7, '<define name="y">-l*cos(theta)</define><kinetic>-m*l^2*omega^2/2</kinetic><particle name="bob" mass="0" y="y"/>', 6,
+     "the kinetic energy is not positive definite at the start values: it is negative for a motion along 'theta'"),
+    ("kinetic energy of a saddle", 10,
+     '<coordinate name="x" velocity="v" unit="m"/><kinetic>m*v^2/2 + 2*m*l*v*omega</kinetic>', 10,
+     "not positive definite at the start values: it is negative for a motion along 'x'"),
     ("error on a later line of an expression", 8, "<potential>\n  m*g*bob.y\n  + nothing\n</potential>", 10, "'nothing'"),
 ]
 
@@ -228,6 +293,7 @@ def test_broken_system(what, line, text, expected_line, message, tmp_path):
     first = result.stderr.splitlines()[0]
     place = f"system.xml:{expected_line}:" if expected_line else r"system.xml:\d+:"
     assert re.match(f"{place} .*({message})", first), result.stderr
+    assert not re.search("facet|atomic type|Element '|content type|cvc|Expected is|xs:", result.stderr)
     assert not (tmp_path / "out").exists()
     assert result.stdout == ""
 
@@ -283,6 +349,27 @@ QUIET = [
 @pytest.mark.parametrize("what, line, text", QUIET, ids=[case[0] for case in QUIET])
 def test_no_warning(what, line, text, tmp_path):
     result = compile_text(broken(line, text), tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("text, message", [
+    (b"", "1: the file does not begin with an element; expected <system"),
+    (b"\n \n", "3: the file does not begin with an element"),
+    (bytes(range(256)), "1: the file does not begin with an element"),
+    (RIGHT.replace("Pendulum", "P\u00e9ndulum").encode("latin-1"), "1: .*another encoding than UTF-8; expected it saved in UTF-8"),
+    (RIGHT.replace("system", "System").encode(), "1: the file begins with <System>; expected <system name="),
+    ((RIGHT + RIGHT).encode(), "14: the file goes on after the end of its first element"),
+])  # fmt: skip
+def test_files_that_hold_no_system(text, message, tmp_path):
+    (tmp_path / "system.xml").write_bytes(text)
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1
+    assert re.fullmatch(f"system.xml:({message}).*\n", result.stderr), result.stderr
+
+
+def test_other_encodings_that_a_file_names(tmp_path):
+    (tmp_path / "system.xml").write_bytes(RIGHT.encode("utf-16"))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
 
 
@@ -346,6 +433,18 @@ def test_bad_command_lines(words, message, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_files_beyond_the_limit_of_the_user(tmp_path):
+    """One line, as for a full disk, and no half of a file."""
+    (tmp_path / "system.xml").write_text(RIGHT)
+    result = subprocess.run(
+        [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)),
+    )  # fmt: skip
+    assert result.returncode == 1
+    assert re.fullmatch("system.xml: cannot write into 'out': File too large; expected .*\n", result.stderr)
+    assert not [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+
+
 def test_point_that_is_no_equilibrium(tmp_path):
     """A warning: the linear system is then the tangent there, with a constant part."""
     (tmp_path / "system.xml").write_text(RIGHT)
@@ -363,7 +462,8 @@ LINEARIZATION = '<linearization of="{}" name="Line">\n  <at name="theta" value="
         ("missing.xml", "", r"missing.xml.*expected an XML file"),
         ("line.xml", "", "line.xml:1: a linearization of a linearization"),
         ("system.xml", '<at name="theta" value="1"/>\n', "line.xml:3: the point names 'theta' twice"),
-        ("system.xml", '<at name="alpha" value="1"/>\n', "line.xml:3: the point names 'alpha'"),
+        ("system.xml", '<at name="alpha" value="1"/>\n', "line.xml:3: the point names 'alpha'; expected a coordinate"),
+        ("system.xml", '<at name="omgea" value="1"/>\n', "line.xml:3: the point names 'omgea'; did you mean 'omega'"),
         ("system.xml", '<at name="omega" value="g"/>\n', "line.xml:3: unit mismatch"),
         ("system.xml", '<parameter name="a" start="1"/>\n', "line.xml:3: .*parameter"),
     ],

@@ -26,8 +26,9 @@ def run(words, **environment):
     return result
 
 
+@pytest.mark.parametrize("name", ["SimplePendulum", "ChainPendulum", "ElasticPendulum", "ParticleCartesian", "TwoCarts"])
 def test_threads(name):
-    """8 threads with 8 instances each, under ThreadSanitizer."""
+    """8 threads with 8 instances each, under ThreadSanitizer, for each method and the loops of a large mass matrix."""
     words = words_for(name, BUILD / "threads")
     run([BUILD / "threads" / "bin" / "threads", words[1], words[2]])
 

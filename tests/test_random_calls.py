@@ -1,4 +1,7 @@
-"""Random calls, right ones (random_calls.py) and attacks (c/attack.c), on FMUs built with AddressSanitizer and UBSan."""
+"""
+Random calls, right ones (random_calls.py) and attacks (c/attack.c), on FMUs built with AddressSanitizer and UBSan. The
+environment variables RANDOM_CALLS and RANDOM_SEED ask for more of them, and for others.
+"""
 
 import os
 import re
@@ -8,8 +11,8 @@ import sys
 import fmu
 from fmu import BUILD, ROOT
 
-CALLS = 20_000
-ATTACKS = 20_000
+CALLS = int(os.environ.get("RANDOM_CALLS", "20000"))
+SEED = os.environ.get("RANDOM_SEED", "1")
 
 
 def test_random_calls_under_sanitizers():
@@ -22,8 +25,8 @@ def test_random_calls_under_sanitizers():
         "LSAN_OPTIONS": "exitcode=0:max_leaks=0",
         "UBSAN_OPTIONS": "print_stacktrace=1",
     }
-    words = [sys.executable, ROOT / "tests" / "random_calls.py", str(CALLS)]
-    result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=1200)
+    words = [sys.executable, ROOT / "tests" / "random_calls.py", str(CALLS), SEED]
+    result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=1200 + CALLS // 20)
     text = result.stdout + result.stderr
     made = re.search(r"(\d+) calls", result.stdout)
     assert made and int(made.group(1)) >= CALLS, text[-5000:]
@@ -36,10 +39,10 @@ def test_attack_under_sanitizers(name):
     """NULL, unknown references, extreme numbers, wrong states, refused memory, damaged and forged saved states."""
     build, description = BUILD / "sanitized", fmu.description(name)
     library = build / "systems" / name / "binaries" / "linux64" / f"{name}.so"
-    counts = [len(description.modelVariables), len(fmu.states_of(name)), ATTACKS]
+    counts = [len(description.modelVariables), len(fmu.states_of(name)), CALLS, SEED]
     words = [build / "bin" / "attack", library, description.guid, *map(str, counts)]
     environment = os.environ | {"UBSAN_OPTIONS": "print_stacktrace=1"}
-    result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=300)
+    result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=300 + CALLS // 100)
     assert result.returncode == 0, result.stderr
     steps, restored = map(int, re.findall(r"\d+", result.stdout))
-    assert steps > ATTACKS / 10 and restored > ATTACKS / 50
+    assert steps > CALLS / 10 and restored > CALLS / 50

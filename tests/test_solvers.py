@@ -74,6 +74,15 @@ def test_a_number_of_steps_that_the_author_sets(method, open_fmu):
         instance.step(100.0)
 
 
+@pytest.mark.parametrize("method", ["taylor", *METHODS])
+def test_a_method_that_stops_advises_others(method, open_fmu):
+    instance = open_fmu(f"Few{method.capitalize()}").initialize(tolerance=1e-4)
+    with instance.fails(DISCARD, "retrying will not help; .* or build with another <solver>: "):
+        instance.step(100.0)
+    advice = instance.messages[-1][2].split("another <solver>: ")[1]
+    assert set(re.findall("taylor|erk|radau|bdf", advice)) > {"erk"} - {method} and method not in advice
+
+
 def test_much_work_is_told_of_on_the_way(open_fmu):
     """Once in a communication step that takes 50000 steps; it succeeds all the same."""
     instance = open_fmu("Oscillator").initialize(tolerance=1e-8)

@@ -1,4 +1,5 @@
 /* lagc, the Lagrangian compiler: a mechanical system in XML becomes C and modelDescription.xml. */
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,6 +137,7 @@ static _Noreturn void end_without_memory(void) {
 
 int main(int count, char **words) {
   on_memory_failure(end_without_memory);
+  signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();

@@ -23,8 +23,7 @@ enum { SLOW_STEPS = 50000 };
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
 
 static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
-                                   "parameters or other coordinates, or build with another <solver>: bdf where rates "
-                                   "differ much, erk where friction sticks, taylor for all else";
+                                   "parameters or other coordinates";
 
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
   struct Point point = solver_point(instance, time, state);
@@ -107,9 +106,11 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   const char *function = instance->limited_by;
   if (!take_state(instance, reached)) return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s", solver->name, reached,
+  const char *others = solver->alternatives;
+  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s%s%s", solver->name, reached,
               step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
-              solver->remedy != NULL ? solver->remedy : usual_remedy);
+              solver->remedy != NULL ? solver->remedy : usual_remedy,
+              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
   instance->situation->changed = 1;
   return STEP_PARTIAL;
 }

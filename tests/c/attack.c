@@ -1,8 +1,8 @@
 /*
- * Calls an FMU at random in ways that its caller should not: attack LIBRARY GUID VARIABLES STATES CALLS, for sanitizers to
- * watch. Pointers are NULL, references unknown, functions called in wrong states, numbers extreme, saved states damaged,
- * or forged with the right checksum. Fails where a value that was got with fmi2OK is not finite, a status is none of the
- * standard's, or memory is not given back. The same numbers give the same calls.
+ * Calls an FMU at random in ways that its caller should not: attack LIBRARY GUID VARIABLES STATES CALLS SEED, for
+ * sanitizers to watch. Pointers are NULL, references unknown, functions called in wrong states, numbers extreme, saved
+ * states damaged, or forged with the right checksum. Fails where a value that was got with fmi2OK is not finite, a status
+ * is none of the standard's, or memory is not given back. The same numbers give the same calls.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -218,11 +218,12 @@ static void attack(long calls) {
 }
 
 int main(int count, char **words) {
-  if (count != 6) return 2;
+  if (count != 7) return 2;
   fmu = fmu_library_open(words[1]);
   guid = words[2];
   variables = strtoul(words[3], NULL, 10);
   states = strtoul(words[4], NULL, 10);
+  noise ^= strtoull(words[6], NULL, 10) * 0x9E3779B97F4A7C15u; /* spreads small seeds */
   const fmi2CallbackFunctions callbacks = {logger, allocate, release, NULL, NULL};
   for (int type = fmi2ModelExchange; type <= fmi2CoSimulation; type++) {
     do c = fmu.fmi2Instantiate("attack", (fmi2Type)type, guid, NULL, &callbacks, fmi2False, fmi2True);

@@ -69,17 +69,56 @@ struct UnitReader {
 static const char *problem_of_other_unit(const char *text) {
   static const struct {
     const char *name, *problem;
-  } others[] = {
-      {"deg", "expected rad, and the value times pi/180"}, {"mm", "expected m, and the value times 1e-3"},
-      {"cm", "expected m, and the value times 1e-2"},      {"km", "expected m, and the value times 1e3"},
-      {"g", "expected kg, and the value times 1e-3"},      {"ms", "expected s, and the value times 1e-3"},
-      {"min", "expected s, and the value times 60"},       {"h", "expected s, and the value times 3600"},
-      {"kN", "expected N, and the value times 1e3"},       {"rpm", "expected rad/s, and the value times pi/30"},
-      {"Nm", "expected N.m, with a point between units"},  {"kgm", "expected kg.m, with a point between units"}};
+  } others[] = {{"deg", "expected rad, and the value times pi/180"},
+                {"mm", "expected m, and the value times 1e-3"},
+                {"cm", "expected m, and the value times 1e-2"},
+                {"km", "expected m, and the value times 1e3"},
+                {"g", "expected kg, and the value times 1e-3"},
+                {"ms", "expected s, and the value times 1e-3"},
+                {"min", "expected s, and the value times 60"},
+                {"h", "expected s, and the value times 3600"},
+                {"kN", "expected N, and the value times 1e3"},
+                {"rpm", "expected rad/s, and the value times pi/30"},
+                {"Nm", "expected N.m, with a point between units"},
+                {"kgm", "expected kg.m, with a point between units"},
+                {"degree", "expected rad, and the value times pi/180"},
+                {"degrees", "expected rad, and the value times pi/180"},
+                {"radian", "expected rad"},
+                {"radians", "expected rad"},
+                {"sec", "expected s"},
+                {"second", "expected s"},
+                {"seconds", "expected s"},
+                {"meter", "expected m"},
+                {"meters", "expected m"},
+                {"metre", "expected m"},
+                {"metres", "expected m"},
+                {"kilogram", "expected kg"},
+                {"kilograms", "expected kg"},
+                {"Kg", "expected kg"},
+                {"KG", "expected kg"},
+                {"newton", "expected N"},
+                {"Newton", "expected N"},
+                {"hz", "expected Hz"},
+                {"HZ", "expected Hz"},
+                {"ohm", "expected Ohm"}};
   size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (strlen(others[i].name) == length && strncmp(others[i].name, text, length) == 0) return others[i].problem;
+  if (*text == '\0' || strcmp(text, "-") == 0) return "expected 1 for a pure number, or no unit=\"...\"";
+  if (*text == '[') return "expected it without brackets";
+  if (*text == '%') return "expected 1, and the value times 1e-2";
+  if (strncmp(text, "\xc2\xb0", 2) == 0) return "expected rad, and the value times pi/180";
   return NULL;
+}
+
+/* What stands where a unit should be at its end. */
+static const char *problem_of_rest(const char *text) {
+  if (*text == '^' || strncmp(text, "**", 2) == 0 || strncmp(text, "\xc2\xb2", 2) == 0 ||
+      strncmp(text, "\xc2\xb3", 2) == 0)
+    return "expected exponents as plain digits, as in m2 or s-1";
+  if (*text == '*' || *text == ' ' || strncmp(text, "\xc2\xb7", 2) == 0)
+    return "expected a point between units, as in N.m";
+  return "expected the end of the unit; write one '/' with '(...)' after it for several units below it";
 }
 
 static struct Dimension read_factor(struct UnitReader *reader) {
@@ -126,8 +165,7 @@ bool unit_parse(const char *text, struct Dimension *dimension, const char **prob
     *dimension = dimension_multiply(*dimension, below, -1.0);
     if (parentheses && *reader.next++ != ')' && reader.problem == NULL) reader.problem = "expected ')'";
   }
-  if (reader.problem == NULL && *reader.next != '\0')
-    reader.problem = "expected the end of the unit; write one '/' with '(...)' after it for several units below it";
+  if (reader.problem == NULL && *reader.next != '\0') reader.problem = problem_of_rest(reader.next);
   if (reader.problem != NULL) *dimension = dimension_unknown;
   *problem = reader.problem;
   return reader.problem == NULL;

@@ -46,7 +46,7 @@ enum { UNROLL_LIMIT = 2 };
 
 /*
  * M from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and a matrix that is singular
- * everywhere; NULL then. Free with inertia_free().
+ * everywhere or not positive at the start values; NULL then. Free with inertia_free().
  */
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, struct Diagnostics *diagnostics);
 void inertia_free(struct Inertia *inertia);

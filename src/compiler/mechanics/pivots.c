@@ -11,12 +11,19 @@ static double next_random(uint64_t *seed) {
   return 0.5 + (double)(*seed >> 11) / 9007199254740992.0;
 }
 
-/* The coordinate at which a numeric L D L^T finds the block singular, or count, the number of all coordinates. */
-static size_t singular_in_block(const struct InertiaBlock *block, const double *values, size_t count) {
+/* What ends a numeric L D L^T. */
+enum Ending { SINGULAR, NOT_POSITIVE };
+
+/*
+ * The coordinate at which a numeric L D L^T finds the block singular, and for NOT_POSITIVE also negative; or count, the
+ * number of all coordinates. The sign of its pivot is +1 or -1, 0 where it is singular.
+ */
+static size_t end_in_block(const struct InertiaBlock *block, const double *values, size_t count, enum Ending ending,
+                           int *sign) {
   const size_t *start = block->start, *column = block->column;
   double *factor = allocate(start[block->count], sizeof *factor), *row = allocate(block->count, sizeof *row);
-  size_t singular = count;
-  for (size_t i = 0; i < block->count && singular == count; i++) {
+  size_t found = count;
+  for (size_t i = 0; i < block->count && found == count; i++) {
     size_t diagonal = start[i + 1] - 1;
     double pivot = values[block->mass[diagonal]];
     for (size_t k = start[i]; k < diagonal; k++) row[column[k]] = values[block->mass[k]];
@@ -31,24 +38,25 @@ static size_t singular_in_block(const struct InertiaBlock *block, const double *
       row[j] = 0.0;
     }
     factor[diagonal] = pivot;
-    if (fabs(pivot) <= 1e-10 * fabs(values[block->mass[diagonal]])) singular = block->coordinates[i];
+    *sign = fabs(pivot) <= 1e-10 * fabs(values[block->mass[diagonal]]) ? 0 : pivot > 0 ? 1 : -1;
+    if (*sign == 0 || (*sign < 0 && ending == NOT_POSITIVE)) found = block->coordinates[i];
   }
   free(factor);
   free(row);
-  return singular;
+  return found;
 }
 
-/* The coordinate at which M is singular, count where it is regular, -1 without a finite M. */
-static long singular_coordinate(const struct Inertia *inertia, const double *values) {
-  size_t singular = inertia->count;
+/* The coordinate at which a block of M ends as above, count where none does, -1 without a finite M. */
+static long ending_coordinate(const struct Inertia *inertia, const double *values, enum Ending ending, int *sign) {
+  size_t found = inertia->count;
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
     for (size_t k = 0; k < block->start[block->count]; k++)
       if (!isfinite(values[block->mass[k]])) return -1;
   }
-  for (size_t b = 0; b < inertia->block_count && singular == inertia->count; b++)
-    singular = singular_in_block(&inertia->blocks[b], values, inertia->count);
-  return (long)singular;
+  for (size_t b = 0; b < inertia->block_count && found == inertia->count; b++)
+    found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
+  return (long)found;
 }
 
 /* Whether M couples the coordinate with others. */
@@ -80,21 +88,39 @@ static bool has_all_inertias(const struct Model *model, const struct Inertia *in
   return complete;
 }
 
+/* A matrix that is singular at the start values, as at a pole, may be regular elsewhere; a negative one is a wrong sign. */
+static bool is_positive_at_start(const struct Model *model, const struct Inertia *inertia,
+                                 struct Diagnostics *diagnostics) {
+  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  int sign = 0;
+  long found = ending_coordinate(inertia, values, NOT_POSITIVE, &sign);
+  free(values);
+  free(symbols);
+  if (found < 0 || found == (long)inertia->count || sign == 0) return true;
+  report_error(
+      diagnostics, model->coordinates.items[found].line,
+      "the kinetic energy is not positive definite at the start values: it is negative for a motion along '%s'; "
+      "expected masses, inertias and <kinetic> that are positive for every motion",
+      model->coordinates.items[found].name);
+  return false;
+}
+
 bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
   const struct Graph *graph = model->graph;
   if (!has_all_inertias(model, inertia, diagnostics)) return false;
   double *symbols = allocate(graph->symbol_count, sizeof *symbols);
   uint64_t seed = 1;
   long regular = (long)inertia->count, singular = -1, found = -1;
+  int sign;
   for (int trial = 0; trial < 8 && found != regular; trial++) {
     for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
     double *values = graph_evaluate(graph, symbols);
-    found = singular_coordinate(inertia, values);
+    found = ending_coordinate(inertia, values, SINGULAR, &sign);
     if (found >= 0 && found < regular) singular = found;
     free(values);
   }
   free(symbols);
-  if (found == regular || singular < 0) return true;
+  if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
   report_error(diagnostics, model->coordinates.items[singular].line,
                "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
                "coordinates; expected one coordinate for each degree of freedom",

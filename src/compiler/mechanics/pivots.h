@@ -4,7 +4,7 @@
 
 #include "mechanics/inertia.h"
 
-/* Reports a coordinate without inertia and a matrix that is singular everywhere. True where it is regular. */
+/* Reports a coordinate without inertia, and a matrix that is singular everywhere or negative at the start values. */
 bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics);
 
 /* Factors the blocks that are unrolled, and appends their pivots. */

@@ -93,6 +93,10 @@ bool definitions_wait_for(struct Definitions *definitions, const char *name) {
   return true;
 }
 
+bool definitions_contain(const struct Definitions *definitions, const char *name) {
+  return definitions != NULL && names_find(definitions->numbers, name) != NULL;
+}
+
 bool definitions_are_waiting(const struct Definitions *definitions) {
   return definitions != NULL && definitions->waiting > 0;
 }

@@ -26,6 +26,9 @@ void definitions_resolve(struct Definitions *definitions, struct Reader *reader)
 /* Whether the name is that of an expression which has not been read yet; the present one then waits for it. */
 bool definitions_wait_for(struct Definitions *definitions, const char *name);
 
+/* Whether an expression of this name was collected; false without definitions. */
+bool definitions_contain(const struct Definitions *definitions, const char *name);
+
 /* Whether the present expression waits, so that its value means nothing and its mistakes are told when it is read again. */
 bool definitions_are_waiting(const struct Definitions *definitions);
 

@@ -9,6 +9,7 @@
 #include "memory.h"
 #include "read/definitions.h"
 #include "algebra/simplify.h"
+#include "read/similar.h"
 
 #define KIND(kind) (1u << (kind))
 
@@ -204,6 +205,32 @@ static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   model->driven |= driven;
 }
 
+/* A search through all names is for messages that are shown. */
+static bool are_shown(const struct Reader *reader) {
+  return reader->diagnostics->errors < ERROR_LIMIT;
+}
+
+/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. Free with free(). */
+static char *meant_coordinate(const struct Reader *reader, const char *name) {
+  const struct Model *model = reader->model;
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
+    const char *known = model->coordinates.items[i].name;
+    if (strcmp(name, model->velocities.items[i].name) == 0)
+      return format_text("did you mean '%s', whose velocity it is?", known);
+    similar_consider(&similar, known);
+  }
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
+                              : copy_text("expected the name of a <coordinate>");
+}
+
+static char *meant_body(const struct Reader *reader, const char *name) {
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < reader->bodies->capacity && are_shown(reader); i++)
+    if (reader->bodies->places[i].text != NULL) similar_consider(&similar, reader->bodies->places[i].text);
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
+}
+
 /* The coordinate of this name, NULL where there is none. */
 static const struct Symbol *find_coordinate(const struct Reader *reader, const char *name) {
   const struct Graph *graph = reader->model->graph;
@@ -217,10 +244,10 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Model *model = reader->model;
   const struct Symbol *symbol = find_coordinate(reader, coordinate);
   if (symbol == NULL) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "there is no coordinate '%s' for this force; "
-                 "expected the name of a <coordinate>",
-                 coordinate);
+    char *meant = meant_coordinate(reader, coordinate);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; %s", coordinate,
+                 meant);
+    free(meant);
     return;
   }
   int index = symbol->index;
@@ -246,8 +273,10 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   struct Model *model = reader->model;
   const struct Body *body = find_body(reader, name);
   if (body == NULL) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "there is no particle or body '%s' for this force; expected the name of one", name);
+    char *meant = meant_body(reader, name);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no particle or body '%s' for this force; %s", name,
+                 meant);
+    free(meant);
     return;
   }
   for (int axis = 0; axis < 3; axis++) {

@@ -29,7 +29,9 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   bool is_symbol = quantity != NULL && model->graph->vertices[quantity->node].operation == SYMBOL;
   enum SymbolKind kind = is_symbol ? graph_symbol_of(model->graph, quantity->node)->kind : PARAMETER;
   if (kind != COORDINATE && kind != VELOCITY && kind != INPUT) {
-    report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity or an input", name);
+    const char *similar = quantity == NULL ? scope_similar_name(scope, name) : NULL;
+    if (similar != NULL) report_error(diagnostics, line, "the point names '%s'; did you mean '%s'?", name, similar);
+    else report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity or an input", name);
     return;
   }
   Node symbol = model->graph->vertices[quantity->node].left;

@@ -10,7 +10,7 @@
 #include "algebra/simplify.h"
 #include "read/hints.h"
 #include "read/quantities.h"
-#include "read/similar.h"
+#include "read/unknown_names.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
 
@@ -28,9 +28,6 @@ static bool is_derived(const char *what) {
 }
 
 static const struct Quantity nothing = {.node = ZERO};
-
-/* The functions of the language that are no operations of the graph. */
-static const char *const special_functions[] = {"sqrt", "der", "sum"};
 
 static struct Quantity parse_sum(struct Parser *parser);
 static struct Quantity parse_sign(struct Parser *parser);
@@ -75,7 +72,7 @@ static void expect(struct Parser *parser, char c, const char *context) {
   char buffer[32];
   if (parser->failed || accept(parser, c)) return;
   FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
-       hint_for_text(parser->text, parser->next));
+       c == ']' ? "" : hint_for_text(parser->text, parser->next));
 }
 
 static struct Quantity parse_literal(struct Parser *parser) {
@@ -131,7 +128,7 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
     long index = parse_whole(parser, "the index in brackets");
     if (index < 0)
       FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
-    expect(parser, ']', "after the index");
+    expect(parser, ']', "after the only index of a name");
     char *indexed = format_text("%s[%ld]", name, index);
     free(name);
     name = indexed;
@@ -146,16 +143,6 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
   return name;
 }
 
-static void report_unknown_name(struct Parser *parser, const char *name) {
-  /* A search through all names is for messages that are shown. */
-  bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
-  const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL;
-  if (similar != NULL) FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
-  else
-    FAIL(parser, "%s: unknown name '%s'; expected a parameter, coordinate, velocity, input, definition or time",
-         parser->place.what, name);
-}
-
 static struct Quantity look_up(struct Parser *parser, const char *name) {
   const struct Quantity *quantity = scope_find(parser->scope, name);
   if (quantity == NULL && definitions_wait_for(parser->scope->definitions, name)) return nothing;
@@ -163,9 +150,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     report_unknown_name(parser, name);
     return nothing;
   }
-  if (scope_is_reserved(parser->scope, quantity))
-    FAIL(parser, "%s: '%s' is no variable; expected a parameter, coordinate, velocity, input, definition or time",
-         parser->place.what, name);
+  if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
   unsigned surplus = parser->graph->vertices[quantity->node].kinds & ~parser->place.kinds;
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
@@ -241,45 +226,6 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   const char *problem;
   unit_parse("s", &second, &problem);
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
-}
-
-/* The operation that the language calls by this name, OPERATION_COUNT for none. */
-static enum Operation find_function(const char *name) {
-  int operation = 0;
-  while (operation < OPERATION_COUNT &&
-         (functions[operation].is_internal || strcmp(name, functions[operation].name) != 0))
-    operation++;
-  return (enum Operation)operation;
-}
-
-/* Those of one argument first. */
-static char *function_names(void) {
-  char *names = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&names, &length);
-  for (int arity = 1; arity <= 2; arity++)
-    for (int operation = 0; operation < OPERATION_COUNT; operation++)
-      if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
-        fprintf(file, "%s, ", functions[operation].name);
-  fclose(file);
-  return names;
-}
-
-static void report_unknown_function(struct Parser *parser, const char *name) {
-  struct Similar similar = {.wanted = name};
-  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
-    similar_consider(&similar, special_functions[i]);
-  for (int operation = 0; operation < OPERATION_COUNT; operation++)
-    if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
-  char *names = function_names();
-  if (similar.best != NULL && *hint_for_function(name) == '\0')
-    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
-  else if (scope_find(parser->scope, name) != NULL)
-    FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
-  else if (*hint_for_function(name) != '\0')
-    FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
-  else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
-  free(names);
 }
 
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
@@ -429,8 +375,7 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place) {
 
 void define_language(struct Scope *scope) {
   scope_set_number(scope, "pi", M_PI);
-  for (size_t i = 0; i < sizeof special_functions / sizeof *special_functions; i++)
-    scope_set_number(scope, special_functions[i], NAN);
+  for (size_t i = 0; special_functions[i] != NULL; i++) scope_set_number(scope, special_functions[i], NAN);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
 }

@@ -42,8 +42,8 @@ static void add_entry(struct Scope *scope, const char *name, struct Quantity qua
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
   const struct Entry *taken = find_entry(scope, name);
   if (taken != NULL && taken->line > 0) {
-    report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name", name,
-                 taken->line);
+    report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name%s",
+                 name, taken->line, taken->line == line ? ", or an index such as [i] where a <for> repeats it" : "");
     return false;
   }
   if (taken != NULL) {

@@ -1,35 +1,59 @@
 #include "read/xml.h"
 
-#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/parser.h>
-#include <libxml/xmlschemas.h>
 
-/* What may stand where an element was not expected; libxml2 does not tell. */
-static const char *expected_elements(const xmlError *error) {
-  const xmlNode *node = error->node;
-  if (error->domain != XML_FROM_SCHEMASV || error->code != XML_SCHEMAV_ELEMENT_CONTENT || node->parent == NULL)
-    return "";
-  if (xmlStrEqual(node->parent->name, (const xmlChar *)"linearization")) return " Expected at, solver or experiment.";
-  return " Expected constant, parameter, input, coordinate, particle, body, kinetic, potential, dissipation, force, "
-         "define, output or for, and outside of <for> also work, solver or experiment.";
-}
+#include "memory.h"
+#include "read/schema.h"
 
-/* What XML says of characters that have a meaning of their own in it, in other words. */
-static const char *meaning_of(const xmlError *error) {
-  if (error->domain != XML_FROM_PARSER) return NULL;
-  bool of_reference = error->message != NULL && strstr(error->message, "EntityRef") != NULL;
-  if (of_reference)
-    return "'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions";
+/* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. Free with free(). */
+static char *meaning_of(const xmlError *error) {
+  const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
+  if (strstr(message, "EntityRef") != NULL)
+    return copy_text("'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions");
+  if (strstr(message, "not proper UTF-8") != NULL)
+    return copy_text("the file has letters in another encoding than UTF-8; expected it saved in UTF-8");
   switch (error->code) {
   case XML_ERR_NAME_REQUIRED:
-    return "'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or sign for "
-           "conditions";
+    return copy_text("'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or "
+                     "sign for conditions");
   case XML_ERR_LT_IN_ATTRIBUTE:
-    return "'<' stands in an attribute; write &lt; for the sign itself, and min, max, abs or sign for conditions";
-  case XML_ERR_ATTRIBUTE_NOT_STARTED: return "the value of an attribute is not in quotes; expected name=\"value\"";
-  case XML_ERR_TAG_NOT_FINISHED: return "the file ends inside an element; expected its end, such as </system>";
+    return copy_text("'<' stands in an attribute, or a quote is missing before it; write &lt; for the sign itself, and "
+                     "min, max, abs or sign for conditions");
+  case XML_ERR_ATTRIBUTE_NOT_STARTED:
+    return copy_text("the value of an attribute is not in quotes; expected name=\"value\"");
+  case XML_ERR_ATTRIBUTE_WITHOUT_VALUE:
+    return format_text("the attribute '%s' has no value; expected %s=\"...\"", name, name);
+  case XML_ERR_ATTRIBUTE_REDEFINED: return format_text("the attribute '%s' is given twice; expected it once", name);
+  case XML_ERR_SPACE_REQUIRED:
+    return copy_text(
+        "attributes do not follow each other; expected name=\"value\" name=\"value\", with both quotes and "
+        "a blank between them");
+  case XML_ERR_GT_REQUIRED: return format_text("<%s> is not closed; expected > or /> at its end", name);
+  case XML_ERR_TAG_NOT_FINISHED:
+    return copy_text("the file ends inside an element; expected its end, such as </system>");
+  case XML_ERR_TAG_NAME_MISMATCH:
+    return format_text(
+        "</%s> stands where <%s> of line %d is still open; expected </%s> before it, or /> at the end of "
+        "<%s>",
+        other, name, error->int1, name, name);
+  case XML_ERR_DOCUMENT_EMPTY:
+    return copy_text("the file does not begin with an element; expected <system name=\"...\"> and what is in it");
+  case XML_ERR_DOCUMENT_END:
+    return copy_text("the file goes on after the end of its first element; expected one <system> around everything");
+  case XML_ERR_RESERVED_XML_NAME:
+    return copy_text("<?xml ...?> stands further down; expected it at the very beginning of the file, or left out");
+  case XML_ERR_INVALID_ENCODING:
+  case XML_ERR_UNSUPPORTED_ENCODING:
+    return copy_text("the file is not in the encoding that its first line names, or that is not known; expected UTF-8");
+  case XML_ERR_HYPHEN_IN_COMMENT: return copy_text("'--' stands inside of <!-- ... -->; expected - or a colon");
+  case XML_ERR_COMMENT_NOT_FINISHED: return copy_text("a comment has no end; expected --> after <!--");
+  case XML_ERR_UNDECLARED_ENTITY:
+    return format_text("'&%s;' is not known; expected the character itself, and * for a product", name);
+  case XML_ERR_INVALID_CHAR:
+    return copy_text("an invisible character stands here that no text has; expected it removed");
   default: return NULL;
   }
 }
@@ -38,27 +62,12 @@ static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *told = diagnostics;
   if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
-  if (meaning_of(error) != NULL) message = meaning_of(error);
+  char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
+  if (meaning != NULL) message = meaning;
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
-  else report_error(diagnostics, error->line, "%.*s%s", length, message, expected_elements(error));
-}
-
-static void validate(xmlDocPtr document, struct Diagnostics *diagnostics) {
-  xmlSchemaParserCtxtPtr parser = xmlSchemaNewMemParserCtxt(system_schema, (int)strlen(system_schema));
-  xmlSchemaPtr schema = parser != NULL ? xmlSchemaParse(parser) : NULL;
-  xmlSchemaValidCtxtPtr validation = schema != NULL ? xmlSchemaNewValidCtxt(schema) : NULL;
-  if (validation != NULL) {
-    int errors = diagnostics->errors;
-    xmlSchemaSetValidStructuredErrors(validation, (xmlStructuredErrorFunc)report_xml_error, diagnostics);
-    if (xmlSchemaValidateDoc(validation, document) != 0 && diagnostics->errors == errors)
-      report_error(diagnostics, 0, "the file does not match the schema of system.xml");
-  } else {
-    report_error(diagnostics, 0, "the schema of system.xml cannot be used; expected libxml2 with schema support");
-  }
-  xmlSchemaFreeValidCtxt(validation);
-  xmlSchemaFree(schema);
-  xmlSchemaFreeParserCtxt(parser);
+  else report_error(diagnostics, error->line, "%.*s", length, message);
+  free(meaning);
 }
 
 /*
@@ -93,7 +102,9 @@ xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
   xmlDocPtr document = parse(path, diagnostics);
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
-  if (document != NULL) validate(document, diagnostics);
   xmlSetStructuredErrorFunc(NULL, NULL);
-  return document;
+  if (document != NULL) schema_check(document, diagnostics);
+  if (diagnostics->errors == 0) return document;
+  xmlFreeDoc(document);
+  return NULL;
 }

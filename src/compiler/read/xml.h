@@ -6,12 +6,9 @@
 
 #include "diagnostics.h"
 
-/* The text of fmu/system.xsd, built into the program. */
-extern const char system_schema[];
-
 /*
- * Reads the file and validates it against the schema, reporting every error. Returns NULL where the file cannot be
- * read or is not well-formed; a document that the schema refuses is returned, so that more errors can be found.
+ * Reads the file and holds it against the schema, reporting every mistake. NULL where there is one: what else it means for
+ * names and expressions would hide it among messages that follow from it.
  */
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics);
 

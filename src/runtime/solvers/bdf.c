@@ -26,6 +26,7 @@ static bool create(struct Instance *instance) {
 }
 
 const struct Solver solver_bdf = {.name = "CVODE",
+                                  .alternatives = BDF_ALTERNATIVES,
                                   .run = sundials_run,
                                   .create = create,
                                   .destroy = sundials_destroy,

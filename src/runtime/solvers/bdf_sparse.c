@@ -61,6 +61,7 @@ static bool create(struct Instance *instance) {
 }
 
 const struct Solver solver_bdf_sparse = {.name = "CVODE with KLU",
+                                         .alternatives = BDF_ALTERNATIVES,
                                          .run = sundials_run,
                                          .create = create,
                                          .destroy = sundials_destroy,

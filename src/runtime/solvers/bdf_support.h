@@ -7,6 +7,9 @@
 
 #include "sundials_support.h"
 
+/* Where others are right instead, see struct Solver. */
+#define BDF_ALTERNATIVES "radau where inputs change often, erk where friction sticks, taylor where rates are alike"
+
 struct Bdf {
   struct Sundials sundials;
   void *cvode;

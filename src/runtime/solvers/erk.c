@@ -141,6 +141,7 @@ static bool interpolate(struct Instance *instance, double time, double *state) {
 }
 
 const struct Solver solver_erk = {.name = "ERKStep",
+                                  .alternatives = "radau or bdf where rates differ much, taylor where nothing sticks",
                                   .starts_anew = true,
                                   .run = sundials_run,
                                   .create = create,

@@ -355,6 +355,7 @@ static const char *advance(struct Instance *instance, const struct Communication
 }
 
 const struct Solver solver_radau = {.name = "Radau",
+                                    .alternatives = "erk where friction sticks, taylor where rates are alike",
                                     .saved_size = saved_size,
                                     .could_save = could_save,
                                     .create = create,

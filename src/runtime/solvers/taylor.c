@@ -168,6 +168,7 @@ static const char *advance(struct Instance *instance, const struct Communication
 }
 
 const struct Solver solver_taylor = {.name = "the Taylor series",
+                                     .alternatives = "radau or bdf where rates differ much, erk where friction sticks",
                                      .saved_size = saved_size,
                                      .could_save = could_save,
                                      .create = create,
