@@ -21,7 +21,7 @@ struct Bdf {
 bool bdf_configure(struct Instance *instance);
 
 /* What the descriptors share. */
-bool bdf_restart(struct Instance *instance, const struct CommunicationStep *step);
+bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);
 

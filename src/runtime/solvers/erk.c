@@ -95,9 +95,9 @@ static bool obeys_equations(struct Instance *instance, const struct Erk *erk, do
   return true;
 }
 
-static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+static bool restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Erk *erk = instance->solver_memory;
-  sundials_load(instance, safety);
+  sundials_load(instance, state, safety);
   erk->trial = step->end - step->start;
   return start(instance, erk, step->start, instance->situation->suggested_step, step->end);
 }
