@@ -17,7 +17,12 @@
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double radau_safety = 0.05;
 
-enum { ITERATION_LIMIT = 12, ATTEMPT_LIMIT = 60, METHOD_COUNT = sizeof methods / sizeof *methods };
+enum {
+  ITERATION_LIMIT = 12,
+  ATTEMPT_LIMIT = 60,
+  STEPS_OF_CAUTION = 10,
+  METHOD_COUNT = sizeof methods / sizeof *methods
+};
 
 /* What the situation keeps; the state at the start of the last step and its stages follow. */
 struct RadauSaved {
@@ -26,6 +31,8 @@ struct RadauSaved {
   double error;       /* of the last step, in units of the tolerance */
   double contraction; /* of Newton's method in the last step */
   int64_t method;     /* of the last step: its place among the methods */
+  int64_t next_method;
+  int64_t steps; /* since Newton's method failed last, as many as matter */
 };
 
 struct Radau {
@@ -46,8 +53,9 @@ static size_t radau_saved_size(void) {
 static bool radau_could_save(const struct Situation *situation, const void *saved) {
   struct RadauSaved first;
   memcpy(&first, saved, sizeof first);
-  return first.method >= 0 && first.method < METHOD_COUNT && first.step >= 0.0 && first.next >= 0.0 &&
-         first.error >= 0.0 && first.contraction >= 0.0 &&
+  return first.method >= 0 && first.method < METHOD_COUNT && first.next_method >= 0 &&
+         first.next_method < METHOD_COUNT && first.steps >= 0 && first.steps <= STEPS_OF_CAUTION && first.step >= 0.0 &&
+         first.next >= 0.0 && first.error >= 0.0 && first.contraction >= 0.0 &&
          situation->last_step.end == situation->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
          snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
 }
@@ -96,7 +104,8 @@ static bool radau_restart(struct Instance *instance, const double *state, const 
   memset(radau->stages, 0, STAGE_LIMIT * lagrangian.state_count * sizeof(double));
   saved->step = saved->error = 0.0;
   saved->contraction = 1.0;
-  saved->method = method_for(instance->situation->tolerance);
+  saved->method = saved->next_method = method_for(instance->situation->tolerance);
+  saved->steps = STEPS_OF_CAUTION;
   return true;
 }
 
@@ -331,12 +340,25 @@ static void accept(struct Instance *instance, struct Radau *radau, const struct 
   situation->statistics[STATISTIC_STEPS]++;
 }
 
+/*
+ * A lower order where Newton's method hardly converges, as its starting values come from a polynomial of that order; a
+ * higher one again, up to what the tolerance asks for, where it converges well and has for a while.
+ */
+static void choose_method(const struct Instance *instance, struct RadauSaved *saved, bool failed) {
+  saved->steps = failed ? 0 : saved->steps < STEPS_OF_CAUTION ? saved->steps + 1 : STEPS_OF_CAUTION;
+  bool is_lowest = saved->next_method == 0,
+       is_highest = saved->next_method == method_for(instance->situation->tolerance);
+  if (!is_lowest && (failed || saved->contraction > 0.8)) saved->next_method--;
+  else if (!is_highest && saved->contraction < 0.002 && saved->steps == STEPS_OF_CAUTION) saved->next_method++;
+}
+
 static const char *radau_advance(struct Instance *instance, const struct CommunicationStep *communication) {
   struct Radau *radau = instance->solver_memory;
   struct RadauSaved *saved = radau->saved;
   double time = instance->situation->last_step.end;
   if (!begin(instance, radau, time)) return "the equations have no solution there";
-  const struct RadauMethod *method = &methods[method_for(instance->situation->tolerance)];
+  const struct RadauMethod *method = &methods[saved->next_method];
+  bool failed = false;
   double step = trial_step(instance, radau, time, communication->end - time);
   for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
     if (solver_rests(time, step)) return solver_resting;
@@ -344,6 +366,7 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
     int iterations = 0;
     if (radau_systems_factor(&radau->systems, method, step))
       iterations = solve_stages(instance, radau, method, time, step, &contraction);
+    failed |= iterations == 0;
     if (iterations > 0) error = estimate_error(instance, radau, method, time, step, saved->step == 0.0 || attempt > 0);
     double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
     if (error < 1.0) {
@@ -351,6 +374,7 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
       saved->next = next;
       saved->error = fmax(error, 1e-2);
       saved->contraction = contraction;
+      choose_method(instance, saved, failed);
       return NULL;
     }
     step = fmin(next, 0.9 * step);
