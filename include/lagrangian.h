@@ -43,7 +43,7 @@ enum VariableKind {
   VARIABLE_STATISTIC /* Integer; the index is an enum Statistic */
 };
 
-enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_COUNT };
+enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_HANDOVERS, STATISTIC_COUNT };
 
 /* A ScalarVariable; its value reference is its place in the table. */
 struct ScalarVariable {
@@ -59,6 +59,12 @@ struct Sparsity {
   size_t count;
   const int *start; /* columns + 1 */
   const int *row;   /* ascending in each column */
+};
+
+/* Arithmetic operations of the generated functions, a sine and the like counted as 20, for choosing between methods. */
+struct OperationCounts {
+  double derivatives, jacobian;
+  double series, recurrences; /* of an order of the series; the work of a recurrence grows with the order */
 };
 
 struct Solver;
@@ -81,6 +87,7 @@ struct Lagrangian {
   bool depends_on_time;
   const struct Solver *solver;      /* NULL for a system without coordinates */
   struct Sparsity jacobian_pattern; /* where there is a jacobian() */
+  struct OperationCounts operations;
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive

@@ -72,6 +72,8 @@ def write(s):
     count = len(values)
     print("    {" + f".stages = {s},")
     print("     .node = {" + ", ".join(map(number, c)) + "},")
+    weights = [1 / (c[i] * mp.fprod(c[i] - c[j] for j in range(s) if j != i)) for i in range(s)]
+    print("     .weight = {" + ", ".join(map(number, weights)) + "},")
     print("     .value_real = {" + ", ".join(number(mp.re(v)) for v in values) + "},")
     print("     .value_imaginary = {" + ", ".join(number(mp.im(v)) for v in values) + "},")
     print("     .vector_real = {" + rows([[mp.re(columns[j][i]) for j in range(count)] for i in range(s)]) + "},")

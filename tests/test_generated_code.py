@@ -42,7 +42,7 @@ def compiles(folder):
 @pytest.mark.parametrize("expression", EXPRESSIONS)
 @pytest.mark.parametrize("place", PLACES)
 def test_powers(place, expression, tmp_path):
-    for method in ("taylor", "erk", "bdf", "radau"):
+    for method in ("taylor", "erk", "bdf", "radau", "auto"):
         (tmp_path / "system.xml").write_text(SYSTEM.format(PLACES[place].format(expression), method))
         result = lagc("system.xml", "-o", "out", cwd=tmp_path)
         assert (result.returncode, result.stderr) == (0, "")
@@ -65,7 +65,7 @@ def test_inertia_of_many_long_names(tmp_path):
 
 
 @pytest.mark.parametrize("form", ["statements", "tables"])
-@pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau"])
+@pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau", "auto"])
 def test_coupled_masses(method, form, tmp_path):
     """A constant M of three coordinates, whose accelerations are in no derivative of the equations."""
     elements = '<for index="i" from="1" to="3"><coordinate name="q[i]" velocity="w[i]"/><particle mass="a" x="q[i]"/></for>'

@@ -17,7 +17,7 @@ TEXT = """<system name="Oscillator">
 """
 END = 5.0
 # A third of the way into a step, against the tolerance of 1e-9: erk has cubic polynomials there, exact has no states.
-ERRORS = {"taylor": 1e-9, "erk": 1e-5, "bdf": 1e-8, "radau": 1e-8, "exact": None}
+ERRORS = {"taylor": 1e-9, "erk": 1e-5, "bdf": 1e-8, "radau": 1e-8, "auto": 1e-9, "exact": None}
 
 
 @pytest.mark.parametrize("method", ERRORS)
@@ -31,7 +31,7 @@ def test_steps(method, tmp_path):
     output = subprocess.run([program, str(END)], capture_output=True, text=True, check=True).stdout
     start, end, known_inside, inside, known, last = np.array([line.split() for line in output.splitlines()], float).T
     assert start[0] == 0.0 and np.all(start < end) and np.all(start[1:] == end[:-1])
-    assert start[-1] < END <= end[-1] and (end[-1] == END or method in ("taylor", "bdf", "radau"))
+    assert start[-1] < END <= end[-1] and (end[-1] == END or method in ("taylor", "bdf", "radau", "auto"))
     assert np.all(known == 1) and last == pytest.approx(np.cos(end), abs=3e-8)
     assert np.all(known_inside == (method != "exact"))
     if method != "exact":

@@ -38,10 +38,10 @@ struct Solver {
   bool (*create)(struct Instance *instance);
   void (*destroy)(struct Instance *instance);
   /*
-   * Begins at the start of the communication step, where last_step already is; the past no longer counts. False after
-   * logging where that fails. NULL where there is nothing to do.
+   * Begins at this state and the end of last_step, an empty span; the past no longer counts. False after logging where
+   * that fails. NULL where there is nothing to do.
    */
-  bool (*restart)(struct Instance *instance, const struct CommunicationStep *step);
+  bool (*restart)(struct Instance *instance, const double *state, const struct CommunicationStep *step);
   /* Goes on after another situation was restored. NULL for a solver that must restart then. */
   void (*resume)(struct Instance *instance);
   /*

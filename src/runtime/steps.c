@@ -60,7 +60,7 @@ static bool make_ready(struct Instance *instance, const struct CommunicationStep
                  step->start <= situation->last_step.end && (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
     situation->last_step = (struct Span){step->start, step->start};
-    if (solver->restart != NULL && !solver->restart(instance, step)) return false;
+    if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return false;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
   situation->changed = 0;

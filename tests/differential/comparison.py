@@ -16,7 +16,7 @@ from .reference import Reference, Undecided
 from .simulation import simulate_apart
 
 # Errors of the solvers, of all their steps together, in units of what errors of the tolerance make.
-FACTORS = {None: 30, "taylor": 30, "erk": 30, "bdf": 1000, "radau": 100, "exact": 30}
+FACTORS = {None: 30, "taylor": 30, "erk": 30, "bdf": 1000, "radau": 100, "auto": 100, "exact": 30}
 KICKS = 3  # perturbed references
 HOPELESS = 0.3  # of the path: a bound that large decides nothing
 ROUNDING = 2.0**-52

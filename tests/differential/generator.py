@@ -51,7 +51,7 @@ def nonlinear(draw):
         family(draw)
         system.families.add(family.__name__)
     kinks = {"kink", "disguised_kink"} & system.families
-    system.method = draw.choice([None] * 5 + (["erk", "bdf", "radau"] if kinks else ["taylor", "taylor", "erk", "bdf", "radau"]))
+    system.method = draw.choice([None] * 5 + (["erk", "bdf", "radau"] if kinks else ["taylor", "taylor", "erk", "bdf", "radau", "auto"]))
 
 
 def extra(draw):

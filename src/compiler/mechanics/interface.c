@@ -82,6 +82,9 @@ static void append_statistics(struct Interface *interface) {
   if (interface->method->needs_jacobian)
     append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
            "evaluations of the Jacobian matrix");
+  if (interface->method->hands_over)
+    append(interface, VARIABLE_STATISTIC, STATISTIC_HANDOVERS, "solverHandovers",
+           "handovers between the methods of the solver");
 }
 
 static bool uses_time(const struct Model *model, const struct Equations *equations) {
@@ -106,12 +109,22 @@ static const char *total_energy_description(const struct Model *model, const str
                              : "kinetic and potential energy; constant";
 }
 
+/* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
+static bool may_be_stiff(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  bool may = graph_depends_on(graph, model->dissipation.node, VELOCITY);
+  for (size_t i = 0; i < model->coordinates.count; i++)
+    may |= graph_depends_on(graph, model->forces[i].node, VELOCITY) ||
+           graph_depends_on(graph, model->forces[i].node, INPUT);
+  return may;
+}
+
 static const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
   if (model->coordinates.count == 0) return NULL;
   if (model->method != NULL) return model->method;
   if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  return method_named(kink == NULL ? "taylor" : "erk");
+  return method_named(kink != NULL ? "erk" : may_be_stiff(model) ? "auto" : "taylor");
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */

@@ -42,6 +42,22 @@ static const struct Method methods[] = {
      .sources = {"radau.c", "radau_systems.c", "first_terms.c", "series_limit.c"},
      .series = FIRST_TERMS,
      .needs_jacobian = true},
+    {.name = "auto",
+     .solver = "solver_auto",
+     .sentence =
+         "Co-simulation integrates with Taylor series of the motion as long as their steps follow from the accuracy "
+         "that is asked for, and with Radau IIA methods of order 5, 9 or 13 where steps of the series would have to be "
+         "short only to keep fast modes that died away from growing, as in stiff systems. A step depends only on the "
+         "state that the FMU saves, so that a repeated step gives the same bits. The series are held against the "
+         "equations of motion at the end of each step, and steps are so short that no function in them (exp, tanh, "
+         "powers, quotients, ...) can hide a hill, a wall or a pulse, however narrow. A point where the equations have "
+         "no solution ends in fmi2Discard with a message that names it.",
+     .evaluations = "series of the equations of motion, and evaluations of them",
+     .sources = {"auto.c", "stiffness.c", "taylor.c", "taylor_reach.c", "radau.c", "radau_systems.c", "first_terms.c",
+                 "series_limit.c"},
+     .series = ALL_TERMS,
+     .needs_jacobian = true,
+     .hands_over = true},
     {.name = "exact",
      .solver = "solver_exact",
      .sentence = "Co-simulation advances with the matrix exponential, exactly for inputs that are polynomials of time "

@@ -15,7 +15,7 @@ enum SeriesUse {
   ALL_TERMS
 };
 
-enum { METHOD_SOURCES = 4 };
+enum { METHOD_SOURCES = 10 };
 
 struct Method {
   const char *name;          /* in system.xml and on the command line */
@@ -27,6 +27,7 @@ struct Method {
   const char *sources[METHOD_SOURCES];
   enum SeriesUse series;
   bool needs_jacobian; /* and counts its evaluations */
+  bool hands_over;     /* between methods, and counts how often */
   bool needs_linear;   /* solves linear systems alone, as a whole communication step */
 };
 

@@ -96,6 +96,20 @@ static void write_functions(FILE *file, const struct Program *program) {
   if (program->linear != NULL) fputs("    .linear = linear,\n", file);
 }
 
+static double operations_of(const struct Routine *routine) {
+  enum { OPERATIONS_OF_CALL = 20 };
+  double count = (double)routine->operation_count;
+  for (size_t i = 0; i < routine->count; i++)
+    if (routine->instructions[i].opcode == CALL || routine->instructions[i].opcode == CALL_OF_TWO)
+      count += OPERATIONS_OF_CALL - 1;
+  return count;
+}
+
+static void write_operations(FILE *file, const struct Program *program) {
+  fprintf(file, "    .operations = {%.0f, %.0f, %.0f, %zu},\n", operations_of(program->derivatives),
+          operations_of(program->jacobian), operations_of(program->series->order), program->series->recurrences);
+}
+
 /* NULL for a system without coordinates. */
 static const char *solver_of(const struct Program *program) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
@@ -123,6 +137,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
           interface_max_steps(program->model), interface->depends_on_time ? "true" : "false",
           interface->output_derivative_order);
   write_functions(file, program);
+  if (interface->method != NULL && interface->method->hands_over) write_operations(file, program);
   fputs("};\n", file);
 }
 

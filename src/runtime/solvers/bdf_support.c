@@ -39,7 +39,7 @@ static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
 bool bdf_configure(struct Instance *instance) {
   struct Bdf *bdf = instance->solver_memory;
   if (bdf->matrix == NULL || bdf->linear_solver == NULL) return false;
-  sundials_load(instance, safety);
+  sundials_load(instance, instance->state, safety);
   bdf->jacobian = sundials_allocate(lagrangian.jacobian_pattern.count, sizeof *bdf->jacobian);
   bdf->cvode = CVodeCreate(CV_BDF, bdf->sundials.context);
   return bdf->cvode != NULL &&
@@ -57,9 +57,9 @@ bool bdf_configure(struct Instance *instance) {
          sundials_succeeded(instance, CVodeSetJacFn(bdf->cvode, jacobian), "CVodeSetJacFn");
 }
 
-bool bdf_restart(struct Instance *instance, const struct CommunicationStep *step) {
+bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   const struct Bdf *bdf = instance->solver_memory;
-  sundials_load(instance, safety);
+  sundials_load(instance, state, safety);
   return sundials_succeeded(instance, CVodeReInit(bdf->cvode, step->start, bdf->sundials.state), "CVodeReInit") &&
          set_tolerances(instance, bdf);
 }

@@ -8,7 +8,7 @@
 #include "sundials_support.h"
 
 /* Where others are right instead, see struct Solver. */
-#define BDF_ALTERNATIVES "radau where inputs change often, erk where friction sticks, taylor where rates are alike"
+#define BDF_ALTERNATIVES "auto where inputs change often, erk where friction sticks"
 
 struct Bdf {
   struct Sundials sundials;
@@ -24,7 +24,7 @@ struct Bdf {
 bool bdf_configure(struct Instance *instance);
 
 /* What the descriptors share. */
-bool bdf_restart(struct Instance *instance, const struct CommunicationStep *step);
+bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);
 

@@ -95,9 +95,9 @@ static bool obeys_equations(struct Instance *instance, const struct Erk *erk, do
   return true;
 }
 
-static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+static bool restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Erk *erk = instance->solver_memory;
-  sundials_load(instance, safety);
+  sundials_load(instance, state, safety);
   erk->trial = step->end - step->start;
   return start(instance, erk, step->start, instance->situation->suggested_step, step->end);
 }
@@ -141,7 +141,7 @@ static bool interpolate(struct Instance *instance, double time, double *state) {
 }
 
 const struct Solver solver_erk = {.name = "ERKStep",
-                                  .alternatives = "radau or bdf where rates differ much, taylor where nothing sticks",
+                                  .alternatives = "auto where rates differ much",
                                   .starts_anew = true,
                                   .run = sundials_run,
                                   .create = create,

@@ -15,21 +15,28 @@
 #include "snapshot.h"
 
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
-static const double safety = 0.05;
+static const double radau_safety = 0.05;
 
-enum { ITERATION_LIMIT = 12, ATTEMPT_LIMIT = 60, METHOD_COUNT = sizeof methods / sizeof *methods };
+enum {
+  ITERATION_LIMIT = 12,
+  ATTEMPT_LIMIT = 60,
+  STEPS_OF_CAUTION = 10,
+  METHOD_COUNT = sizeof methods / sizeof *methods
+};
 
 /* What the situation keeps; the state at the start of the last step and its stages follow. */
-struct Saved {
+struct RadauSaved {
   double step;        /* of the last step; 0 for none: there is no polynomial */
   double next;        /* the step that the control would take */
   double error;       /* of the last step, in units of the tolerance */
   double contraction; /* of Newton's method in the last step */
   int64_t method;     /* of the last step: its place among the methods */
+  int64_t next_method;
+  int64_t steps; /* since Newton's method failed last, as many as matter */
 };
 
 struct Radau {
-  struct Saved *saved;
+  struct RadauSaved *saved;
   double *start, *stages; /* in the situation: states, STAGE_LIMIT x states */
   struct RadauSystems systems;
   double *state, *scale, *first; /* states: where the step being made starts, what an error of 1 is there, f there */
@@ -39,20 +46,21 @@ struct Radau {
   Series *series;                /* of first_terms.h */
 };
 
-static size_t saved_size(void) {
-  return sizeof(struct Saved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
+static size_t radau_saved_size(void) {
+  return sizeof(struct RadauSaved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
 }
 
-static bool could_save(const struct Situation *situation, const void *saved) {
-  struct Saved first;
+static bool radau_could_save(const struct Situation *situation, const void *saved) {
+  struct RadauSaved first;
   memcpy(&first, saved, sizeof first);
-  return first.method >= 0 && first.method < METHOD_COUNT && first.step >= 0.0 && first.next >= 0.0 &&
-         first.error >= 0.0 && first.contraction >= 0.0 &&
+  return first.method >= 0 && first.method < METHOD_COUNT && first.next_method >= 0 &&
+         first.next_method < METHOD_COUNT && first.steps >= 0 && first.steps <= STEPS_OF_CAUTION && first.step >= 0.0 &&
+         first.next >= 0.0 && first.error >= 0.0 && first.contraction >= 0.0 &&
          situation->last_step.end == situation->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
          snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
 }
 
-static bool create(struct Instance *instance) {
+static bool radau_create(struct Instance *instance) {
   size_t states = lagrangian.state_count;
   size_t numbers = (4 + 2 * STAGE_LIMIT + 2 * SYSTEM_LIMIT) * states + 1 + radau_systems_size();
   size_t rows = first_terms_rows() * SERIES_LENGTH;
@@ -75,33 +83,33 @@ static bool create(struct Instance *instance) {
   return true;
 }
 
-static void destroy(struct Instance *instance) {
+static void radau_destroy(struct Instance *instance) {
   instance->memory.free(instance->solver_memory);
   instance->solver_memory = NULL;
 }
 
-/* The share of the tolerance that a step may err by. */
-static double relative_tolerance(const struct Instance *instance) {
-  return fmax(safety * instance->situation->tolerance, 4 * DBL_EPSILON);
+double radau_tolerance(const struct Instance *instance) {
+  return fmax(radau_safety * instance->situation->tolerance, 4 * DBL_EPSILON);
 }
 
 static int64_t method_for(double tolerance) {
   return tolerance >= 1e-4 ? 0 : tolerance >= 1e-7 ? 1 : 2;
 }
 
-static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+static bool radau_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Radau *radau = instance->solver_memory;
-  struct Saved *saved = radau->saved;
+  struct RadauSaved *saved = radau->saved;
   (void)step;
-  memcpy(radau->start, instance->state, lagrangian.state_count * sizeof(double));
+  memcpy(radau->start, state, lagrangian.state_count * sizeof(double));
   memset(radau->stages, 0, STAGE_LIMIT * lagrangian.state_count * sizeof(double));
   saved->step = saved->error = 0.0;
   saved->contraction = 1.0;
-  saved->method = method_for(instance->situation->tolerance);
+  saved->method = saved->next_method = method_for(instance->situation->tolerance);
+  saved->steps = STEPS_OF_CAUTION;
   return true;
 }
 
-static void resume(struct Instance *instance) {
+static void radau_resume(struct Instance *instance) {
   (void)instance; /* all that counts is in the situation */
 }
 
@@ -109,17 +117,19 @@ static void resume(struct Instance *instance) {
 static void evaluate_polynomial(const struct RadauMethod *method, const double *stages, double share, double *change) {
   size_t states = lagrangian.state_count;
   for (size_t k = 0; k < states; k++) change[k] = 0.0;
-  for (int i = 0; i < method->stages; i++) {
-    double weight = share / method->node[i];
-    for (int j = 0; j < method->stages; j++)
-      if (j != i) weight *= (share - method->node[j]) / (method->node[i] - method->node[j]);
+  double before[STAGE_LIMIT], after = share; /* products of the distances from the nodes before and after one */
+  before[0] = 1.0;
+  for (int i = 1; i < method->stages; i++) before[i] = before[i - 1] * (share - method->node[i - 1]);
+  for (int i = method->stages; i-- > 0;) {
+    double weight = method->weight[i] * before[i] * after;
+    after *= share - method->node[i];
     for (size_t k = 0; k < states; k++) change[k] += weight * stages[(size_t)i * states + k];
   }
 }
 
-static bool interpolate(struct Instance *instance, double time, double *state) {
+static bool radau_interpolate(struct Instance *instance, double time, double *state) {
   const struct Radau *radau = instance->solver_memory;
-  const struct Saved *saved = radau->saved;
+  const struct RadauSaved *saved = radau->saved;
   const struct RadauMethod *method = &methods[saved->method];
   const struct Span *last = &instance->situation->last_step;
   size_t states = lagrangian.state_count;
@@ -140,7 +150,7 @@ static double norm(const struct Radau *radau, const double *vector) {
 
 /* Newton's starting values: the polynomial of the last step, continued; without one, no change. */
 static void predict(struct Radau *radau, const struct RadauMethod *method, double step) {
-  const struct Saved *saved = radau->saved;
+  const struct RadauSaved *saved = radau->saved;
   const struct RadauMethod *last = &methods[saved->method];
   size_t states = lagrangian.state_count;
   for (int i = 0; i < method->stages; i++) {
@@ -153,17 +163,24 @@ static void predict(struct Radau *radau, const struct RadauMethod *method, doubl
   }
 }
 
+/* Row j of V^-1 times the stages of one state variable. */
+static struct Complex to_eigenvector(const struct RadauMethod *method, int j, const double *stages) {
+  size_t states = lagrangian.state_count;
+  struct Complex sum = {0.0, 0.0};
+  for (int i = 0; i < method->stages; i++) {
+    double stage = stages[(size_t)i * states];
+    sum.real += method->back_real[j][i] * stage;
+    sum.imaginary += method->back_imaginary[j][i] * stage;
+  }
+  return sum;
+}
+
 /* w = V^-1 z for the eigenvalues that are kept. */
 static void to_eigenvectors(const struct RadauMethod *method, const double *z, struct Complex *w) {
   size_t states = lagrangian.state_count;
   for (int j = 0; j <= method->stages / 2; j++) {
     for (size_t k = 0; k < states; k++) {
-      struct Complex sum = {0.0, 0.0};
-      for (int i = 0; i < method->stages; i++) {
-        sum.real += method->back_real[j][i] * z[(size_t)i * states + k];
-        sum.imaginary += method->back_imaginary[j][i] * z[(size_t)i * states + k];
-      }
-      w[(size_t)j * states + k] = sum;
+      w[(size_t)j * states + k] = to_eigenvector(method, j, z + k);
     }
   }
 }
@@ -202,11 +219,7 @@ static double iterate(struct Radau *radau, const struct RadauMethod *method) {
   for (int j = 0; j <= method->stages / 2; j++) {
     struct Complex *w = radau->w + (size_t)j * states, mu = systems->mu[j];
     for (size_t k = 0; k < states; k++) {
-      struct Complex rate = {0.0, 0.0};
-      for (int i = 0; i < method->stages; i++) {
-        rate.real += method->back_real[j][i] * radau->rates[(size_t)i * states + k];
-        rate.imaginary += method->back_imaginary[j][i] * radau->rates[(size_t)i * states + k];
-      }
+      struct Complex rate = to_eigenvector(method, j, radau->rates + k);
       systems->right_side[k].real = rate.real - (mu.real * w[k].real - mu.imaginary * w[k].imaginary);
       systems->right_side[k].imaginary = rate.imaginary - (mu.real * w[k].imaginary + mu.imaginary * w[k].real);
     }
@@ -231,7 +244,7 @@ static double iterate(struct Radau *radau, const struct RadauMethod *method) {
 /* Solves for the stages; the number of iterations, or 0 where Newton's method does not converge. */
 static int solve_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
                         double step, double *contraction) {
-  double relative = relative_tolerance(instance);
+  double relative = radau_tolerance(instance);
   double enough = fmax(10 * DBL_EPSILON / relative, fmin(0.01, sqrt(relative))), before = 0.0;
   double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
   predict(radau, method, step);
@@ -280,8 +293,8 @@ static double estimate_error(struct Instance *instance, struct Radau *radau, con
 }
 
 /* What the step is multiplied by; the last two errors tell where they go. */
-static double factor_of_step(const struct Saved *saved, const struct RadauMethod *method, double step, double error,
-                             int iterations) {
+static double factor_of_step(const struct RadauSaved *saved, const struct RadauMethod *method, double step,
+                             double error, int iterations) {
   double power = 1.0 / (method->stages + 1);
   double caution = 0.9 * (2.0 * ITERATION_LIMIT + 1.0) / (2.0 * ITERATION_LIMIT + iterations);
   double factor = caution * pow(error, -power);
@@ -292,14 +305,14 @@ static double factor_of_step(const struct Saved *saved, const struct RadauMethod
 
 /* A first step that moves the state by a small share of its scale. */
 static double first_step(const struct Instance *instance, const struct Radau *radau, double length) {
-  double rate = norm(radau, radau->first) * relative_tolerance(instance);
+  double rate = norm(radau, radau->first) * radau_tolerance(instance);
   return rate * length > 1.0 ? 1e-3 / rate : 1e-3 * length;
 }
 
 /* Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. */
 static bool begin(struct Instance *instance, struct Radau *radau, double time) {
-  double relative = relative_tolerance(instance);
-  interpolate(instance, time, radau->state);
+  double relative = radau_tolerance(instance);
+  radau_interpolate(instance, time, radau->state);
   for (size_t k = 0; k < lagrangian.state_count; k++)
     radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.nominal[k]);
   return solver_derivatives(instance, time, radau->state, radau->first) &&
@@ -308,7 +321,7 @@ static bool begin(struct Instance *instance, struct Radau *radau, double time) {
 
 /* The step to try: what the control says, at first no more than the communication step. */
 static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
-  const struct Saved *saved = radau->saved;
+  const struct RadauSaved *saved = radau->saved;
   double step = saved->next;
   if (saved->step == 0.0) step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
   double longest = fmin(lagrangian.max_step, 2.0 * step);
@@ -327,12 +340,25 @@ static void accept(struct Instance *instance, struct Radau *radau, const struct 
   situation->statistics[STATISTIC_STEPS]++;
 }
 
-static const char *advance(struct Instance *instance, const struct CommunicationStep *communication) {
+/*
+ * A lower order where Newton's method hardly converges, as its starting values come from a polynomial of that order; a
+ * higher one again, up to what the tolerance asks for, where it converges well and has for a while.
+ */
+static void choose_method(const struct Instance *instance, struct RadauSaved *saved, bool failed) {
+  saved->steps = failed ? 0 : saved->steps < STEPS_OF_CAUTION ? saved->steps + 1 : STEPS_OF_CAUTION;
+  bool is_lowest = saved->next_method == 0,
+       is_highest = saved->next_method == method_for(instance->situation->tolerance);
+  if (!is_lowest && (failed || saved->contraction > 0.8)) saved->next_method--;
+  else if (!is_highest && saved->contraction < 0.002 && saved->steps == STEPS_OF_CAUTION) saved->next_method++;
+}
+
+static const char *radau_advance(struct Instance *instance, const struct CommunicationStep *communication) {
   struct Radau *radau = instance->solver_memory;
-  struct Saved *saved = radau->saved;
+  struct RadauSaved *saved = radau->saved;
   double time = instance->situation->last_step.end;
   if (!begin(instance, radau, time)) return "the equations have no solution there";
-  const struct RadauMethod *method = &methods[method_for(instance->situation->tolerance)];
+  const struct RadauMethod *method = &methods[saved->next_method];
+  bool failed = false;
   double step = trial_step(instance, radau, time, communication->end - time);
   for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
     if (solver_rests(time, step)) return solver_resting;
@@ -340,6 +366,7 @@ static const char *advance(struct Instance *instance, const struct Communication
     int iterations = 0;
     if (radau_systems_factor(&radau->systems, method, step))
       iterations = solve_stages(instance, radau, method, time, step, &contraction);
+    failed |= iterations == 0;
     if (iterations > 0) error = estimate_error(instance, radau, method, time, step, saved->step == 0.0 || attempt > 0);
     double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
     if (error < 1.0) {
@@ -347,6 +374,7 @@ static const char *advance(struct Instance *instance, const struct Communication
       saved->next = next;
       saved->error = fmax(error, 1e-2);
       saved->contraction = contraction;
+      choose_method(instance, saved, failed);
       return NULL;
     }
     step = fmin(next, 0.9 * step);
@@ -354,13 +382,32 @@ static const char *advance(struct Instance *instance, const struct Communication
   return "no step is short enough";
 }
 
+void radau_try_first(struct Instance *instance, double step) {
+  struct Radau *radau = instance->solver_memory;
+  radau->saved->next = step;
+}
+
+double radau_next_step(const struct Instance *instance) {
+  const struct Radau *radau = instance->solver_memory;
+  return radau->saved->next;
+}
+
+int radau_stage_count(const struct Instance *instance) {
+  return methods[method_for(instance->situation->tolerance)].stages;
+}
+
+const double *radau_jacobian(const struct Instance *instance) {
+  const struct Radau *radau = instance->solver_memory;
+  return radau->systems.values;
+}
+
 const struct Solver solver_radau = {.name = "Radau",
-                                    .alternatives = "erk where friction sticks, taylor where rates are alike",
-                                    .saved_size = saved_size,
-                                    .could_save = could_save,
-                                    .create = create,
-                                    .destroy = destroy,
-                                    .restart = restart,
-                                    .resume = resume,
-                                    .advance = advance,
-                                    .interpolate = interpolate};
+                                    .alternatives = "erk where friction sticks, auto where rates are alike",
+                                    .saved_size = radau_saved_size,
+                                    .could_save = radau_could_save,
+                                    .create = radau_create,
+                                    .destroy = radau_destroy,
+                                    .restart = radau_restart,
+                                    .resume = radau_resume,
+                                    .advance = radau_advance,
+                                    .interpolate = radau_interpolate};

@@ -13,6 +13,7 @@ enum { STAGE_LIMIT = 7, SYSTEM_LIMIT = (STAGE_LIMIT + 1) / 2 };
 struct RadauMethod {
   int stages;
   double node[STAGE_LIMIT];
+  double weight[STAGE_LIMIT]; /* 1 over the product of the node and of its distances from the others */
   double value_real[SYSTEM_LIMIT], value_imaginary[SYSTEM_LIMIT];
   double vector_real[STAGE_LIMIT][SYSTEM_LIMIT], vector_imaginary[STAGE_LIMIT][SYSTEM_LIMIT];
   double back_real[SYSTEM_LIMIT][STAGE_LIMIT], back_imaginary[SYSTEM_LIMIT][STAGE_LIMIT]; /* the inverse's rows */
@@ -48,5 +49,16 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
 
 /* Solves system number j for systems->right_side; the solution is in systems->solution. */
 void radau_systems_solve(struct RadauSystems *systems, int j);
+
+/* For whoever chooses between methods: the stages of a step, the step to come, and the Jacobian at the last one's start. */
+double radau_next_step(const struct Instance *instance);
+int radau_stage_count(const struct Instance *instance);
+const double *radau_jacobian(const struct Instance *instance);
+
+/* The step to try first after a restart; 0 for one that follows from the motion. */
+void radau_try_first(struct Instance *instance, double step);
+
+/* The share of the tolerance that a step may err by. */
+double radau_tolerance(const struct Instance *instance);
 
 #endif

@@ -22,9 +22,9 @@ bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(s
   return false;
 }
 
-void sundials_load(const struct Instance *instance, double safety) {
+void sundials_load(const struct Instance *instance, const double *state, double safety) {
   struct Sundials *sundials = instance->solver_memory;
-  memcpy(N_VGetArrayPointer(sundials->state), instance->state, lagrangian.state_count * sizeof(double));
+  memcpy(N_VGetArrayPointer(sundials->state), state, lagrangian.state_count * sizeof(double));
   sundials->relative = fmax(safety * instance->situation->tolerance, 10 * DBL_EPSILON);
   for (size_t i = 0; i < lagrangian.state_count; i++)
     N_VGetArrayPointer(sundials->tolerance)[i] = sundials->relative * lagrangian.nominal[i];

@@ -23,7 +23,7 @@ struct Sundials {
 bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(struct Instance *instance));
 
 /* Takes over the state and the tolerance of the situation, this share of it: local errors add up over a simulation. */
-void sundials_load(const struct Instance *instance, double safety);
+void sundials_load(const struct Instance *instance, const double *state, double safety);
 
 /* d state / dt; a function for SUNDIALS, with the instance as its user data. */
 int sundials_right_side(realtype time, N_Vector state, N_Vector derivative, void *instance);

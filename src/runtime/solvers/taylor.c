@@ -15,12 +15,12 @@
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
 enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
 
-static size_t saved_size(void) {
-  return sizeof(struct Saved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
+static size_t taylor_saved_size(void) {
+  return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
 }
 
-static bool could_save(const struct Situation *situation, const void *saved) {
-  struct Saved first;
+static bool taylor_could_save(const struct Situation *situation, const void *saved) {
+  struct TaylorSaved first;
   memcpy(&first, saved, sizeof first);
   bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
   bool is_new = first.order == 0 && situation->changed != 0; /* the first step is to come */
@@ -29,7 +29,7 @@ static bool could_save(const struct Situation *situation, const void *saved) {
          snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
 }
 
-static bool create(struct Instance *instance) {
+static bool taylor_create(struct Instance *instance) {
   size_t rows = lagrangian.input_count + lagrangian.series_rows;
   size_t terms = 2 * lagrangian.state_count * sizeof(double);
   struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
@@ -46,7 +46,7 @@ static bool create(struct Instance *instance) {
   return true;
 }
 
-static void destroy(struct Instance *instance) {
+static void taylor_destroy(struct Instance *instance) {
   instance->memory.free(instance->solver_memory);
   instance->solver_memory = NULL;
 }
@@ -82,7 +82,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
  * largest change in units of the variables' scales.
  */
 static double move_origin(struct Instance *instance, struct Taylor *taylor) {
-  struct Saved *saved = taylor->saved;
+  struct TaylorSaved *saved = taylor->saved;
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->reach);
@@ -98,26 +98,30 @@ static double move_origin(struct Instance *instance, struct Taylor *taylor) {
   return largest;
 }
 
-static bool restart(struct Instance *instance, const struct CommunicationStep *step) {
+int64_t taylor_order(const struct Instance *instance) {
+  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
+  return (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
+}
+
+static bool taylor_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   (void)step;
   taylor->saved->reach = 0.0;
   taylor->is_measured = false;
-  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
-  taylor->saved->order = (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
+  taylor->saved->order = taylor_order(instance);
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     taylor->low[i] = 0.0;
-    taylor->x[i][0] = instance->state[i];
+    taylor->x[i][0] = state[i];
   }
   return true;
 }
 
-static void resume(struct Instance *instance) {
+static void taylor_resume(struct Instance *instance) {
   struct Taylor *taylor = instance->solver_memory;
   taylor->is_measured = false;
 }
 
-static bool interpolate(struct Instance *instance, double time, double *state) {
+static bool taylor_interpolate(struct Instance *instance, double time, double *state) {
   const struct Taylor *taylor = instance->solver_memory;
   double s = time - taylor->span->start;
   for (size_t i = 0; i < lagrangian.state_count; i++)
@@ -144,7 +148,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
     return "a function jumps to and fro there, as dry friction that sticks; write it with tanh, or choose "
            "<solver method=\"erk\"/> in system.xml";
   if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
-    return "the system is stiff there, which asks for <solver method=\"bdf\"/> in system.xml";
+    return "the system is stiff there, which asks for <solver method=\"auto\"/> in system.xml";
   return NULL;
 }
 
@@ -156,7 +160,7 @@ static void cut_series(struct Taylor *taylor) {
     for (int k = 1; k < SERIES_LENGTH; k++) taylor->x[i][k] = 0.0;
 }
 
-static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
+static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
   double moved = taylor->saved->reach > 0.0 ? move_origin(instance, taylor) : 0.0;
@@ -168,12 +172,12 @@ static const char *advance(struct Instance *instance, const struct Communication
 }
 
 const struct Solver solver_taylor = {.name = "the Taylor series",
-                                     .alternatives = "radau or bdf where rates differ much, erk where friction sticks",
-                                     .saved_size = saved_size,
-                                     .could_save = could_save,
-                                     .create = create,
-                                     .destroy = destroy,
-                                     .restart = restart,
-                                     .resume = resume,
-                                     .advance = advance,
-                                     .interpolate = interpolate};
+                                     .alternatives = "auto where rates differ much, erk where friction sticks",
+                                     .saved_size = taylor_saved_size,
+                                     .could_save = taylor_could_save,
+                                     .create = taylor_create,
+                                     .destroy = taylor_destroy,
+                                     .restart = taylor_restart,
+                                     .resume = taylor_resume,
+                                     .advance = taylor_advance,
+                                     .interpolate = taylor_interpolate};

@@ -7,7 +7,7 @@
 #include "instance.h"
 
 /* What the situation holds for this solver, beside the span of its last step; they tell all that a step depends on. */
-struct Saved {
+struct TaylorSaved {
   double reach; /* how far from the origin the series is right, the length of the last step; 0 for no series yet */
   int64_t order;
   /* double low[state_count]: what rounding left of the state at origin; Series x[state_count] */
@@ -20,7 +20,7 @@ struct Crawl {
 };
 
 struct Taylor {
-  struct Saved *saved;
+  struct TaylorSaved *saved;
   struct Span *span; /* of the last step; its start is the origin of the series */
   double *low;
   Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
@@ -60,6 +60,9 @@ static inline double taylor_tolerance(const struct Instance *instance) {
   double tolerance = 0.1 * instance->situation->tolerance;
   return tolerance > 1e-17 ? tolerance : 1e-17;
 }
+
+/* The order that the tolerance asks for. */
+int64_t taylor_order(const struct Instance *instance);
 
 /*
  * d state / dt at a time and at the state that instance->work holds, and the first coefficients of all series. Returns

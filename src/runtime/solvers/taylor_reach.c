@@ -235,7 +235,7 @@ static double shortened(struct Instance *instance, struct Taylor *taylor, double
 }
 
 void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step) {
-  struct Saved *saved = taylor->saved;
+  struct TaylorSaved *saved = taylor->saved;
   const struct Situation *situation = instance->situation;
   double rest =
       situation->stop_time_defined ? situation->stop_time - taylor->span->start : horizon * communication_step;
