@@ -11,13 +11,13 @@
 #include "snapshot.h"
 #include "stiffness.h"
 
-enum Method { METHOD_TAYLOR, METHOD_RADAU, METHOD_COUNT };
+enum AutoMethod { AUTO_TAYLOR, AUTO_RADAU, AUTO_METHODS };
 
 extern const struct Solver solver_taylor, solver_radau;
-static const struct Solver *const solvers[METHOD_COUNT] = {&solver_taylor, &solver_radau};
+static const struct Solver *const solvers[AUTO_METHODS] = {&solver_taylor, &solver_radau};
 
 /* Steps of a window; windows to wait after a vain trial, at first and at most. */
-static const int window[METHOD_COUNT] = {6, 3};
+static const int window[AUTO_METHODS] = {6, 3};
 enum {
   SHORT_PATIENCE = 2,
   LONG_PATIENCE = 256,
@@ -31,7 +31,7 @@ static const double GROWTH = 1.25, FIRST_GROWTH = 8.0;
 
 /* What the situation holds after what the method at work keeps. */
 struct Choice {
-  int64_t method;          /* enum Method: the one at work */
+  int64_t method;          /* enum AutoMethod: the one at work */
   int64_t steps, restarts; /* in the window; it restarts for changed inputs and the like */
   int64_t windows;         /* since the method was chosen */
   int64_t patience;        /* windows to wait before Radau IIA is tried */
@@ -48,7 +48,7 @@ struct Choice {
 struct Auto {
   struct Choice *choice;
   double *state; /* state_count: workspace */
-  void *memory[METHOD_COUNT];
+  void *memory[AUTO_METHODS];
 };
 
 static size_t largest_saved_size(void) {
@@ -63,7 +63,7 @@ static size_t auto_saved_size(void) {
 static bool auto_could_save(const struct Situation *situation, const void *saved) {
   struct Choice choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
-  return choice.method >= 0 && choice.method < METHOD_COUNT && choice.steps >= 0 && choice.restarts >= 0 &&
+  return choice.method >= 0 && choice.method < AUTO_METHODS && choice.steps >= 0 && choice.restarts >= 0 &&
          choice.windows >= 0 && choice.patience >= 0 && choice.next_patience >= 0 &&
          choice.next_patience <= 2 * LONG_PATIENCE && choice.stay >= 0 && choice.stay <= 4 * LONG_STAY &&
          isfinite(choice.begin) && choice.work >= 0.0 && choice.last_speed >= 0.0 && choice.trial_work >= 0.0 &&
@@ -73,19 +73,19 @@ static bool auto_could_save(const struct Situation *situation, const void *saved
 }
 
 /* Each method finds its own memory in the instance while it works. */
-static struct Auto *enter(struct Instance *instance) {
+static struct Auto *auto_enter(struct Instance *instance) {
   struct Auto *automatic = instance->solver_memory;
   instance->solver_memory = automatic->memory[automatic->choice->method];
   return automatic;
 }
 
-static void leave(struct Instance *instance, struct Auto *automatic) {
+static void auto_leave(struct Instance *instance, struct Auto *automatic) {
   instance->solver_memory = automatic;
 }
 
 static void auto_destroy(struct Instance *instance) {
   struct Auto *automatic = instance->solver_memory;
-  for (int i = 0; i < METHOD_COUNT; i++) {
+  for (int i = 0; i < AUTO_METHODS; i++) {
     instance->solver_memory = automatic->memory[i];
     if (automatic->memory[i] != NULL) solvers[i]->destroy(instance);
   }
@@ -99,11 +99,11 @@ static bool auto_create(struct Instance *instance) {
   automatic->choice = (struct Choice *)(void *)((char *)instance->saved + largest_saved_size());
   automatic->state = (double *)(automatic + 1);
   bool is_complete = true;
-  for (int i = 0; i < METHOD_COUNT && is_complete; i++) {
+  for (int i = 0; i < AUTO_METHODS && is_complete; i++) {
     is_complete = solvers[i]->create(instance);
     automatic->memory[i] = instance->solver_memory;
   }
-  leave(instance, automatic);
+  auto_leave(instance, automatic);
   if (!is_complete) auto_destroy(instance);
   return is_complete;
 }
@@ -115,25 +115,25 @@ static void begin_window(struct Choice *choice, double time) {
 }
 
 static bool auto_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
-  struct Auto *automatic = enter(instance);
+  struct Auto *automatic = auto_enter(instance);
   struct Choice *choice = automatic->choice;
   choice->restarts++;
   if (choice->begin > step->start) begin_window(choice, step->start);
   bool is_done = solvers[choice->method]->restart(instance, state, step);
-  leave(instance, automatic);
+  auto_leave(instance, automatic);
   return is_done;
 }
 
 static void auto_resume(struct Instance *instance) {
-  struct Auto *automatic = enter(instance);
+  struct Auto *automatic = auto_enter(instance);
   solvers[automatic->choice->method]->resume(instance);
-  leave(instance, automatic);
+  auto_leave(instance, automatic);
 }
 
 static bool auto_interpolate(struct Instance *instance, double time, double *state) {
-  struct Auto *automatic = enter(instance);
+  struct Auto *automatic = auto_enter(instance);
   bool is_known = solvers[automatic->choice->method]->interpolate(instance, time, state);
-  leave(instance, automatic);
+  auto_leave(instance, automatic);
   return is_known;
 }
 
@@ -163,7 +163,7 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
   struct Situation *situation = instance->situation;
   double time = situation->last_step.end;
   if (!solvers[choice->method]->interpolate(instance, time, automatic->state)) return false;
-  choice->method = choice->method == METHOD_TAYLOR ? METHOD_RADAU : METHOD_TAYLOR;
+  choice->method = choice->method == AUTO_TAYLOR ? AUTO_RADAU : AUTO_TAYLOR;
   choice->windows = 0;
   begin_window(choice, time);
   if (situation->statistics[STATISTIC_HANDOVERS]++ == 0)
@@ -175,7 +175,7 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
   instance->solver_memory = automatic->memory[choice->method];
   situation->last_step = (struct Span){time, time};
   if (!solvers[choice->method]->restart(instance, automatic->state, step)) return false;
-  if (choice->method == METHOD_RADAU) radau_try_first(instance, choice->promised_step);
+  if (choice->method == AUTO_RADAU) radau_try_first(instance, choice->promised_step);
   choice->promised_step = 0.0;
   return true;
 }
@@ -210,9 +210,9 @@ static bool judge_series(struct Instance *instance, struct Choice *choice, doubl
 
 /* A trial goes on as long as steps grow or want to; one in vain is not soon made again. */
 static bool judge_trial(const struct Instance *instance, struct Choice *choice, double speed, double other) {
-  double window_of_series = window[METHOD_TAYLOR] * work_of_taylor(taylor_order(instance));
+  double window_of_series = window[AUTO_TAYLOR] * work_of_taylor(taylor_order(instance));
   choice->trial_work += choice->work;
-  double next = radau_next_step(instance) * window[METHOD_RADAU] / choice->work;
+  double next = radau_next_step(instance) * window[AUTO_RADAU] / choice->work;
   bool grows = choice->windows < TRIAL_LIMIT && (speed > GROWTH * choice->last_speed || next > other);
   choice->last_speed = speed;
   if (speed > other) choice->is_trial = 0;
@@ -247,8 +247,8 @@ static bool judge(struct Instance *instance, struct Auto *automatic) {
   if (choice->steps == 0) begin_window(choice, time);
   if (choice->steps < window[choice->method]) return false;
   choice->windows++;
-  bool is_slow = choice->method == METHOD_TAYLOR ? judge_series(instance, choice, time - choice->begin)
-                                                 : judge_radau(instance, automatic, time - choice->begin);
+  bool is_slow = choice->method == AUTO_TAYLOR ? judge_series(instance, choice, time - choice->begin)
+                                               : judge_radau(instance, automatic, time - choice->begin);
   begin_window(choice, time);
   return is_slow;
 }
@@ -256,7 +256,7 @@ static bool judge(struct Instance *instance, struct Auto *automatic) {
 /* The work of the method at work between two states of the statistics. */
 static double work_between(const struct Instance *instance, const struct Choice *choice, const int64_t *before) {
   const int64_t *after = instance->situation->statistics;
-  if (choice->method == METHOD_TAYLOR)
+  if (choice->method == AUTO_TAYLOR)
     return work_of_taylor(((const struct Taylor *)instance->solver_memory)->saved->order);
   return work_of_radau(radau_stage_count(instance),
                        (double)(after[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]),
@@ -274,7 +274,7 @@ static const char *make_step(struct Instance *instance, struct Auto *automatic, 
 }
 
 static const char *auto_advance(struct Instance *instance, const struct CommunicationStep *step) {
-  struct Auto *automatic = enter(instance);
+  struct Auto *automatic = auto_enter(instance);
   static const char no_handover[] = "the solver cannot begin there";
   const char *problem = NULL;
   if (judge(instance, automatic) && !hand_over(instance, automatic, step)) problem = no_handover;
@@ -283,7 +283,7 @@ static const char *auto_advance(struct Instance *instance, const struct Communic
     automatic->choice->taylor_speed = 0.0; /* what failed is not tried again before the other one fails */
     if (make_step(instance, automatic, step) == NULL) problem = NULL;
   }
-  leave(instance, automatic);
+  auto_leave(instance, automatic);
   return problem;
 }
 
