@@ -27,6 +27,7 @@ struct Method {
   const char *sources[METHOD_SOURCES];
   enum SeriesUse series;
   bool needs_jacobian; /* and counts its evaluations */
+  bool factors;        /* matrices with a row and a column for each coordinate, by lagrangian.lu */
   bool needs_linear;   /* solves linear systems alone, as a whole communication step */
 };
 
