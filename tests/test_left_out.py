@@ -10,7 +10,8 @@ from fmu import BUILD
 
 EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-BDF = ["ElasticPendulum"]
+BDF = ["ElasticPendulum", "Rope"]
+SPARSE = ["Rope"]
 ERK = ["BeadOnHoop"]  # of tests/systems
 
 
@@ -65,13 +66,16 @@ def test_only_the_solver_that_is_needed(name):
         assert "sundials" not in members and "SUN" not in members and b"SUNDIALS" not in text
     elif name in BDF:
         assert "libsundials_cvode" in members and "libsundials_arkode" not in members
-        assert "klu" not in members and "sunmatrixsparse" not in members
+        assert [word in members for word in ("sunlinsolklu", "sunmatrixsparse")] == 2 * [name in SPARSE]
+        assert [word in members for word in ("sunlinsoldense", "sunmatrixdense")] == 2 * [name not in SPARSE]
     else:
         assert "libsundials_arkode" in members
         for needless in ("libsundials_cvode", "sunlinsoldense", "sunmatrixdense", "arkode_arkstep", "arkode_mristep"):
             assert needless not in members
     solvers = set(re.findall(r"libsolvers\.a\((taylor|erk|bdf|bdf_sparse|exact)\.c\.o", members))
     expected = {method for method, names in (("exact", EXACT), ("bdf", BDF), ("erk", ERK)) if name in names}
+    if name in SPARSE:
+        expected = {"bdf_sparse"}
     assert solvers == (set() if name in NONE else expected or {"taylor"})
     assert ("ldlt.c.o" in members) == (name == "ChainPendulum")
 

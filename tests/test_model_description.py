@@ -210,6 +210,8 @@ NAMES = {
     "DoublePendulum": ("theta1 theta2", "omega1 omega2", "", "m1 m2 l1 l2 g", ""),
     "ChainPendulum": (" ".join(f"theta[{i}]" for i in range(1, 11)), " ".join(f"omega[{i}]" for i in range(1, 11)),
                       "", "m l g", ""),
+    "Rope": (" ".join(f"x[{i}] y[{i}]" for i in range(1, 201)), " ".join(f"vx[{i}] vy[{i}]" for i in range(1, 201)),
+             "", "M EA EI tau b kEnd xEnd yEnd g", "tension"),
     "StateFeedback": ("", "", "x theta v omega", "kx ktheta kv komega xref umax", "F"),
     "SpringDamper": ("", "", "x1 v1 x2 v2", "k c l0", "F1 F2"),
 }
@@ -221,7 +223,7 @@ def test_names_of_the_design(name):
     assert fmu.names_of(name, "parameter") == parameters
     assert fmu.names_of(name, "output") == coordinates + velocities + outputs
     states = coordinates + velocities
-    extra = ["nonConservativeWork"] if name == "DampedPendulum" else []
+    extra = ["nonConservativeWork"] if name in ("DampedPendulum", "Rope") else []
     assert fmu.states_of(name) == states + extra
     every = {v.name for v in fmu.description(name).modelVariables}
     assert {f"der({state})" for state in states} <= every
