@@ -80,6 +80,13 @@ def test_only_the_solver_that_is_needed(name):
     assert ("ldlt.c.o" in members) == (name == "ChainPendulum")
 
 
+def test_the_optimised_sundials():
+    """That of scripts/sundials, where there is one."""
+    own = fmu.ROOT / "build" / "sundials"
+    text = (BUILD / "systems" / "ElasticPendulum" / "link.map").read_text()
+    assert (f"{own}/lib/libsundials_cvode.a" in text) == (own / "version").exists()
+
+
 def test_generated_code_is_what_the_system_needs(name):
     """No input code without inputs, no time without time, no Jacobian unless the solver asks for one."""
     code = (BUILD / "systems" / name / "system.c").read_text()
