@@ -263,11 +263,11 @@ def test_icons_differ():
 
 
 def test_the_documentation_page(name):
-    """The page shows energies, equations, and every variable with its unit."""
+    """The page shows energies, equations, and every variable with its unit; of very many, it says how many are left out."""
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
     etree.HTML(page)
-    for variable in variables(name):
-        assert f">{variable.get('name')}<" in page
+    hidden = sum(f">{variable.get('name')}<" not in page for variable in variables(name))
+    assert hidden == 0 or (name == "Rope" and "further variables, which modelDescription.xml has, are not shown." in page)
     if fmu.states_of(name):
         for heading in ("Lagrangian", "Equations of motion"):
             assert heading in page
