@@ -67,6 +67,16 @@ struct OperationCounts {
   double series, recurrences; /* of an order of the series; the work of a recurrence grows with the order */
 };
 
+/*
+ * The factors L U of a matrix with a row and a column for each coordinate, of symmetric pattern. place: of each
+ * coordinate in the order of elimination. By these places, row i of L has the columns column[start[i]] to
+ * column[start[i + 1] - 1], ascending, the diagonal last; so have, transposed, the columns of U.
+ */
+struct LuPattern {
+  const int *place, *start, *column;
+};
+
+struct Lu;
 struct Solver;
 
 struct Lagrangian {
@@ -88,6 +98,8 @@ struct Lagrangian {
   const struct Solver *solver;      /* NULL for a system without coordinates */
   struct Sparsity jacobian_pattern; /* where there is a jacobian() */
   struct OperationCounts operations;
+  const struct Lu *lu;              /* how the solver factors matrices (lu.h); NULL where it does not */
+  struct LuPattern lu_pattern;      /* where that is lu_sparse */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive

@@ -35,6 +35,11 @@ def all_names():
 temporary_folders = []  # removed at the end of the process
 
 
+def small_names():
+    """Without those of hundreds of states, which take minutes where every access to memory is watched, or every pair of variables tried."""
+    return [name for name in all_names() if name != "Rope"]
+
+
 @functools.cache
 def unpacked(name):
     """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of build_systems()."""

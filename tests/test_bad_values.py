@@ -39,6 +39,7 @@ MASSES = [
         "ElasticPendulum": ["m"],
         "DoublePendulum": ["m1", "m2", "l1", "l2"],
         "ChainPendulum": ["m", "l"],
+        "Rope": ["M"],
     }.items()
     for parameter in parameters
 ]

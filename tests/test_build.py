@@ -21,6 +21,8 @@ def test_the_same_input_gives_the_same_bytes(tmp_path):
     for folder in ("fmu", "include", "modelDescription", "scripts", "src", "tests"):
         shutil.copytree(ROOT / folder, source / folder)
     shutil.copy(ROOT / "CMakeLists.txt", source)
+    if (ROOT / "build" / "sundials").exists():
+        shutil.copytree(ROOT / "build" / "sundials", source / "build" / "sundials")
     systems = tmp_path / "systems"
     for name in ("SimplePendulum", "ElasticPendulum", "SimplePendulumLinear"):
         shutil.copytree(ROOT / "fmu" / name, systems / name)

@@ -32,6 +32,7 @@ def outputs_by_fmpy(name):
     return outputs, np.array([result[output][-1] for output in outputs])
 
 
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_fmpy_model_exchange(name):
     """FMPy's CVode integrates our derivatives; at its tolerance the outputs agree with our own solver."""
     outputs, expected = outputs_by_fmpy(name)

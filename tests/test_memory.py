@@ -33,10 +33,12 @@ def test_threads(name):
     run([BUILD / "threads" / "bin" / "threads", words[1], words[2]])
 
 
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_life_under_sanitizers(name):
     run(words_for(name, SANITIZED), **CLEAN)
 
 
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_life_under_valgrind(name):
     flags = ["--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all", "-q"]
     run(["valgrind", *flags, *words_for(name, BUILD)])
@@ -47,6 +49,7 @@ def words_for_refusals(name, build, library):
     return [build / "bin" / "out_of_memory", library, fmu.description(name).guid, str(output)]
 
 
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_every_allocation_is_refused(name):
     """The caller's functions refuse each allocation in turn: a message, no leak, and the instance works after a reset."""
     library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"

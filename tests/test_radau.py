@@ -1,6 +1,7 @@
 """Radau IIA against closed forms of stiff motions, and what a one-step method promises."""
 
 import math
+import subprocess
 
 import mpmath
 import numpy as np
@@ -9,7 +10,21 @@ import pytest
 import fmu
 from closed_forms import pendulum_angle
 
+ROW = (
+    '<constant name="N" value="{0}"/><parameter name="k" start="1e4"/><parameter name="b" start="1e4"/><define name="x[0]">0</define>'
+    '<for index="i" from="1" to="N"><coordinate name="x[i]" velocity="v[i]" start="sin(pi*i/(N + 1))"/><particle mass="1" x="x[i]"/>'
+    '<potential>k*(x[i] - x[i-1])^2/2</potential><dissipation>b*(v[i] - der(x[i-1]))^2/2</dissipation></for>'
+    '<potential>k*x[N]^2/2</potential><dissipation>b*v[N]^2/2</dissipation><work/>'
+)  # fmt: skip
 TEXTS = {
+    # rows of masses between two walls, in their slowest mode: full factors, and sparse ones
+    "Row8": ROW.format(8),
+    "Row60": ROW.format(60),
+    # particles in a strong magnetic field and a viscous liquid: nothing but velocities couples x and y
+    "Magnetic": '<parameter name="B" start="1e5"/><parameter name="b" start="1e5"/><for index="i" from="1" to="10">'
+    '<coordinate name="x[i]" velocity="v[i]"/><coordinate name="y[i]" velocity="w[i]"/>'
+    '<kinetic>(v[i]^2 + w[i]^2)/2</kinetic><force coordinate="x[i]">B*w[i] - b*(v[i] - i)</force>'
+    '<force coordinate="y[i]">-B*v[i] - b*w[i]</force></for>',
     # x'' = -b v - k x, overdamped by up to twelve decades
     "Damper": '<parameter name="b" start="1e6"/><parameter name="k" start="1"/><coordinate name="x" velocity="v" start="1"/>'
     '<particle mass="1" x="x"/><force coordinate="x">-b*v - k*x + u</force><input name="u"/><work/>',
@@ -125,3 +140,50 @@ def test_work_of_a_stiff_damper(open_fmu):
     instance.run(20.0, 1.0)
     x, v, work = (instance.get(name) for name in ("x", "v", "nonConservativeWork"))
     assert np.isfinite([x, v, work]).all() and work == pytest.approx(v * v / 2, abs=1e-6)
+
+
+def code_of(name):
+    return (fmu.BUILD / "radau-systems" / "systems" / name / "system.c").read_text()
+
+
+@pytest.mark.parametrize("n, factors", [(8, "lu_dense"), (60, "lu_sparse")])
+def test_row_of_masses(n, factors, open_fmu):
+    """In the slowest mode, each mass moves as one on a spring and damper of 4 sin(pi / (2 (n + 1)))^2 of their strength."""
+    assert f".lu = &{factors}," in code_of(f"RadauRow{n}")
+    instance = open_fmu(f"RadauRow{n}")
+    share = 4 * math.sin(math.pi / (2 * (n + 1))) ** 2
+    for tolerance in (1e-4, 1e-7, 1e-10):
+        for b in (1e4, 1e7):
+            instance.reset().initialize({"b": b, "k": 1e4}, tolerance)
+            instance.run(3.0, 1.0)
+            with mpmath.workdps(50):
+                exact = overdamped(share * b, share * 1e4, 3.0)
+            found = [instance.get(f"x[{i}]") for i in range(1, n + 1)]
+            shape = np.sin(np.pi * np.arange(1, n + 1) / (n + 1))
+            np.testing.assert_allclose(found, exact * shape, atol=20 * tolerance)
+    # What the dampers took of the springs' energy, which is share k / 2 times the sum of the squares.
+    lost = share * 1e4 / 2 * (n + 1) / 2 * (exact**2 - 1) + instance.get("kineticEnergy")
+    assert instance.get("nonConservativeWork") == pytest.approx(lost, rel=1e-6)
+
+
+def test_particles_in_a_magnetic_field(open_fmu):
+    """They drift with the liquid, at the angle that the field gives; sparse factors without pivots by rows."""
+    assert ".lu = &lu_sparse," in code_of("RadauMagnetic")
+    instance = open_fmu("RadauMagnetic")
+    for field, damping in ((1e5, 1e5), (1e8, 1e5), (1e5, 1e2), (1e3, 1e9)):
+        instance.reset().initialize({"B": field, "b": damping}, tolerance=1e-8)
+        instance.step(1.0)
+        for i in (1, 10):
+            rate = damping + 1j * field
+            exact = i * damping / rate * (1 + (np.exp(-rate) - 1) / rate)
+            assert instance.get(f"x[{i}]") == pytest.approx(exact.real, abs=1e-6)
+            assert instance.get(f"y[{i}]") == pytest.approx(exact.imag, abs=1e-6)
+
+
+@pytest.mark.parametrize("name, is_sparse", [("RadauPair", False), ("RadauRow60", True)])
+def test_sources(name, is_sparse):
+    """They hold the one kind of factors that the system needs, and are plain C."""
+    source = fmu.unpacked(name) / "sources" / f"{name}.c"
+    words = ["gcc", "-std=c11", "-pedantic-errors", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Wno-unused-function"]
+    subprocess.run([*words, "-Werror", "-fsyntax-only", source], check=True)
+    assert [kind in source.read_text() for kind in ("lu_dense =", "lu_sparse =")] == [not is_sparse, is_sparse]

@@ -8,6 +8,8 @@ import re
 import subprocess
 import sys
 
+import pytest
+
 import fmu
 from fmu import BUILD, ROOT
 
@@ -35,6 +37,7 @@ def test_random_calls_under_sanitizers():
     assert not leaks, leaks[0]
 
 
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_attack_under_sanitizers(name):
     """NULL, unknown references, extreme numbers, wrong states, refused memory, damaged and forged saved states."""
     build, description = BUILD / "sanitized", fmu.description(name)

@@ -170,3 +170,76 @@ def test_systems_that_are_not_there(ready, tmp_path):
     status, text = ready.run("run", "own", cwd=tmp_path)
     assert status == 1 and f"{tmp_path}/own holds several systems; name one of them: {one} {two}\n" in text
     assert ready.calls() == []
+
+
+# A source package that is there or not, and a build of it that works or not.
+APT = """
+echo "apt-get $*" >>"$LOG"
+case "$*" in *" source "*) test "$SOURCE" = there && touch sundials_1.orig.tar.xz ;; esac
+"""
+CMAKE = """
+echo "cmake $*" >>"$LOG"
+case "$*" in
+*"-E tar"*) mkdir sundials-1 ;;
+*--build*) test "$MADE" = well ;;
+*--install*) mkdir -p build/sundials-unfinished/ready/lib ;;
+esac
+"""
+
+
+@pytest.fixture
+def source(clone):
+    """A clone in which the source of SUNDIALS can be had and built."""
+    script(clone.folder / "bin" / "apt-get", APT)
+    script(clone.folder / "bin" / "cmake", CMAKE)
+    clone.environment |= {"SOURCE": "there", "MADE": "well"}
+    return clone
+
+
+def test_sundials_is_built_once(source):
+    status, text = source.run("sundials")
+    assert (status, text) == (0, "Building SUNDIALS\n")
+    build = source.folder / "build"
+    assert {path.name for path in (build / "sundials").iterdir()} == {"lib", "version"}
+    assert not (build / "sundials-unfinished").exists()
+    calls = source.calls()
+    for call in calls:  # all that apt writes is in the build folder
+        if call.startswith("apt-get"):
+            assert all(f"{place}={build}/sundials-unfinished/" in call for place in ("Dir::State::lists", "Dir::Cache"))
+    assert source.run("sundials") == (0, "") and source.calls() == calls
+    # Another version of the distribution's is built anew.
+    script(source.folder / "bin" / "dpkg-query", "echo another\n")
+    assert source.run("sundials")[0] == 0 and len(source.calls()) == 2 * len(calls)
+
+
+@pytest.mark.parametrize("what, message", [
+    ({"SOURCE": "away"}, "the source package install ok installed cannot be had"),
+    ({"MADE": "badly"}, "SUNDIALS cannot be built from its source package"),
+])  # fmt: skip
+def test_without_the_source_of_sundials(what, message, source):
+    """A word, no failure, and no other try before it is asked for."""
+    source.environment |= what
+    status, text = source.run("sundials")
+    assert status == 0 and text.splitlines()[-1].startswith(f"scripts/sundials: {message}") and "packaged SUNDIALS" in text
+    assert not (source.folder / "build" / "sundials").exists()
+    calls = source.calls()
+    assert source.run("sundials") == (0, "") and source.calls() == calls
+    shutil.rmtree(source.folder / "build" / "sundials-failed")
+    source.environment |= {"SOURCE": "there", "MADE": "well"}
+    assert source.run("sundials") == (0, "Building SUNDIALS\n")
+
+
+def test_a_build_of_sundials_that_was_stopped(source):
+    unfinished = source.folder / "build" / "sundials-unfinished"
+    (unfinished / "ready").mkdir(parents=True)
+    (unfinished / "sundials-0").mkdir()
+    assert source.run("sundials") == (0, "Building SUNDIALS\n")
+    assert (source.folder / "build" / "sundials" / "version").exists() and not unfinished.exists()
+
+
+@pytest.mark.parametrize("solver, is_built", [("<solver method='bdf'/>", True), ('<solver method = "erk" />', True), ("", False)])
+def test_who_waits_for_sundials(solver, is_built, source, ready):
+    """Only who simulates a system that needs it."""
+    (add(ready.folder / "fmu" / "Pendulum") / "system.xml").write_text(f"<system>{solver}</system>")
+    assert ready.run("run", "Pendulum")[0] == 0
+    assert (ready.folder / "build" / "sundials" / "version").exists() == is_built

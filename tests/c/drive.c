@@ -104,7 +104,8 @@ static void co_simulate(const struct Drive *drive, fmi2Component c) {
 
 static void exchange_model(const struct Drive *drive, fmi2Component c) {
   const struct FmuLibrary *fmu = &drive->fmu;
-  double x[64], derivative[64], nominal[64];
+  static double x[1024], derivative[1024], nominal[1024];
+  EXPECT(drive->states <= 1024);
   fmi2EventInfo event;
   fmi2Boolean enter_event, terminate;
   initialize(drive, c);

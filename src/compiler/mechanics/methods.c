@@ -41,7 +41,8 @@ static const struct Method methods[] = {
      .evaluations = "evaluations of the equations of motion",
      .sources = {"radau.c", "radau_systems.c", "first_terms.c", "series_limit.c"},
      .series = FIRST_TERMS,
-     .needs_jacobian = true},
+     .needs_jacobian = true,
+     .factors = true},
     {.name = "auto",
      .solver = "solver_auto",
      .sentence =
@@ -57,6 +58,7 @@ static const struct Method methods[] = {
                  "series_limit.c"},
      .series = ALL_TERMS,
      .needs_jacobian = true,
+     .factors = true,
      .hands_over = true},
     {.name = "exact",
      .solver = "solver_exact",

@@ -9,6 +9,7 @@
 #include "memory.h"
 #include "program/accelerations.h"
 #include "program/jacobian.h"
+#include "program/lu_pattern.h"
 
 /* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
 static Node *create_seeds(struct Graph *graph) {
@@ -102,6 +103,8 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
         "the Jacobian matrix of the method '%s' would have more than %d elements, as the mass matrix couples the "
         "coordinates; expected the method 'taylor', or a smaller system",
         expressions->interface->method->name, JACOBIAN_LIMIT);
+  else if (expressions->interface->method->factors)
+    expressions->jacobian->factors = lu_pattern_create(expressions->jacobian, expressions->equations->count);
 }
 
 /* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */

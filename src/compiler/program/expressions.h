@@ -2,6 +2,7 @@
 #ifndef EXPRESSIONS_H
 #define EXPRESSIONS_H
 
+#include "mechanics/elimination.h"
 #include "mechanics/interface.h"
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
@@ -17,6 +18,7 @@ struct JacobianExpressions {
   size_t *start, *row;
   Node *value;
   size_t count;
+  struct Elimination *factors; /* of a method that factors; NULL for none, and where full matrices are cheaper */
 };
 
 struct Expressions {

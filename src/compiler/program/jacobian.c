@@ -5,6 +5,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "memory.h"
+#include "program/lu_pattern.h"
 
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY };
 
@@ -108,5 +109,6 @@ void jacobian_free(struct JacobianExpressions *jacobian) {
   free(jacobian->start);
   free(jacobian->row);
   free(jacobian->value);
+  lu_pattern_free(jacobian->factors);
   free(jacobian);
 }

@@ -23,6 +23,8 @@ static void write_runtime(FILE *file, const struct Program *program) {
   for (const char *const *name = runtime_sources; *name != NULL; name++) include_source(file, *name);
   for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
     include_source(file, method->sources[i]);
+  const char *lu = description_lu(program);
+  if (lu != NULL) fprintf(file, "#include \"%s.c\"\n", lu);
   if (program->is_table) include_source(file, "instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");
   fputs("#endif\n", file);

@@ -58,12 +58,28 @@ static void write_nominals(FILE *file, const struct Interface *interface) {
   free(nominal);
 }
 
+static void write_lu_pattern(FILE *file, const struct Elimination *factors, size_t coordinates) {
+  size_t *place = allocate(coordinates, sizeof *place);
+  for (size_t i = 0; i < coordinates; i++) place[factors->order[i]] = i;
+  write_sizes(file, "int", "lu_place", place, coordinates);
+  write_sizes(file, "int", "lu_start", factors->start, coordinates + 1);
+  write_sizes(file, "int", "lu_column", factors->column, factors->start[coordinates]);
+  free(place);
+}
+
 static void write_pattern(FILE *file, const struct Program *program) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   if (jacobian == NULL) return;
   write_sizes(file, "int", "jacobian_start", jacobian->start, program->interface->state_count + 1);
   write_sizes(file, "int", "jacobian_row", jacobian->row, jacobian->count);
+  if (jacobian->factors != NULL) write_lu_pattern(file, jacobian->factors, program->equations->count);
   fputs("\n", file);
+}
+
+const char *description_lu(const struct Program *program) {
+  const struct Method *method = program->interface->method;
+  if (method == NULL || !method->factors) return NULL;
+  return program->expressions->jacobian->factors != NULL ? "lu_sparse" : "lu_dense";
 }
 
 static void write_counts(FILE *file, const struct Program *program, size_t work_count) {
@@ -120,8 +136,9 @@ static const char *solver_of(const struct Program *program) {
 
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
   const struct Interface *interface = program->interface;
-  const char *solver = solver_of(program);
+  const char *solver = solver_of(program), *lu = description_lu(program);
   if (solver != NULL) fprintf(file, "extern const struct Solver %s;\n\n", solver);
+  if (lu != NULL) fprintf(file, "extern const struct Lu %s;\n\n", lu);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n",
           program->model->name);
   write_counts(file, program, work_count);
@@ -136,6 +153,9 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
   fprintf(file, ",\n    .max_steps = %ld,\n    .depends_on_time = %s,\n    .output_derivative_order = %d,\n",
           interface_max_steps(program->model), interface->depends_on_time ? "true" : "false",
           interface->output_derivative_order);
+  if (lu != NULL) fprintf(file, "    .lu = &%s,\n", lu);
+  if (lu != NULL && program->expressions->jacobian->factors != NULL)
+    fputs("    .lu_pattern = {lu_place, lu_start, lu_column},\n", file);
   write_functions(file, program);
   if (interface->method != NULL && interface->method->hands_over) write_operations(file, program);
   fputs("};\n", file);

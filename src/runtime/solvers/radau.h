@@ -31,10 +31,11 @@ struct Complex {
  */
 struct RadauSystems {
   double *values;                        /* of the Jacobian, in the order of lagrangian.jacobian_pattern */
-  struct Complex mu[SYSTEM_LIMIT];       /* the first one is real */
-  struct Complex *factors[SYSTEM_LIMIT]; /* n x n by rows: L and U */
-  size_t *pivots[SYSTEM_LIMIT];
+  size_t *place, *diagonal;              /* of K and D's elements in the matrices, in the same order; of the diagonal */
+  struct Complex mu[SYSTEM_LIMIT];       /* the first one is real, and so is its matrix */
+  double *factors[SYSTEM_LIMIT];         /* by lagrangian.lu */
   struct Complex *right_side, *solution; /* workspace, states */
+  double *work;                          /* for lagrangian.lu */
 };
 
 /* Numbers of memory that radau_systems_place() divides for so many systems, and what it leaves. */
@@ -47,7 +48,7 @@ bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *syst
 /* Factors the systems of the method for a step. False where one is singular. */
 bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod *method, double step);
 
-/* Solves system number j for systems->right_side; the solution is in systems->solution. */
+/* Solves system number j for systems->right_side, which is lost; the solution is in systems->solution. */
 void radau_systems_solve(struct RadauSystems *systems, int j);
 
 /* For whoever chooses between methods: the stages of a step, the step to come, and the Jacobian at the last one's start. */

@@ -1,31 +1,46 @@
-#include <math.h>
 #include <string.h>
 
 #include "evaluate.h"
+#include "lu.h"
 #include "radau.h"
 
-static size_t align(size_t doubles) {
-  return doubles + doubles % 2;
+static size_t width_of(int j) {
+  return j == 0 ? REAL : COMPLEX;
 }
 
 size_t radau_systems_size(void) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count;
-  size_t values = align((size_t)lagrangian.jacobian_pattern.count);
-  return values + SYSTEM_LIMIT * (2 * n * n + align(n)) + 4 * states;
+  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.jacobian_pattern.count;
+  size_t factors = lagrangian.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.lu->size(COMPLEX);
+  return count + (count + n) + factors + 2 * COMPLEX * states + 2 * COMPLEX * n;
+}
+
+/* Where the elements of K and D stand in a matrix. */
+static void find_places(struct RadauSystems *systems) {
+  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  size_t n = lagrangian.coordinate_count;
+  for (size_t i = 0; i < n; i++) systems->diagonal[i] = lagrangian.lu->place(i, i);
+  for (size_t column = 0; column < 2 * n; column++) {
+    for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
+      size_t row = (size_t)pattern->row[e];
+      if (row >= n && row < 2 * n) systems->place[e] = lagrangian.lu->place(row - n, column < n ? column : column - n);
+    }
+  }
 }
 
 void radau_systems_place(struct RadauSystems *systems, double *memory) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count;
+  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.jacobian_pattern.count;
   systems->values = memory;
-  memory += align(lagrangian.jacobian_pattern.count);
+  systems->place = (size_t *)(memory + count);
+  systems->diagonal = (size_t *)(memory + 2 * count);
+  memory += 2 * count + n;
   for (int j = 0; j < SYSTEM_LIMIT; j++) {
-    systems->factors[j] = (struct Complex *)memory;
-    memory += 2 * n * n;
-    systems->pivots[j] = (size_t *)memory;
-    memory += align(n);
+    systems->factors[j] = memory;
+    memory += lagrangian.lu->size(width_of(j));
   }
   systems->right_side = (struct Complex *)memory;
   systems->solution = systems->right_side + states;
+  systems->work = (double *)(systems->solution + states);
+  find_places(systems);
 }
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {
@@ -35,121 +50,73 @@ bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *syst
   return instance->singular == 0 && are_finite(systems->values, lagrangian.jacobian_pattern.count);
 }
 
-static struct Complex times(struct Complex a, struct Complex b) {
-  return (struct Complex){a.real * b.real - a.imaginary * b.imaginary, a.real * b.imaginary + a.imaginary * b.real};
-}
-
-static struct Complex inverse(struct Complex a) {
-  double square = a.real * a.real + a.imaginary * a.imaginary;
-  return (struct Complex){a.real / square, -a.imaginary / square};
-}
-
-static void subtract_product(struct Complex *sum, struct Complex a, struct Complex b) {
-  sum->real -= a.real * b.real - a.imaginary * b.imaginary;
-  sum->imaginary -= a.real * b.imaginary + a.imaginary * b.real;
-}
-
 /* mu^2 - mu D - K */
-static void fill(const struct RadauSystems *systems, struct Complex mu, struct Complex *matrix) {
+static void fill(const struct RadauSystems *systems, size_t width, const double *mu, double *matrix) {
   const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
   size_t n = lagrangian.coordinate_count;
-  struct Complex square = times(mu, mu);
-  memset(matrix, 0, n * n * sizeof *matrix);
-  for (size_t i = 0; i < n; i++) matrix[i * n + i] = square;
+  memset(matrix, 0, lagrangian.lu->size(width) * sizeof *matrix);
+  for (size_t i = 0; i < n; i++) number_add_product(width, matrix + width * systems->diagonal[i], mu, mu);
   for (size_t column = 0; column < 2 * n; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
-      size_t row = (size_t)pattern->row[e];
-      if (row < n || row >= 2 * n) continue;
-      struct Complex *element = &matrix[(row - n) * n + (column < n ? column : column - n)];
-      double value = systems->values[e];
-      element->real -= column < n ? value : value * mu.real;
-      element->imaginary -= column < n ? 0.0 : value * mu.imaginary;
+      if ((size_t)pattern->row[e] < n || (size_t)pattern->row[e] >= 2 * n) continue;
+      double *element = matrix + width * systems->place[e];
+      if (column < n) element[0] -= systems->values[e];
+      else
+        for (size_t i = 0; i < width; i++) element[i] -= systems->values[e] * mu[i];
     }
-  }
-}
-
-static double size_of(struct Complex a) {
-  return fabs(a.real) + fabs(a.imaginary);
-}
-
-/* Gauss's elimination with row pivots. False where the matrix is singular. */
-static bool eliminate(size_t n, struct Complex *matrix, size_t *pivots) {
-  for (size_t k = 0; k < n; k++) {
-    size_t best = k;
-    for (size_t i = k + 1; i < n; i++)
-      if (size_of(matrix[i * n + k]) > size_of(matrix[best * n + k])) best = i;
-    pivots[k] = best;
-    if (!(size_of(matrix[best * n + k]) > 0.0) || !isfinite(size_of(matrix[best * n + k]))) return false;
-    for (size_t j = 0; j < n && best != k; j++) {
-      struct Complex swapped = matrix[k * n + j];
-      matrix[k * n + j] = matrix[best * n + j];
-      matrix[best * n + j] = swapped;
-    }
-    struct Complex scale = inverse(matrix[k * n + k]);
-    for (size_t i = k + 1; i < n; i++) {
-      struct Complex *row = &matrix[i * n];
-      if (row[k].real == 0.0 && row[k].imaginary == 0.0) continue;
-      row[k] = times(row[k], scale);
-      for (size_t j = k + 1; j < n; j++) subtract_product(&row[j], row[k], matrix[k * n + j]);
-    }
-  }
-  return true;
-}
-
-static void substitute(size_t n, const struct Complex *matrix, const size_t *pivots, struct Complex *x) {
-  for (size_t k = 0; k < n; k++) {
-    struct Complex swapped = x[k];
-    x[k] = x[pivots[k]];
-    x[pivots[k]] = swapped;
-  }
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < i; j++) subtract_product(&x[i], matrix[i * n + j], x[j]);
-  for (size_t i = n; i-- > 0;) {
-    for (size_t j = i + 1; j < n; j++) subtract_product(&x[i], matrix[i * n + j], x[j]);
-    x[i] = times(x[i], inverse(matrix[i * n + i]));
   }
 }
 
 bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod *method, double step) {
-  size_t n = lagrangian.coordinate_count;
   for (int j = 0; j <= method->stages / 2; j++) {
     systems->mu[j] = (struct Complex){method->value_real[j] / step, method->value_imaginary[j] / step};
-    fill(systems, systems->mu[j], systems->factors[j]);
-    if (!eliminate(n, systems->factors[j], systems->pivots[j])) return false;
+    fill(systems, width_of(j), &systems->mu[j].real, systems->factors[j]);
+    if (!lagrangian.lu->factor(width_of(j), systems->factors[j], systems->work)) return false;
   }
   return true;
 }
 
-/* sum += the product of the Jacobian's elements in rows first .. end - 1 with x, columns below n or from n on */
-static void add_product(const struct RadauSystems *systems, size_t from, size_t to, size_t first, size_t end,
-                        const struct Complex *x, double sign, struct Complex *sum) {
+/* sum += the product of the Jacobian's elements in rows first .. end - 1 with x, columns from .. to - 1 */
+static void add_product(const struct RadauSystems *systems, size_t width, size_t from, size_t to, size_t first,
+                        size_t end, const double *x, double sign, double *sum) {
   const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
   for (size_t column = from; column < to; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
       if (row < first || row >= end) continue;
-      sum[row - first].real += sign * systems->values[e] * x[column - from].real;
-      sum[row - first].imaginary += sign * systems->values[e] * x[column - from].imaginary;
+      for (size_t i = 0; i < width; i++)
+        sum[width * (row - first) + i] += sign * systems->values[e] * x[width * (column - from) + i];
     }
   }
 }
 
-void radau_systems_solve(struct RadauSystems *systems, int j) {
+/* solution = the system's solution for right, both of numbers of this width. */
+static void solve(const struct RadauSystems *systems, int j, size_t width, const double *right, double *solution) {
   size_t n = lagrangian.coordinate_count, states = lagrangian.state_count;
-  const struct Complex *right = systems->right_side, mu = systems->mu[j];
-  struct Complex *x = systems->solution;
-  for (size_t i = 0; i < n; i++) {
-    struct Complex product = times(mu, right[i]);
-    x[i] = (struct Complex){right[n + i].real + product.real, right[n + i].imaginary + product.imaginary};
-  }
-  add_product(systems, n, 2 * n, n, 2 * n, right, -1.0, x);
-  substitute(n, systems->factors[j], systems->pivots[j], x);
-  for (size_t i = 0; i < n; i++) {
-    struct Complex product = times(mu, x[i]);
-    x[n + i] = (struct Complex){product.real - right[i].real, product.imaginary - right[i].imaginary};
-  }
+  const double *mu = &systems->mu[j].real;
+  memcpy(solution, right + width * n, width * n * sizeof *solution);
+  for (size_t i = 0; i < n; i++) number_add_product(width, solution + width * i, mu, right + width * i);
+  add_product(systems, width, n, 2 * n, n, 2 * n, right, -1.0, solution);
+  lagrangian.lu->solve(width, systems->factors[j], solution, systems->work);
+  double *velocity = solution + width * n, *work = velocity + width * n;
+  for (size_t i = 0; i < width * n; i++) velocity[i] = -right[i];
+  for (size_t i = 0; i < n; i++) number_add_product(width, velocity + width * i, mu, solution + width * i);
   if (states == 2 * n) return;
-  x[2 * n] = right[2 * n];
-  add_product(systems, 0, 2 * n, 2 * n, states, x, 1.0, x + 2 * n);
-  x[2 * n] = times(x[2 * n], inverse(mu));
+  double step[COMPLEX] = {mu[0], mu[1]};
+  memcpy(work, right + width * 2 * n, width * sizeof *work);
+  add_product(systems, width, 0, 2 * n, 2 * n, states, solution, 1.0, work);
+  number_invert(width, step);
+  number_multiply(width, work, step);
+}
+
+void radau_systems_solve(struct RadauSystems *systems, int j) {
+  size_t states = lagrangian.state_count;
+  double *right = (double *)systems->right_side, *solution = (double *)systems->solution;
+  if (width_of(j) == COMPLEX) {
+    solve(systems, j, COMPLEX, right, solution);
+    return;
+  }
+  for (size_t i = 0; i < states; i++) right[i] = right[2 * i];
+  solve(systems, j, REAL, right, solution);
+  for (size_t i = states; i-- > 0;) systems->solution[i] = (struct Complex){solution[i], 0.0};
 }
