@@ -65,6 +65,7 @@ struct Sparsity {
 struct OperationCounts {
   double derivatives, jacobian;
   double series, recurrences; /* of an order of the series; the work of a recurrence grows with the order */
+  double factor, solve;       /* multiplications in factors of a real matrix by lu, and in a triangle for a solution */
 };
 
 /*
@@ -98,8 +99,8 @@ struct Lagrangian {
   const struct Solver *solver;      /* NULL for a system without coordinates */
   struct Sparsity jacobian_pattern; /* where there is a jacobian() */
   struct OperationCounts operations;
-  const struct Lu *lu;              /* how the solver factors matrices (lu.h); NULL where it does not */
-  struct LuPattern lu_pattern;      /* where that is lu_sparse */
+  const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
+  struct LuPattern lu_pattern; /* where that is lu_sparse */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive

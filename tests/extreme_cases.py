@@ -350,7 +350,7 @@ CASES = [
            refused="tolerance is .*expected one between 0 and 1") for value in (0.0, -1.0, 1.0, np.nan, np.inf)),
     # --- Stiff damping, jumps.
     Case("damping 1e8 N m s", "DampedPendulum", dict(b=1e8, theta=1.0), 1.0, 0.1,
-         "creep; the Taylor series says that bdf is for this", viscous_error, refused="stiff.*bdf", exchange=1e-6),
+         "creep with the rate of the weight over the damping", viscous_error, 1e-9, 400, exchange=1e-6),
     Case("torque that jumps to 1e12 N m", "DampedPendulum", dict(b=0.5, m=1.0, l=1.0, theta=0.0, tau=1e12), 1e-3, 1e-4,
          "omega = tau/b (1 - exp(-b t/J))", spin_up_error, 1e-7, 60000),
     Case("force that jumps to 1e12 N", "InvertedPendulumCart", dict(theta=0.2), 3e-3, 1e-3,
@@ -390,7 +390,7 @@ CASES = [
     *(Case(f"spring of {k:g} N/m, undamped bounce, by taylor", "BouncingSpring", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
            "the bounce goes on: its own energy is kept", bounce_error, bound, int(max(300, np.sqrt(k))), 1e-15)
       for k, bound in ((1e4, 1e-9), (1e6, 1e-8), (1e8, 1e-6), (1e10, 1e-4))),
-    *(Case(f"spring of {k:g} N/m, undamped bounce, by bdf", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
+    *(Case(f"spring of {k:g} N/m, undamped bounce, by auto", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
            "the bounce goes on: its own energy is kept", bounce_error, bound, work, 1e-10)
       for k, bound, work in ((1e4, 1e-3, 10000), (1e6, 1e-2, 100000), (1e8, 1e-2, 500000))),
     # --- Fast pivot.

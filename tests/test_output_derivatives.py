@@ -120,7 +120,7 @@ def test_without_coordinates(open_fmu):
     assert derivatives_of(instance, "F1", [2, 3, 4]) == pytest.approx([7 * (0.5 * 0.1 - 0.2) - 3, 7 * 0.5, 0])
 
 
-@pytest.mark.parametrize("name", ["StateFeedback", "ElasticPendulum"])
+@pytest.mark.parametrize("name", ["StateFeedback", "FurutaPendulum"])
 def test_only_the_first_where_there_are_no_series(name, open_fmu):
     assert fmu.description(name).coSimulation.maxOutputDerivativeOrder == 1
     instance = open_fmu(name).initialize()

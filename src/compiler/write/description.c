@@ -121,9 +121,23 @@ static double operations_of(const struct Routine *routine) {
   return count;
 }
 
+/* Elements of the rows of L with their diagonals, and the sum of the squares of their numbers. */
+static void count_factors(const struct Program *program, double *elements, double *squares) {
+  const struct Elimination *factors = program->expressions->jacobian->factors;
+  *elements = *squares = 0.0;
+  for (size_t i = 0; i < program->equations->count; i++) {
+    double row = factors != NULL ? (double)(factors->start[i + 1] - factors->start[i]) : (double)i + 1.0;
+    *elements += row;
+    *squares += row * row;
+  }
+}
+
 static void write_operations(FILE *file, const struct Program *program) {
-  fprintf(file, "    .operations = {%.0f, %.0f, %.0f, %zu},\n", operations_of(program->derivatives),
-          operations_of(program->jacobian), operations_of(program->series->order), program->series->recurrences);
+  double elements, squares;
+  count_factors(program, &elements, &squares);
+  fprintf(file, "    .operations = {%.0f, %.0f, %.0f, %zu, %.0f, %.0f},\n", operations_of(program->derivatives),
+          operations_of(program->jacobian), operations_of(program->series->order), program->series->recurrences,
+          squares, elements);
 }
 
 /* NULL for a system without coordinates. */

@@ -150,10 +150,10 @@ static double work_of_taylor(int64_t order) {
 /* Operations of Radau IIA for so many evaluations of the equations, and so many Jacobians with their factors. */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
   const struct OperationCounts *count = &lagrangian.operations;
-  double n = (double)lagrangian.coordinate_count, states = (double)lagrangian.state_count;
-  double s = (double)stages, systems = 0.5 * (s + 1.0);
-  double evaluation = 250.0 + count->derivatives + s * (20.0 + 5.0 * states) + 5.0 * systems / s * n * n;
-  double factors = systems * (40.0 + 2.5 * n * n * n);
+  double s = (double)stages, states = (double)lagrangian.state_count;
+  double systems = 2.0 + 4.0 * (s - 1.0); /* a real one, and complex ones of four times its operations */
+  double evaluation = 250.0 + count->derivatives + s * (20.0 + 5.0 * states) + systems / s * count->solve;
+  double factors = 20.0 * s + systems * count->factor;
   return evaluations * evaluation + jacobians * (600.0 + count->jacobian + factors + 3.0 * s * s * states);
 }
 

@@ -91,7 +91,8 @@ static void add_product(const struct RadauSystems *systems, size_t width, size_t
 }
 
 /* solution = the system's solution for right, both of numbers of this width. */
-static void solve(const struct RadauSystems *systems, int j, size_t width, const double *right, double *solution) {
+static void solve_system(const struct RadauSystems *systems, int j, size_t width, const double *right,
+                         double *solution) {
   size_t n = lagrangian.coordinate_count, states = lagrangian.state_count;
   const double *mu = &systems->mu[j].real;
   memcpy(solution, right + width * n, width * n * sizeof *solution);
@@ -113,10 +114,10 @@ void radau_systems_solve(struct RadauSystems *systems, int j) {
   size_t states = lagrangian.state_count;
   double *right = (double *)systems->right_side, *solution = (double *)systems->solution;
   if (width_of(j) == COMPLEX) {
-    solve(systems, j, COMPLEX, right, solution);
+    solve_system(systems, j, COMPLEX, right, solution);
     return;
   }
   for (size_t i = 0; i < states; i++) right[i] = right[2 * i];
-  solve(systems, j, REAL, right, solution);
+  solve_system(systems, j, REAL, right, solution);
   for (size_t i = states; i-- > 0;) systems->solution[i] = (struct Complex){solution[i], 0.0};
 }
