@@ -100,6 +100,7 @@ static bool auto_create(struct Instance *instance) {
   automatic->state = (double *)(automatic + 1);
   bool is_complete = true;
   for (int i = 0; i < AUTO_METHODS && is_complete; i++) {
+    instance->solver_memory = NULL;
     is_complete = solvers[i]->create(instance);
     automatic->memory[i] = instance->solver_memory;
   }
