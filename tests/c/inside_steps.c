@@ -30,7 +30,8 @@ static void go(void *argument) {
   const struct Span *last = &instance->situation->last_step;
   double *state = calloc(lagrangian.state_count, sizeof *state);
   task->status = 1;
-  if (state == NULL || !solver->create(instance) || (solver->restart != NULL && !solver->restart(instance, instance->state, &step)))
+  if (state == NULL || !solver->create(instance) ||
+      (solver->restart != NULL && !solver->restart(instance, instance->state, &step)))
     return;
   for (; last->end < task->end; step.count++) {
     if (solver->advance(instance, &step) != NULL) return;
