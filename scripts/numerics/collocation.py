@@ -43,14 +43,16 @@ def radau_points(stages):
     return [(x + 1) / 2 for x in [*inner, mpmath.mpf(1)]]
 
 
-def extended_right_side(definition, values, changed=None):
-    """f(x, input) of a system of SymPy, for states x of which each may be an array; changed is the name of the input."""
+def extended_right_side(definition, values):
+    """
+    f(x, changes) of a system of SymPy that does not depend on time, for states x of which each may be an array;
+    changes are values of inputs and parameters by name, in place of those given here.
+    """
     evaluate, n = definition.evaluator("numpy"), len(definition.q)
-    parameters = [Extended(values[p.name]) for p in definition.parameters]
+    names = [symbol.name for symbol in [*definition.inputs, *definition.parameters]]
 
-    def derivative(x, level):
-        inputs = [Extended(level if u.name == changed else values[u.name]) for u in definition.inputs]
-        mass, terms = evaluate(Extended(0), *x, *inputs, *parameters)
+    def derivative(x, changes):
+        mass, terms = evaluate(Extended(0), *x, *(Extended((values | changes)[name]) for name in names))
         rows = solve(mass, [sum(row) for row in terms])
         return np.array([*x[n:], *(row + 0 * x[0] for row in rows)])
 
@@ -97,16 +99,16 @@ def stages_of_step(f, x, h, points, A):
 
 
 class Collocation:
-    """The motion x' = f(x, input) in steps whose size goes on from one piece of the input to the next."""
+    """The motion x' = f(x, changes) in steps whose size goes on from one piece to the next."""
 
     def __init__(self, f, x, stages):
         self.f, self.x, self.h = f, np.array(x, Extended), Extended(1e-6)
         self.stages = stages
         self.points, self.A, self.last_coefficients = method(stages)
 
-    def advance(self, time, end, level):
-        """Goes from time to end under a constant input."""
-        f, time, end = lambda x: self.f(x, level), Extended(time), Extended(end)
+    def advance(self, time, end, changes):
+        """Goes from time to end, with constant inputs and parameters."""
+        f, time, end = lambda x: self.f(x, changes), Extended(time), Extended(end)
         while time < end:
             is_last = time + self.h * Extended(1.001) >= end
             h = end - time if is_last else self.h
@@ -126,12 +128,12 @@ class Collocation:
             self.h = h * Extended(min(growth, 0.8))
 
 
-def trajectory(f, start, times, steps, level, stages):
-    """States at the times, which are ends of some of the evenly spaced steps; level(k) is the input in step k."""
+def trajectory(f, start, times, steps, changes, stages):
+    """States at the times, which are ends of some of the evenly spaced steps; changes(k) are those in step k."""
     motion, end, rows = Collocation(f, start, stages), times[-1], []
     wanted = {round(steps * t / end) for t in times}
     for k in range(steps):
-        motion.advance(end * k / steps, end * (k + 1) / steps, level(k))
+        motion.advance(end * k / steps, end * (k + 1) / steps, changes(k))
         if k + 1 in wanted:
             rows.append(motion.x.astype(float))
     return np.array(rows)

@@ -17,11 +17,13 @@ from numerics.driver import POINTS, changing_input, description_of, step
 STAGES = (12, 9)  # of the reference, and of the one that checks it
 
 
+@functools.cache
 def van_der_pol():
     x, v, F, mu = symbols("x v F mu")
     return System([x], [v], v**2 / 2, x**2 / 2, [mu * (1 - x**2) * v + F], [F], [mu])
 
 
+@functools.cache
 def flyball_governor():
     """Masses as points in space: each rod's, by Simpson's rule, at its ends and its middle, which is exact for it."""
     q, v = symbols("psi alpha s"), symbols("Omega nu vs")
@@ -47,7 +49,7 @@ class Problem:
     name: str
     system: str
     end: float
-    steps: int  # of communication, where there are many
+    steps: int  # of communication, where there are many: a multiple of POINTS
     values: dict = field(default_factory=dict)
     input: tuple = ()  # (name, amplitude) of one to change at every step
 
@@ -128,11 +130,10 @@ def right_states(problem, way):
 
 
 def by_collocation(problem, steps, changing):
-    name, amplitude = changing or (None, 0.0)
-    f = extended_right_side(problem.definition, problem.all_values, name)
+    f = extended_right_side(problem.definition, problem.all_values)
     start = [problem.all_values[state] for state in problem.states]
-    level = lambda k: changing_input(amplitude, k)
-    return [trajectory(f, start, problem.times, steps, level, stages) for stages in STAGES]
+    changes = lambda k: {changing[0]: changing_input(changing[1], k)} if changing else {}
+    return [trajectory(f, start, problem.times, steps, changes, stages) for stages in STAGES]
 
 
 def by_solvers(problem, steps, changing):
