@@ -8,7 +8,7 @@ import pytest
 
 import fmu
 from fmu import ROOT
-from numerics import driver, stiff
+from numerics import driver, stiff, stiff_problems
 from numerics.collocation import trajectory
 from numerics.stiff import Sample
 from numerics.stiff_problems import DEFINITIONS, Problem, right_states
@@ -22,8 +22,9 @@ def systems():
 
 
 @pytest.fixture
-def built(monkeypatch):
-    """The FMUs of this test in place of the builds with each solver."""
+def built(monkeypatch, tmp_path):
+    """The FMUs of this test in place of the builds with each solver, and no references of other runs."""
+    monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
     monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD / "stiff-systems")
     monkeypatch.setattr(stiff, "METHODS", ["auto", "radau"])
 

@@ -3,7 +3,7 @@
 import functools
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from sympy import Rational, cos, diff, sin, sqrt, symbols
@@ -14,6 +14,7 @@ from mechanics import System, kinetic, velocity
 from numerics.collocation import extended_right_side, trajectory
 from numerics.driver import POINTS, changing_input, description_of, step
 
+REFERENCES = ROOT / "build" / "report" / "references"
 STAGES = (12, 9)  # of the reference, and of the one that checks it
 
 
@@ -108,7 +109,7 @@ PROBLEMS = [
 ]
 if (ROOT / "fmu" / "Rope").exists():
     PROBLEMS.append(Problem("Rope", "Rope", 2.0, 200))
-QUICK = [elastic(1e6, 1.0), damped(1e6), relaxation(1e2)]
+QUICK = [replace(problem, steps=200) for problem in (elastic(1e6, 1.0), damped(1e6), relaxation(1e2))]
 
 
 def right_states(problem, way):
@@ -117,9 +118,10 @@ def right_states(problem, way):
     if not changing:
         steps = POINTS
     equations = repr(problem.definition.terms) if problem.definition else problem.system
-    words = [problem.all_values, problem.end, steps, changing, STAGES, equations]
+    levels = [changing_input(changing[1], k) for k in range(steps)] if changing else []
+    words = [problem.all_values, problem.end, steps, changing, levels, STAGES, equations]
     key = hashlib.sha256(json.dumps(words).encode()).hexdigest()[:16]
-    path = ROOT / "build" / "report" / "references" / f"{problem.system}-{key}.npz"
+    path = REFERENCES / f"{problem.system}-{key}.npz"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         both = (by_collocation if problem.definition else by_solvers)(problem, steps, changing)
