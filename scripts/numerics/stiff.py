@@ -57,7 +57,7 @@ def sample_fmus(problem, way, tolerances, rounds):
                 if method in given_up or (turn > 0 and first is None):
                     continue
                 timeout = PATIENCE if method == "auto" or auto is None else min(PATIENCE, 1 + 2 * SLOW * auto.seconds)
-                repeats = 1 if first is None else int(min(max(0.02 / first.seconds, 1), 50))
+                repeats = 1 if first is None else int(min(max(0.02 / first.seconds, 1), 500))
                 new = sample(problem, way, method, tolerance, repeats, timeout if first is None else 60)
                 if new is None:
                     given_up.add(method)
