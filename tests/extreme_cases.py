@@ -21,6 +21,7 @@ from closed_forms import (
     pericentre_velocity,
     turning_pendulum_angle,
 )
+from numerics.collocation import Collocation, extended_right_side
 from references import Motion
 from systems_in_sympy import system
 
@@ -44,6 +45,8 @@ class Case:
     refused: str = None  # what the message says, where refusing is right
     exchange: float = None  # bound on the error by FMPy's CVode in model exchange; 0 where that is refused too
     actions: Callable = None  # steps the instance itself and returns its rows
+    pieces: list = None  # (duration, values of inputs and parameters), in turn
+    handovers: int = None  # bound on the changes of method by `auto`
 
 
 @dataclass
@@ -106,11 +109,14 @@ def co_simulate(case):
     try:
         names = recorded_names(case.system)
         instance.initialize(case.values, case.tolerance, start_time=case.start_time)
-        if case.actions is not None:
+        if case.pieces is not None:
+            rows = go_through(case, instance, names)
+        elif case.actions is not None:
             rows = case.actions(instance, names)
         else:
             rows = instance.run(case.start_time + case.end, case.step, *names)
         evaluations, steps = count(instance, "derivativeEvaluations"), count(instance, "solverSteps")
+        handovers = count(instance, "solverHandovers")
     except FMICallException:
         return judge_refusal(case, [text for status, _, text in instance.messages if status > 1])
     finally:
@@ -120,6 +126,8 @@ def co_simulate(case):
     table = np.array(rows).T
     outcome = judge(case, Run(case, table[0], dict(zip(names, table[1:]))), evaluations, case.bound)
     outcome.steps = steps
+    if outcome.verdict == "right" and case.handovers is not None and handovers > case.handovers:
+        return Outcome("wrong", outcome.error, evaluations, f"{handovers} changes of method are more than {case.handovers}", steps)
     return outcome
 
 
@@ -183,6 +191,29 @@ def reference_error(run):
     exact = Motion(definition, values, 30).trajectory([run.time[-1]])[0]
     ours = np.array([run[name][-1] for name in states])
     return worst((ours - exact) / np.maximum(1, np.abs(exact)))
+
+
+def go_through(case, instance, names):
+    """Steps through the pieces; a row at the end of each."""
+    rows = [[0.0, *instance.fmu.getReal(instance.vr(*names))]]
+    for duration, values in case.pieces:
+        instance.set(values)
+        rows.append(instance.run(instance.time + duration, case.step, *names)[-1])
+    return rows
+
+
+def pieces_error(run):
+    """Against collocation of high order in extended precision, in units of the larger of 1 and the state."""
+    definition, values = system(run.case.system), start_values(run.case)
+    states = [s.name for s in [*definition.q, *definition.v]]
+    motion = Collocation(extended_right_side(definition, values), [values[state] for state in states], 12)
+    error, time = 0.0, 0.0
+    for i, (duration, changes) in enumerate(run.case.pieces, 1):
+        motion.advance(time, time + duration, changes)
+        time += duration
+        exact = motion.x.astype(float)
+        error = max(error, worst((np.array([run[state][i] for state in states]) - exact) / np.maximum(1, np.abs(exact))))
+    return error
 
 
 def start_values(case):
@@ -320,6 +351,13 @@ def spinning(w):
     return dict(m=1.0, l=l, g=9.81, r=r, w=w, gamma=0.0, theta=theta, omega=omega)
 
 
+def switching(name, system_name, values, pieces, right, bound, evaluations, handovers, step=None):
+    """A case for `auto`: inputs and parameters change between the pieces."""
+    end = sum(duration for duration, _ in pieces)
+    return Case(name, system_name, values, end, step or end, "collocation in extended precision; " + right, pieces_error, bound,
+                evaluations, 1e-9, pieces=pieces, handovers=handovers)  # fmt: skip
+
+
 UNIT = dict(l=1.0, g=1.0)
 ELLIPTIC = "Jacobi's elliptic function"
 
@@ -355,6 +393,20 @@ CASES = [
          "omega = tau/b (1 - exp(-b t/J))", spin_up_error, 1e-7, 60000),
     Case("force that jumps to 1e12 N", "InvertedPendulumCart", dict(theta=0.2), 3e-3, 1e-3,
          "momentum along x = impulse", jump_error, 1e-6, 40000, actions=jump),
+    # --- Stiff for a while. Values stay until they are changed, so that each piece names the same ones.
+    *(switching(f"damping that comes and goes, {text}", "DampedPendulum", dict(b=0.2), [(5.0, dict(b=b)) for b in (0.2, 1e6, 0.2, 1e8, 0.2)],
+                "swings, stands, swings", 1e-7, 2000, 8, step) for text, step in (("one step", None), ("steps of 0.01 s", 0.01))),
+    switching("spring that becomes a rod, and a spring again", "ElasticPendulum", dict(k=1e2, c=0.1),
+              [(2.0, dict(k=k, c=c)) for k, c in ((1e2, 0.1), (1e8, 2e4), (1e2, 0.1), (1e6, 2e4), (1e2, 0.1))],
+              "stretched by 0.1 m, it snaps back within a millisecond", 1e-6, 4000, 8),
+    switching("torque that jumps, at rest in oil", "DampedPendulum", dict(b=1e4, theta=0.0),
+              [(5.0, dict(tau=tau)) for tau in (0.0, 1e4, 0.0, -1e4, 0.0)], "a jump, and creep at once", 1e-7, 4000, 10),
+    switching("torque that changes every millisecond, in oil", "DampedPendulum", dict(b=1e6),
+              [(1e-3, dict(tau=1e6 * (-1) ** i)) for i in range(300)], "no chattering", 1e-7, 400_000, 50),
+    switching("torque that changes every millisecond, in air", "DampedPendulum", dict(b=0.1),
+              [(1e-3, dict(tau=1e2 * (-1) ** i)) for i in range(300)], "the series do not give way", 1e-7, 600, 0),
+    switching("damping that alternates between 0.1 and 1e5 N m s", "DampedPendulum", dict(b=0.1, theta=2.0),
+              [(0.05, dict(b=(0.1, 1e5)[i % 2])) for i in range(100)], "no chattering", 1e-7, 60_000, 26),
     # --- The cart.
     Case("mass ratio 1e-8", "InvertedPendulumCart", dict(M=1e-8, m=1.0, theta=0.5), 1.0, 0.1,
          "energy and momentum, to 100 times the tolerance", cart_invariants, 1e-8, 1000),

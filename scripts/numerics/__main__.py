@@ -8,8 +8,8 @@ import platform
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
-from numerics import energy, footprint, work_precision
-from numerics.plots import energy_plot, legend, work_precision_plot
+from numerics import energy, footprint, stiff, work_precision
+from numerics.plots import energy_plot, legend, stiff_legend, stiff_plot, work_precision_plot
 from numerics.peers import PEERS
 from numerics.scenarios import check_of_reference
 from progress import Progress
@@ -66,6 +66,21 @@ def energy_section(quick, progress):
     return '<div class="plots">' + "".join(plots) + "</div>"
 
 
+def stiff_section(quick, progress):
+    """(sentences for the first screen, the section)."""
+    samples = stiff.collect(quick, progress)
+    work_precision.write_csv(samples, FOLDER / "stiff.csv")
+    rows = stiff.rows(samples, quick)
+    write_csv(FOLDER / "stiff_ratios.csv", stiff.HEADER, rows)
+    sentences = stiff.summary(rows)
+    text = ("Ratios are of times to an equal error, between tolerances by powers; 0 and inf: one of the two never gets there. The methods take "
+            "turns, and the fastest of several runs counts. The references are collocation of high order in extended precision, of "
+            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side.")  # fmt: skip
+    problems = list({problem.name: problem for problem, _ in stiff.plan(quick)}.values())
+    plots = '<div class="plots">' + "".join(stiff_plot(samples, problem) for problem in problems) + "</div>"
+    return sentences, paragraphs([*sentences, text]) + stiff_legend(stiff.PEERS) + plots + table(stiff.HEADER, rows)
+
+
 def references_section(systems):
     header = ["system", "seconds", "reference checked with", "largest difference"]
     rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in systems]
@@ -105,11 +120,12 @@ def main():
     quick = parser.parse_args().quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     tasks = work_precision.plan(quick)
-    progress = Progress(len(tasks) + len(CASES) + len(energy.RUNS) * len(energy.METHODS))
+    progress = Progress(len(tasks) + len(CASES) + len(energy.RUNS) * len(energy.METHODS) + len(stiff.plan(quick)))
     samples, failures = work_precision.collect(tasks, progress)
     work_precision.write_csv(samples, FOLDER / "work_precision.csv")
     systems = list(dict.fromkeys(s.system for s in samples))
     verdicts, stability = stability_section(stability_rows(progress))
+    stiff_sentences, stiff_content = stiff_section(quick, progress)
     energies = energy_section(quick, progress)
     left_out_header = ["FMU", "form", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
                        "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
@@ -117,7 +133,7 @@ def main():
     write_csv(FOLDER / "left_out.csv", left_out_header, left_out)
     failed = [f"{count} runs of {method} gave up or took more than a minute." for method, count in failures.items()]
     summary = work_precision.summary(samples)
-    first = [verdicts, *missing_peers(samples),
+    first = [verdicts, *stiff_sentences, *missing_peers(samples),
              "Times are those of the doStep loop alone, measured in a C program, the fastest of several runs; those of Python's "
              "packages include Python, as their users see them, but no loading and no compilation."]  # fmt: skip
     plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
@@ -125,6 +141,7 @@ def main():
         ("lagrange-fmu: error against run time, stability, footprint",
          "".join(paragraphs([text]) + bullets(items) for text, items in summary) + paragraphs(first)),
         ("Error against run time", paragraphs([*failed, "Left is loose, right is accurate; low is fast."]) + legend() + plots + ratio_tables(samples)),
+        ("Stiff systems", stiff_content),
         ("Stiff and extreme cases", stability),
         ("Energy over long runs", energies),
         ("Left out", table(left_out_header, left_out)),
@@ -134,7 +151,7 @@ def main():
     (FOLDER / "index.html").write_text(page(sections))
     for text, items in summary:
         print(text, *items, sep="\n  ")
-    print(verdicts)
+    print(verdicts, *stiff_sentences, sep="\n")
     print(f"report  {FOLDER / 'index.html'}")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from fmu import ROOT
 
 BUILD = ROOT / "build"
-SOLVERS = ["taylor", "erk", "bdf"]  # each has a build of all systems
+SOLVERS = ["taylor", "erk", "bdf"]  # each has a build of all systems, as have those of numerics.stiff
 POINTS = 100
 
 
@@ -36,8 +36,16 @@ def description_of(solver, name):
     return fmpy.read_model_description(folder_of(solver) / "fmu" / f"{name}.fmu")
 
 
-def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, timeout=60):
-    """The time and the states of a simulation; None where the FMU gives up or takes longer than the timeout."""
+def changing_input(amplitude, k):
+    """The value of an input that changes at every step, in step k; the same as in tests/c/stepping.c."""
+    return amplitude * (7 * k % 11 - 5) / 5
+
+
+def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, timeout=60, changing=()):
+    """
+    The time and the states of a simulation; None where the FMU gives up or takes longer than the timeout.
+    changing: (input, amplitude), an input that changes at every step.
+    """
     description = description_of(solver, name)
     references = {v.name: v.valueReference for v in description.modelVariables}
     names = [v.name for v in description.modelVariables if v.type == "Real"]
@@ -46,7 +54,8 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
     counted = [name for name in ("solverSteps", "derivativeEvaluations") if name in references]
     words = [BUILD / "bin/stepping", library, description.guid, tolerance, end, steps, repeats, len(names), points,
              ",".join(str(references[name]) for name in counted),
-             *(f"{references[variable]}={value!r}" for variable, value in starts.items())]  # fmt: skip
+             *(f"{references[variable]}={value!r}" for variable, value in starts.items()),
+             *([f"{references[changing[0]]}~{changing[1]!r}"] if changing else [])]  # fmt: skip
     try:
         result = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=timeout)
     except subprocess.TimeoutExpired:

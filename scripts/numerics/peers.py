@@ -30,9 +30,9 @@ def fastest(run, budget=2.0, repeats=10):
 PATIENCE = 20.0  # seconds, after which a run counts as never ending
 
 
-def impatient(function):
-    """The function, which raises TimeoutError from PATIENCE seconds on."""
-    deadline = time.perf_counter() + PATIENCE
+def impatient(function, patience=PATIENCE):
+    """The function, which raises TimeoutError from so many seconds on."""
+    deadline = time.perf_counter() + patience
 
     def call(*arguments):
         if time.perf_counter() > deadline:

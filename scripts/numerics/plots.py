@@ -7,6 +7,8 @@ from html_page import svg
 from numerics.scenarios import SCENARIOS
 
 COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "#588157"}
+STIFF_COLOURS = {"auto": "#c1121f", "radau": "#8338ec", "taylor": "#f4a261", "bdf": "#588157"}
+STYLES = ["-", "--", ":"]  # of the ways of communication
 MARKERS = {"SciPy DOP853": "s", "SciPy LSODA": "v", "SciPy Radau": "^", "FMPy CVode (model exchange)": "D",
            "heyoka": "*", "MuJoCo RK4": "P", "MuJoCo Euler": "X"}  # fmt: skip
 LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk": "built with erk", "bdf": "built with bdf"}
@@ -59,6 +61,39 @@ def legend():
         axes.plot([], [], color="#999", marker=marker, label=method)
     axes.axis("off")
     axes.legend(ncols=4, fontsize=8, loc="center", frameon=False)
+    return svg(figure)
+
+
+def stiff_plot(samples, problem):
+    """All methods and ways of communication on a problem of numerics.stiff_problems."""
+    figure, axes = plt.subplots(figsize=(6.2, 4.6))
+    colours = STIFF_COLOURS | dict.fromkeys(MARKERS, "#999")
+    for way, style in zip(problem.ways, STYLES):
+        for method, colour in colours.items():
+            points = front([(s.seconds, max(s.error, 1e-17)) for s in samples if (s.problem, s.way, s.method) == (problem.name, way, method)])
+            if len(points):
+                axes.loglog(points[:, 1], points[:, 0], style, color=colour, marker=MARKERS.get(method, "o"), markersize=4,
+                            linewidth=2 if method == "auto" else 1)  # fmt: skip
+    axes.set_xlabel("largest error at the communication points")
+    axes.set_ylabel("run time [s]")
+    axes.invert_xaxis()
+    axes.grid(alpha=0.3)
+    axes.set_title(f"{problem.name}, {problem.end:g} s", fontsize=10)
+    figure.tight_layout()
+    return svg(figure)
+
+
+def stiff_legend(peers):
+    """One for all plots of stiff problems."""
+    figure, axes = plt.subplots(figsize=(11, 0.7))
+    for method, colour in STIFF_COLOURS.items():
+        axes.plot([], [], color=colour, marker="o", markersize=3, label=method)
+    for method in peers:
+        axes.plot([], [], color="#999", marker=MARKERS[method], label=method)
+    for style, way in zip(STYLES, ("one step", "many steps", "an input that changes at every step")):
+        axes.plot([], [], style, color="#444", label=way)
+    axes.axis("off")
+    axes.legend(ncols=5, fontsize=8, loc="center", frameon=False)
     return svg(figure)
 
 

@@ -86,7 +86,7 @@ def collect(tasks, progress):
 
 def write_csv(samples, path):
     with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Sample)])
+        writer = csv.DictWriter(file, [field.name for field in fields(samples[0])])
         writer.writeheader()
         writer.writerows(asdict(sample) for sample in samples)
 

@@ -1,7 +1,8 @@
 /*
- * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS [REFERENCE=VALUE ...].
- * Prints the seconds of the fastest repeat, then a line with the first OUTPUTS variables for each of up to POINTS
- * communication points that are evenly spaced, then a line with the Integer variables whose references COUNTS lists.
+ * Times the steps of an FMU: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS
+ * [REFERENCE=VALUE ...] [REFERENCE~AMPLITUDE]. Prints the seconds of the fastest repeat, then a line with the first
+ * OUTPUTS variables for each of up to POINTS communication points that are evenly spaced, then a line with the Integer
+ * variables whose references COUNTS lists. What has an amplitude is an input that changes before every step.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +14,26 @@ static double seconds(void) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+struct ChangingInput {
+  fmi2ValueReference reference;
+  double amplitude; /* 0 for none */
+};
+
+/* The same values as changing_input() of scripts/numerics/driver.py: eleven levels, by turns. */
+static int change(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingInput input, long k) {
+  double value = input.amplitude * (double)(7 * k % 11 - 5) / 5.0;
+  return input.amplitude == 0.0 || fmu->fmi2SetReal(c, &input.reference, 1, &value) == fmi2OK;
+}
+
+/* Takes the last word where it is REFERENCE~AMPLITUDE, and leaves one word less. */
+static struct ChangingInput take_changing_input(int *count, char **words) {
+  char *rest;
+  fmi2ValueReference reference = (fmi2ValueReference)strtoul(words[*count - 1], &rest, 10);
+  if (*rest != '~') return (struct ChangingInput){0, 0.0};
+  --*count;
+  return (struct ChangingInput){reference, strtod(rest + 1, NULL)};
 }
 
 static int prepare(const struct FmuLibrary *fmu, fmi2Component c, double tolerance, int count, char **starts) {
@@ -27,9 +48,10 @@ static int prepare(const struct FmuLibrary *fmu, fmi2Component c, double toleran
   return fmu->fmi2EnterInitializationMode(c) == fmi2OK && fmu->fmi2ExitInitializationMode(c) == fmi2OK;
 }
 
-static int step(const struct FmuLibrary *fmu, fmi2Component c, double end, long k, long steps) {
+static int step(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingInput input, double end, long k,
+                long steps) {
   double from = end * (double)k / (double)steps, to = end * (double)(k + 1) / (double)steps;
-  return fmu->fmi2DoStep(c, from, to - from, fmi2True) == fmi2OK;
+  return change(fmu, c, input, k) && fmu->fmi2DoStep(c, from, to - from, fmi2True) == fmi2OK;
 }
 
 static int print_outputs(const struct FmuLibrary *fmu, fmi2Component c, long outputs) {
@@ -57,6 +79,7 @@ static int print_counts(const struct FmuLibrary *fmu, fmi2Component c, const cha
 
 int main(int count, char **words) {
   if (count < 10) return 2;
+  struct ChangingInput input = take_changing_input(&count, words);
   struct FmuLibrary fmu = fmu_library_open(words[1]);
   const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
   double tolerance = strtod(words[3], NULL), end = strtod(words[4], NULL), best = 1e300;
@@ -68,14 +91,14 @@ int main(int count, char **words) {
     if (!prepare(&fmu, c, tolerance, count - 10, words + 10)) return 1;
     double start = seconds();
     for (long k = 0; k < steps; k++)
-      if (!step(&fmu, c, end, k, steps)) return 1;
+      if (!step(&fmu, c, input, end, k, steps)) return 1;
     double taken = seconds() - start;
     if (taken < best) best = taken;
   }
   printf("%.9g\n", best);
   if (!prepare(&fmu, c, tolerance, count - 10, words + 10)) return 1;
   for (long k = 0; k < steps; k++) {
-    if (!step(&fmu, c, end, k, steps)) return 1;
+    if (!step(&fmu, c, input, end, k, steps)) return 1;
     if ((k + 1) * points % steps < points && !print_outputs(&fmu, c, outputs)) return 1;
   }
   if (!print_counts(&fmu, c, words[9])) return 1;

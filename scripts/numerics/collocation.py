@@ -1,0 +1,139 @@
+"""
+References of stiff problems: collocation at Radau's points in extended precision, of any order (E. Hairer, G. Wanner:
+Solving Ordinary Differential Equations II, section IV.5). Nothing is shared with the FMUs: all stages are solved for at
+once by Newton's method, Jacobians are differences, and the error is read off the Legendre coefficients of the polynomial.
+"""
+
+import functools
+
+import mpmath
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import lu_factor, lu_solve
+
+from references import solve
+
+Extended = np.longdouble
+TOLERANCE = 1e-13  # of the last Legendre coefficients, in units of max(1, |state|)
+ITERATION_LIMIT = 12
+
+
+@functools.cache
+def method(stages):
+    """Radau's points in (0, 1], the integrals of their Lagrange polynomials, and what makes the last two Legendre coefficients."""
+    with mpmath.workdps(40):
+        points = radau_points(stages)
+        powers = mpmath.matrix(stages, stages)
+        integrals = mpmath.matrix(stages, stages)
+        for i, c in enumerate(points):
+            for j in range(stages):
+                powers[i, j], integrals[i, j] = c**j, c ** (j + 1) / (j + 1)
+        A = integrals * powers**-1
+        A = np.array([[Extended(mpmath.nstr(A[i, j], 25)) for j in range(stages)] for i in range(stages)])
+        points = np.array([Extended(mpmath.nstr(c, 25)) for c in points])
+    nodes = 2 * np.concatenate([[0], points]).astype(float) - 1
+    return points, A, np.linalg.inv(legendre.legvander(nodes, stages))[-2:, 1:]
+
+
+def radau_points(stages):
+    """The roots of P_s(x) - P_(s-1)(x), one of which is x = 1, on [0, 1]."""
+    guesses = legendre.legroots([*[0] * (stages - 1), -1, 1])
+    difference = lambda x: mpmath.legendre(stages, x) - mpmath.legendre(stages - 1, x)
+    inner = [mpmath.findroot(difference, mpmath.mpf(float(x.real))) for x in sorted(guesses)[:-1]]
+    return [(x + 1) / 2 for x in [*inner, mpmath.mpf(1)]]
+
+
+def extended_right_side(definition, values):
+    """
+    f(x, changes) of a system of SymPy that does not depend on time, for states x of which each may be an array;
+    changes are values of inputs and parameters by name, in place of those given here.
+    """
+    evaluate, n = definition.evaluator("numpy"), len(definition.q)
+    names = [symbol.name for symbol in [*definition.inputs, *definition.parameters]]
+
+    def derivative(x, changes):
+        mass, terms = evaluate(Extended(0), *x, *(Extended((values | changes)[name]) for name in names))
+        rows = solve(mass, [sum(row) for row in terms])
+        return np.array([*x[n:], *(row + 0 * x[0] for row in rows)])
+
+    return derivative
+
+
+def jacobians(f, x):
+    """Those at the columns of x, by differences, which leave nine digits: as many iterations of Newton's method suffice."""
+    f0, count = f(x), len(x)
+    result = np.empty((x.shape[1], count, count))
+    for j in range(count):
+        h = Extended(1e-9) * np.maximum(1, np.abs(x[j]))
+        moved = x.copy()
+        moved[j] += h
+        result[:, :, j] = ((f(moved) - f0) / h).T
+    return result
+
+
+def stages_of_step(f, x, h, points, A):
+    """Z = h F(x + Z) A^T, a column a stage; None where Newton's method does not converge."""
+    stages, count = len(points), len(x)
+    scale = np.maximum(1, np.abs(x))[:, None]
+    Z, factors, before = np.zeros((count, stages), Extended), None, np.inf
+    for _ in range(ITERATION_LIMIT):
+        Y = x[:, None] + Z
+        if factors is None:
+            J = jacobians(f, Y)
+            if not np.all(np.isfinite(J)):
+                return None
+            blocks = np.einsum("ij,jab->iajb", float(h) * A.astype(float), J).reshape(stages * count, -1)
+            factors = lu_factor(np.eye(stages * count) - blocks)
+        residual = h * f(Y) @ A.T - Z
+        change = lu_solve(factors, residual.T.reshape(-1).astype(float)).reshape(stages, count).T
+        if not np.all(np.isfinite(change)):
+            return None
+        Z = Z + change
+        size = float(np.max(np.abs(change) / scale))
+        if size < 1e-16 or (size < 1e-13 and size > 0.1 * before):
+            return Z
+        if size > 1e-3 * before:
+            factors = None
+        before = size
+    return None
+
+
+class Collocation:
+    """The motion x' = f(x, changes) in steps whose size goes on from one piece to the next."""
+
+    def __init__(self, f, x, stages):
+        self.f, self.x, self.h = f, np.array(x, Extended), Extended(1e-6)
+        self.stages = stages
+        self.points, self.A, self.last_coefficients = method(stages)
+
+    def advance(self, time, end, changes):
+        """Goes from time to end, with constant inputs and parameters."""
+        f, time, end = lambda x: self.f(x, changes), Extended(time), Extended(end)
+        while time < end:
+            is_last = time + self.h * Extended(1.001) >= end
+            h = end - time if is_last else self.h
+            Z = stages_of_step(f, self.x, h, self.points, self.A)
+            growth = 0.25
+            if Z is not None:
+                scale = np.maximum(1, np.max(np.abs(self.x[:, None] + Z), axis=1))
+                coefficients = np.abs(self.last_coefficients @ Z.T.astype(float)) / scale.astype(float)
+                error = float(np.max(coefficients))
+                growth = min(4.0, max(0.2, 0.9 * (TOLERANCE / max(error, 1e-300)) ** (1 / self.stages)))
+                if error <= TOLERANCE:
+                    self.x, time = self.x + Z[:, -1], end if is_last else time + h
+                    self.h = max(self.h, h * Extended(growth)) if is_last else h * Extended(growth)
+                    continue
+            if h < Extended(1e-17) * (end + 1):
+                raise ArithmeticError(f"no step of the reference is small enough at {float(time)}")
+            self.h = h * Extended(min(growth, 0.8))
+
+
+def trajectory(f, start, times, steps, changes, stages):
+    """States at the times, which are ends of some of the evenly spaced steps; changes(k) are those in step k."""
+    motion, end, rows = Collocation(f, start, stages), times[-1], []
+    wanted = {round(steps * t / end) for t in times}
+    for k in range(steps):
+        motion.advance(end * k / steps, end * (k + 1) / steps, changes(k))
+        if k + 1 in wanted:
+            rows.append(motion.x.astype(float))
+    return np.array(rows)

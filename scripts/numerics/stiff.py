@@ -1,0 +1,167 @@
+"""Error against run time of stiff problems: the solver that chooses beside those it chooses from, SUNDIALS' and SciPy's."""
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from numerics.driver import POINTS, step
+from numerics.peers import impatient
+from numerics.plots import front
+from numerics.stiff_problems import PROBLEMS, QUICK, relative, right_states
+
+METHODS = ["auto", "radau", "taylor", "bdf"]  # each has a build of all systems
+PEERS = {"SciPy Radau": "Radau", "SciPy LSODA": "LSODA"}
+TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
+LEVELS = [1e-6, 1e-10]  # errors at which times are compared
+GOAL = 1.3  # the time of auto, in units of the better one of its two methods
+PATIENCE = 10.0  # seconds
+SLOW = 20.0  # methods that take this many times the time of auto are left out
+
+
+@dataclass
+class Sample:
+    problem: str
+    way: str  # of communication
+    method: str
+    tolerance: float
+    seconds: float
+    error: float  # the largest over the recorded communication points
+    steps: int = 0
+    evaluations: int = 0
+
+
+def sample(problem, way, method, tolerance, repeats, timeout):
+    steps, changing = problem.communication(way)
+    stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, repeats, timeout=timeout, changing=changing)
+    if stepped is None:
+        return None
+    states = stepped.columns(problem.states)
+    stride = POINTS // len(states)
+    error = float(np.max(relative(states, right_states(problem, way)[0][stride - 1 :: stride])))
+    return Sample(problem.name, way, method, tolerance, stepped.seconds, error, stepped.steps, stepped.evaluations)
+
+
+def sample_fmus(problem, way, tolerances, rounds):
+    """
+    The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts. One that
+    gives up or is far slower than auto is not tried at smaller tolerances.
+    """
+    samples, given_up = {}, set()
+    for turn in range(rounds):
+        for tolerance in sorted(tolerances, reverse=True):
+            for method in METHODS:
+                first, auto = samples.get((method, tolerance)), samples.get(("auto", tolerance))
+                if method in given_up or (turn > 0 and first is None):
+                    continue
+                timeout = PATIENCE if method == "auto" or auto is None else min(PATIENCE, 1 + 2 * SLOW * auto.seconds)
+                repeats = 1 if first is None else int(min(max(0.02 / first.seconds, 1), 500))
+                new = sample(problem, way, method, tolerance, repeats, timeout if first is None else 60)
+                if new is None:
+                    given_up.add(method)
+                elif first is None:
+                    samples[method, tolerance] = new
+                else:
+                    first.seconds = min(first.seconds, new.seconds)
+    return list(samples.values())
+
+
+def sample_peers(problem, tolerances):
+    """With the right side that SymPy writes for NumPy, a run each in one step."""
+    samples, definition, values = [], problem.definition, problem.all_values
+    if definition is None:
+        return samples
+    inputs, parameters = [values[u.name] for u in definition.inputs], [values[p.name] for p in definition.parameters]
+    start = [values[state] for state in problem.states]
+    exact = right_states(problem, "one step")[0][-1]
+    for peer, method in PEERS.items():
+        for tolerance in tolerances:
+            right_side = impatient(definition.right_side(lambda t: inputs, parameters), PATIENCE)
+            begin = time.perf_counter()
+            try:
+                solution = solve_ivp(right_side, (0, problem.end), start, method=method, rtol=tolerance, atol=tolerance, t_eval=[problem.end])
+            except (TimeoutError, ArithmeticError, ValueError, np.linalg.LinAlgError):
+                break
+            seconds = time.perf_counter() - begin
+            if not solution.success or not np.all(np.isfinite(solution.y)):
+                break
+            error = float(np.max(relative(solution.y[:, -1], exact)))
+            samples.append(Sample(problem.name, "one step", peer, tolerance, seconds, error))
+    return samples
+
+
+def plan(quick):
+    """All (problem, way)."""
+    return [(problem, way) for problem in (QUICK if quick else PROBLEMS) for way in problem.ways]
+
+
+def collect(quick, progress):
+    samples = []
+    tolerances, rounds = (TOLERANCES[1::2], 2) if quick else (TOLERANCES, 4)
+    for problem, way in plan(quick):
+        samples += sample_fmus(problem, way, tolerances, rounds)
+        if way == "one step":
+            samples += sample_peers(problem, [t for t in tolerances if t >= 1e-10])
+        progress(f"{problem.name}, {way}")
+    return samples
+
+
+def seconds_to(samples, problem, way, method, level):
+    """The time to this error, between tolerances by powers; infinite where the method never gets there."""
+    points = [(s.seconds, max(s.error, 1e-17)) for s in samples if (s.problem, s.way, s.method) == (problem, way, method)]
+    if min((error for _, error in points), default=math.inf) > level:
+        return math.inf
+    seconds, errors = np.log(front(points))[::-1].T
+    return float(np.exp(np.interp(math.log(level), errors, seconds)))
+
+
+def ratio(numerator, denominator):
+    """Not a number where neither method gets there."""
+    if math.isinf(denominator):
+        return math.nan if math.isinf(numerator) else 0.0
+    return numerator / denominator
+
+
+def ratios(samples, problem, way, level):
+    """(auto to the better one of its methods, bdf to radau): times to the error level."""
+    seconds = {method: seconds_to(samples, problem, way, method, level) for method in METHODS}
+    return ratio(seconds["auto"], min(seconds["taylor"], seconds["radau"])), ratio(seconds["bdf"], seconds["radau"])
+
+
+HEADER = ["problem", "communication", "seconds", *(f"{pair}, error {level:g}" for level in LEVELS for pair in ("auto / better of taylor, radau", "bdf / radau")),
+          "smallest error of SciPy", "reference checked with", "largest difference"]  # fmt: skip
+
+
+def rows(samples, quick):
+    table = []
+    for problem, way in plan(quick):
+        compared = [value for level in LEVELS for value in ratios(samples, problem.name, way, level)]
+        others = [s.error for s in samples if (s.problem, s.way) == (problem.name, way) and s.method in PEERS]
+        table.append([problem.name, way, problem.end, *compared, min(others, default=math.nan), *right_states(problem, way)[1:]])
+    return table
+
+
+def worst(table, column):
+    """(the largest ratio, of which problem); infinite where one method alone gets to the error."""
+    known = [(row[column], f"{row[0]}, {row[1]}") for row in table if not math.isnan(row[column])]
+    return max(known, default=(math.nan, "none"))
+
+
+def factor(value):
+    return "infinitely many" if math.isinf(value) else f"{value:.2f}"
+
+
+def summary(table):
+    """Two sentences for each error, the worst of each ratio."""
+    sentences = []
+    for i, level in enumerate(LEVELS):
+        known = [row[3 + 2 * i] for row in table if not math.isnan(row[3 + 2 * i])]
+        value, where = worst(table, 3 + 2 * i)
+        sentences.append(f"To an error of {level:g}, auto takes at most {GOAL} times the time of the better of taylor and radau in "
+                         f"{sum(x <= GOAL for x in known)} of {len(known)} cases; at worst {factor(value)} times ({where}).")  # fmt: skip
+        others = [row[4 + 2 * i] for row in table if not math.isnan(row[4 + 2 * i])]
+        slower, faster = max(others, default=math.nan), min(others, default=math.nan)
+        sentences.append(f"bdf takes {factor(faster)} to {factor(slower)} times the time of radau (infinitely many: it never gets there).")
+    return sentences

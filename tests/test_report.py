@@ -1,0 +1,96 @@
+"""What the report of stiff systems stands on: its references, its models, its inputs and its ratios."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import fmu
+from fmu import ROOT
+from numerics import driver, stiff, stiff_problems
+from numerics.collocation import trajectory
+from numerics.stiff import Sample
+from numerics.stiff_problems import DEFINITIONS, Problem, right_states
+
+SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    fmu.build_systems("stiff-systems", {name: (SYSTEMS / name / "system.xml").read_text() for name in DEFINITIONS})
+
+
+@pytest.fixture
+def built(monkeypatch, tmp_path):
+    """The FMUs of this test in place of the builds with each solver, and no references of other runs."""
+    monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
+    monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD / "stiff-systems")
+    monkeypatch.setattr(stiff, "METHODS", ["auto", "radau"])
+
+
+@mpmath.workdps(40)
+def damped(b, k, level, t):
+    """x'' = -b x' - k x + level from rest at 1: weak damping or strong."""
+    root = mpmath.sqrt(mpmath.mpc(b * b / 4 - k))
+    one, other = -mpmath.mpf(b) / 2 + root, -mpmath.mpf(b) / 2 - root
+    rest = mpmath.mpf(level) / k
+    return float(mpmath.re(rest + (1 - rest) * (one * mpmath.exp(other * t) - other * mpmath.exp(one * t)) / (one - other)))
+
+
+@pytest.mark.parametrize("b, k", [(0.1, 1.0), (1e2, 1e6), (1e7, 1e3), (1e4, 1e8)])
+@pytest.mark.parametrize("stages", [8, 12])
+def test_collocation(b, k, stages):
+    times = 2 * np.arange(1, 5) / 4
+    states = trajectory(lambda x, u: np.array([x[1], u - b * x[1] - k * x[0]]), [1, 0], times, 8, lambda step: 2.0, stages)
+    assert states[:, 0] == pytest.approx([damped(b, k, 2.0, t) for t in times], abs=1e-12)
+
+
+@pytest.mark.parametrize("name", DEFINITIONS)
+def test_definitions(name, open_fmu):
+    """The equations that SymPy derives for the references are those of the FMU."""
+    instance, definition, random = open_fmu(name), DEFINITIONS[name](), np.random.default_rng(1)
+    values = fmu.start_values(name)
+    states, inputs = [s.name for s in [*definition.q, *definition.v]], [s.name for s in definition.inputs]
+    for _ in range(5):
+        values |= dict(zip(states + inputs, random.uniform(0.3, 1.2, len(states + inputs))))
+        instance.reset().initialize(values)
+        right_side = definition.right_side(lambda t: [values[u] for u in inputs], [values[p.name] for p in definition.parameters])
+        expected = right_side(0.0, np.array([values[s] for s in states]))
+        assert [instance.get(f"der({s})") for s in states] == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_small_problem(built):
+    """Every way of communication comes to the reference, the changing inputs included."""
+    problem = Problem("small", "VanDerPol", 5.0, 100, dict(mu=20.0), ("F", 5.0))
+    for way in problem.ways:
+        _, _, difference = right_states(problem, way)
+        assert difference < 1e-12
+        samples = stiff.sample_fmus(problem, way, [1e-6, 1e-9], 2)
+        assert [(s.method, s.tolerance) for s in samples] == [("auto", 1e-6), ("radau", 1e-6), ("auto", 1e-9), ("radau", 1e-9)]
+        assert all(s.error < 100 * s.tolerance and s.seconds > 0 for s in samples)
+    changed, constant = (right_states(problem, way)[0][-1] for way in (problem.ways[-1], problem.ways[0]))
+    assert np.max(np.abs(changed - constant)) > 1e-4
+
+
+def samples_of(method, factor):
+    """Errors of 1e-2, 1e-4, ... in times that are powers of them."""
+    return [Sample("P", "one step", method, 0.0, factor * error**-0.25, error) for error in (1e-2, 1e-4, 1e-6, 1e-8)]
+
+
+def test_ratios():
+    samples = [*samples_of("auto", 1.2), *samples_of("taylor", 8.0), *samples_of("radau", 1.0)]
+    samples += [s for s in samples_of("bdf", 3.0) if s.error > 1e-5]
+    assert stiff.seconds_to(samples, "P", "one step", "auto", 1e-5) == pytest.approx(1.2 * 1e-5**-0.25)
+    assert stiff.seconds_to(samples, "P", "one step", "auto", 1.0) == pytest.approx(1.2 * 1e-2**-0.25)
+    assert stiff.ratios(samples, "P", "one step", 1e-3) == pytest.approx((1.2, 3.0))
+    assert stiff.ratios(samples, "P", "one step", 1e-7) == pytest.approx((1.2, math.inf))
+    assert all(math.isnan(value) for value in stiff.ratios(samples, "P", "one step", 1e-9))
+
+
+def test_summary():
+    rows = [["A", "one step", 1.0, 1.1, 4.0, 1.2, 5.0], ["B", "many steps", 1.0, 1.5, 3.0, 1.25, math.inf],
+            ["C", "one step", 1.0, math.nan, math.nan, math.nan, math.nan]]  # fmt: skip
+    sentences = stiff.summary(rows)
+    assert "1 of 2 cases; at worst 1.50 times (B, many steps)" in sentences[0] and "3.00 to 4.00 times" in sentences[1]
+    assert "2 of 2 cases; at worst 1.25 times (B, many steps)" in sentences[2] and "5.00 to infinitely many times" in sentences[3]
