@@ -27,7 +27,7 @@ WALLS = {
     "NarrowHill": ("0.6*exp(-(x/1e-3)^2)", lambda x: 0.6 * mp.exp(-((x * 1000) ** 2)), -1, 0, 1e-3),
     "Spike": ("0.6*exp(-(x/1e-6)^2)", lambda x: 0.6 * mp.exp(-((x * 10**6) ** 2)), -1, 0, 1e-6),
     "Step": ("1 + tanh(20*(x - 3))", lambda x: 1 + mp.tanh(20 * (x - 3)), 0, 4, 0.05),
-    "Wall": ("exp(50*(x - 3))", lambda x: mp.exp(50 * (x - 3)), 0, 4, 0.02),
+    "SoftWall": ("exp(50*(x - 3))", lambda x: mp.exp(50 * (x - 3)), 0, 4, 0.02),
     "Secant": ("0.6/cosh((x - 3)/0.02)", lambda x: 0.6 / mp.cosh((x - 3) * 50), 0, 3, 0.02),
     "Resonance": ("0.6/(1 + ((x - 3)/1e-5)^2)", lambda x: 0.6 / (1 + ((x - 3) * 10**5) ** 2), 0, 3, 1e-5),
     "HighPower": ("0.5*(x/3)^40", lambda x: (x / mp.mpf(3)) ** 40 / 2, 0, 4, 0.1),

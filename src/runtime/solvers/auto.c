@@ -16,18 +16,19 @@ enum AutoMethod { AUTO_TAYLOR, AUTO_RADAU, AUTO_METHODS };
 extern const struct Solver solver_taylor, solver_radau;
 static const struct Solver *const solvers[AUTO_METHODS] = {&solver_taylor, &solver_radau};
 
-/* Steps of a window; windows to wait after a vain trial, at first and at most. */
-static const int window[AUTO_METHODS] = {6, 3};
+static const int window[AUTO_METHODS] = {6, 3}; /* steps of a window */
+/* All in windows. */
 enum {
-  SHORT_PATIENCE = 2,
-  LONG_PATIENCE = 256,
-  LONGEST_WAIT = 16,
+  WARM_UP = 1,       /* of a trial, before it is judged */
+  TRIAL_LIMIT = 8,   /* how long one goes on while its steps grow */
+  LONGEST_WAIT = 16, /* of the series before their coefficients are looked at again */
   SHORT_STAY = 8,
-  LONG_STAY = 256,
-  WARM_UP = 1,
-  TRIAL_LIMIT = 8
+  LONG_STAY = 256 /* of Radau IIA where fast motions come again and again: the first, the longest */
 };
-static const double GROWTH = 1.25, FIRST_GROWTH = 8.0;
+/* How many times the work of a vain trial the series do before the next one: at first, at most. */
+enum { SHORT_PATIENCE = 2, LONG_PATIENCE = 256 };
+static const double GROWTH = 1.25;      /* of progress from window to window that keeps a trial alive */
+static const double FIRST_GROWTH = 8.0; /* of the first step of Radau IIA over the last one of the series */
 
 /* What the situation holds after what the method at work keeps. */
 struct Choice {
