@@ -21,6 +21,11 @@ TEXTS = {
     '<force coordinate="x">sqrt(x) + 1 - b*v</force>',
     "Conservative": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>x^4/4</potential>'
     '<force coordinate="x">sin(time)</force>',
+    # a charge in a magnetic field that is not homogeneous, and a strong damper along it
+    "Gyro": '<parameter name="B" start="1e4"/><parameter name="b" start="1e4"/><coordinate name="x" velocity="vx"/>'
+    '<coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz" start="1"/><particle mass="1" x="x" y="y" z="z"/>'
+    '<force coordinate="x">B*vy*(1 + 0.1*z)</force><force coordinate="y">1 - B*vx*(1 + 0.1*z)</force>'
+    '<force coordinate="z">-b*vz - b*z/10</force>',
     "Driven": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><input name="u"/>'
     '<force coordinate="x">u - x^3</force>',
 }  # fmt: skip
@@ -136,6 +141,35 @@ def test_handovers_are_told_once(open_fmu):
         instance.run(instance.time + 100.0, 10.0)
     assert count(instance, "solverHandovers") >= 3
     assert len([text for _, _, text in instance.messages if "Radau" in text]) == 1
+
+
+@pytest.mark.parametrize("name, values, step, changed", [
+    ("AutoDamper", {"b": 1e5}, 0.05, {"b": 1.0}), ("AutoVanDerPol", {"mu": 100.0}, 2.0, {"mu": 90.0}), ("AutoGyro", {"B": 100.0, "b": 1e5}, 0.05, {"b": 1.0}),
+    ("AutoRoot", {"b": 1e4}, 0.25, {"b": 10.0}),
+])  # fmt: skip
+def test_every_step_from_a_saved_state(name, values, step, changed, open_fmu):
+    """In a fresh instance, and in the same one after a step that was made with other values and taken back."""
+    counters = ["solverSteps", "solverHandovers", "derivativeEvaluations", "jacobianEvaluations"]
+
+    def results(instance):
+        instance.step(step)
+        instance.time -= step
+        return [*instance.get(*fmu.states_of(name)), *(count(instance, counter) for counter in counters)]
+
+    instance, state = open_fmu(name).initialize(values, tolerance=1e-8), None
+    for k in range(60):
+        state = instance.fmu.getFMUstate()
+        data = instance.fmu.serializeFMUstate(state)
+        instance.set(changed)
+        results(instance)
+        instance.fmu.setFMUstate(state)
+        again = results(instance)
+        fresh = open_fmu(name).initialize()
+        fresh.fmu.setFMUstate(fresh.fmu.deSerializeFMUstate(data))
+        fresh.time = instance.time
+        assert results(fresh) == again, k
+        instance.time += step
+    assert count(instance, "solverHandovers") > 0
 
 
 @pytest.mark.parametrize("name, values, times", [

@@ -39,11 +39,13 @@ struct Choice {
   int64_t next_patience;   /* after a vain trial: how many times its work the series do first */
   int64_t stay;            /* windows that Radau IIA is given at least, more where it was left soon */
   int64_t is_trial;        /* Radau IIA was not yet found to get further */
+  int64_t crosses;         /* the last step of the series did, over a point where a function has none */
   double begin, work;      /* of the window: its time, and the operations in it */
   double last_speed;       /* progress for work in the window before */
   double trial_work;
   double promised_step;             /* of Radau IIA, the first one */
-  double taylor_speed, taylor_rate; /* progress for work of the series when they were left, stiffness_rate() there */
+  double rate;                      /* stiffness_rate() at the last step of Radau IIA */
+  double taylor_speed, taylor_rate; /* progress for work of the series when they were left, and the rate there */
 };
 
 struct Auto {
@@ -69,7 +71,7 @@ static bool auto_could_save(const struct Situation *situation, const void *saved
          choice.next_patience <= 2 * LONG_PATIENCE && choice.stay >= 0 && choice.stay <= 4 * LONG_STAY &&
          isfinite(choice.begin) && choice.work >= 0.0 && choice.last_speed >= 0.0 && choice.trial_work >= 0.0 &&
          isfinite(choice.trial_work) && choice.promised_step >= 0.0 && isfinite(choice.work) &&
-         choice.taylor_speed >= 0.0 && choice.taylor_rate >= 0.0 &&
+         choice.taylor_speed >= 0.0 && choice.taylor_rate >= 0.0 && choice.rate >= 0.0 &&
          solvers[choice.method]->could_save(situation, saved);
 }
 
@@ -186,12 +188,12 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
 static bool series_are_slow(struct Instance *instance, struct Choice *choice, double progress) {
   enum { ITERATIONS = 4 };
   const struct Taylor *taylor = instance->solver_memory;
-  if (taylor->crosses || !(taylor->saved->reach > 0.0)) return false;
+  if (choice->crosses || !(taylor->saved->reach > 0.0)) return false;
   int stages = radau_stage_count(instance);
   double step = taylor->saved->reach * stiffness_promise(taylor, stages + 1, radau_tolerance(instance));
   if (choice->restarts > 0) step = fmin(step, progress / (double)choice->restarts);
   choice->promised_step = fmin(step, FIRST_GROWTH * taylor->saved->reach);
-  double hope = 1.2 + 3.0 / (double)choice->windows;
+  double windows = (double)choice->windows, hope = (1.2 + 3.0 / windows) / (1.0 + windows / LONG_STAY);
   return step * choice->work > hope * progress * work_of_radau(stages, ITERATIONS * stages, 1.0);
 }
 
@@ -228,11 +230,10 @@ static bool judge_trial(const struct Instance *instance, struct Choice *choice, 
  * The series would be as fast as they were, but for the rates that have changed since. Where fast motions come again and
  * again, as after each change of an input, the methods do not change with each of them.
  */
-static bool judge_radau(struct Instance *instance, struct Auto *automatic, double progress) {
-  struct Choice *choice = automatic->choice;
-  double rate = stiffness_rate(radau_jacobian(instance), automatic->state);
-  if (choice->taylor_rate == 0.0) choice->taylor_rate = rate;
-  double speed = progress / choice->work, other = choice->taylor_speed * choice->taylor_rate / rate;
+static bool judge_radau(const struct Instance *instance, struct Choice *choice, double progress) {
+  double speed = progress / choice->work, other = choice->taylor_speed;
+  if (choice->taylor_rate == 0.0) choice->taylor_rate = choice->rate;
+  if (choice->rate > 0.0) other *= choice->taylor_rate / choice->rate;
   if (choice->is_trial) return judge_trial(instance, choice, speed, other);
   choice->next_patience = SHORT_PATIENCE;
   if (choice->windows <= choice->stay || speed > 0.8 * other) return false;
@@ -242,15 +243,14 @@ static bool judge_radau(struct Instance *instance, struct Auto *automatic, doubl
 }
 
 /* Whether the other method is to go on from here. */
-static bool judge(struct Instance *instance, struct Auto *automatic) {
-  struct Choice *choice = automatic->choice;
+static bool judge(struct Instance *instance, struct Choice *choice) {
   double time = instance->situation->last_step.end;
   if (choice->next_patience == 0) choice->next_patience = SHORT_PATIENCE;
   if (choice->steps == 0) begin_window(choice, time);
   if (choice->steps < window[choice->method]) return false;
   choice->windows++;
   bool is_slow = choice->method == AUTO_TAYLOR ? judge_series(instance, choice, time - choice->begin)
-                                               : judge_radau(instance, automatic, time - choice->begin);
+                                               : judge_radau(instance, choice, time - choice->begin);
   begin_window(choice, time);
   return is_slow;
 }
@@ -272,6 +272,8 @@ static const char *make_step(struct Instance *instance, struct Auto *automatic, 
   const char *problem = solvers[choice->method]->advance(instance, step);
   choice->work += work_between(instance, choice, before);
   choice->steps++;
+  if (choice->method == AUTO_TAYLOR) choice->crosses = ((const struct Taylor *)instance->solver_memory)->crosses;
+  else choice->rate = stiffness_rate(radau_jacobian(instance), automatic->state);
   return problem;
 }
 
@@ -279,11 +281,12 @@ static const char *auto_advance(struct Instance *instance, const struct Communic
   struct Auto *automatic = auto_enter(instance);
   static const char no_handover[] = "the solver cannot begin there";
   const char *problem = NULL;
-  if (judge(instance, automatic) && !hand_over(instance, automatic, step)) problem = no_handover;
+  if (judge(instance, automatic->choice) && !hand_over(instance, automatic, step)) problem = no_handover;
   if (problem == NULL) problem = make_step(instance, automatic, step);
   if (problem != NULL && hand_over(instance, automatic, step)) {
     automatic->choice->taylor_speed = 0.0; /* what failed is not tried again before the other one fails */
-    if (make_step(instance, automatic, step) == NULL) problem = NULL;
+    const char *other_problem = make_step(instance, automatic, step);
+    if (other_problem == NULL || automatic->choice->method == AUTO_RADAU) problem = other_problem;
   }
   auto_leave(instance, automatic);
   return problem;
