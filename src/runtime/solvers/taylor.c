@@ -81,7 +81,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
  * Moves the origin to the end of the series; what rounding takes from the state is carried along in low. Returns the
  * largest change in units of the variables' scales.
  */
-static double move_origin(struct Instance *instance, struct Taylor *taylor) {
+static double move_origin(struct Taylor *taylor) {
   struct TaylorSaved *saved = taylor->saved;
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
@@ -94,7 +94,6 @@ static double move_origin(struct Instance *instance, struct Taylor *taylor) {
   }
   taylor->span->start = taylor->span->end;
   saved->reach = 0.0;
-  instance->situation->statistics[STATISTIC_STEPS]++;
   return largest;
 }
 
@@ -163,11 +162,12 @@ static void cut_series(struct Taylor *taylor) {
 static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
-  double moved = taylor->saved->reach > 0.0 ? move_origin(instance, taylor) : 0.0;
+  double moved = taylor->saved->reach > 0.0 ? move_origin(taylor) : 0.0;
   const char *problem = reason_to_stop(instance, taylor, moved);
   if (problem == NULL && !expand(instance, taylor, step->length))
     problem = "the motion has a singularity there, or grows beyond all numbers";
   if (problem != NULL) cut_series(taylor);
+  else instance->situation->statistics[STATISTIC_STEPS]++;
   return problem;
 }
 
