@@ -77,6 +77,21 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
+/* Their values are read among the definitions. */
+static bool is_calculated(xmlNodePtr node) {
+  return xmlStrEqual(node->name, (const xmlChar *)"parameter") && xmlHasProp(node, (const xmlChar *)"value") != NULL;
+}
+
+static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
+  static const char *const others[] = {"start", "min", "max"};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "a <parameter> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                   "others, or start=\"...\" for one that is set",
+                   others[i]);
+}
+
 static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
   variable.start = 0.0;
@@ -86,6 +101,18 @@ static void read_quantity(struct Reader *reader, xmlNodePtr node, struct Variabl
   check_range(reader, &variable);
   variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
   append_variable(list, variable);
+}
+
+static void read_parameter(struct Reader *reader, xmlNodePtr node) {
+  if (is_calculated(node)) {
+    check_calculated(reader, node);
+    return;
+  }
+  read_quantity(reader, node, &reader->model->parameters, PARAMETER);
+  if (xmlHasProp(node, (const xmlChar *)"start") == NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<parameter> needs the attribute 'start'; expected start=\"...\", or value=\"...\" for one that "
+                 "follows from others");
 }
 
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -328,19 +355,42 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   append_variable(&reader->model->outputs, output);
 }
 
-struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *component) {
-  long line = xmlGetLineNo(node);
-  struct Quantity value = {.node = ZERO};
-  bool is_angle = component != NULL && strcmp(component, "angle") == 0;
-  if (component != NULL) expression_attribute(reader, node, component, IN_POSITION, &value);
-  else value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
-  if (definitions_are_waiting(reader->definitions)) return value;
-  struct Dimension unit = component == NULL ? unit_attribute(reader, node) : unit_of(is_angle ? "rad" : "m");
-  require_unit(reader, line, component == NULL ? "the definition" : is_angle ? "the angle" : component, value, unit);
-  if (component != NULL) return value;
+/* The value of a definition or a calculated parameter, in its unit where it gives one. */
+static struct Quantity in_own_unit(struct Reader *reader, xmlNodePtr node, const char *what, struct Quantity value) {
+  struct Dimension unit = unit_attribute(reader, node);
+  require_unit(reader, xmlGetLineNo(node), what, value, unit);
   if (unit.known) value.dimension = unit;
   value.literal = value.literal && !unit.known;
   return value;
+}
+
+static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, const char *component) {
+  struct Quantity value = {.node = ZERO};
+  bool is_angle = strcmp(component, "angle") == 0;
+  expression_attribute(reader, node, component, IN_POSITION, &value);
+  if (definitions_are_waiting(reader->definitions)) return value;
+  require_unit(reader, xmlGetLineNo(node), is_angle ? "the angle" : component, value, unit_of(is_angle ? "rad" : "m"));
+  return value;
+}
+
+struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Quantity value = {.node = ZERO};
+  if (name == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  else if (is_calculated(node)) expression_attribute(reader, node, name, IN_MASS, &value);
+  else return read_component(reader, node, name);
+  if (definitions_are_waiting(reader->definitions)) return value;
+  return in_own_unit(reader, node, name == NULL ? "the definition" : "the value of the parameter", value);
+}
+
+void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value) {
+  bool is_definition = xmlStrEqual(node->name, (const xmlChar *)"define");
+  if (!is_definition && !is_calculated(node)) return;
+  struct Variable variable = {.name = copy_text(name),
+                              .description = attribute(node, "description"),
+                              .unit = attribute(node, "unit"),
+                              .dimension = value.dimension,
+                              .node = value.node};
+  append_variable(is_definition ? &reader->model->definitions : &reader->model->calculated, variable);
 }
 
 /* Of several bodies of one name, which is reported later, the first one has the components. */
@@ -357,11 +407,11 @@ static void collect_components(struct Reader *reader, xmlNodePtr node) {
 
 static void collect(struct Reader *reader, xmlNodePtr node, const char *element) {
   if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) collect_components(reader, node);
-  if (strcmp(element, "define") != 0) return;
+  if (strcmp(element, "define") != 0 && !is_calculated(node)) return;
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
   if (scope_find(reader->scope, name) == NULL) {
-    definitions_add(reader->definitions, name, node, NULL);
+    definitions_add(reader->definitions, name, node, is_calculated(node) ? "value" : NULL);
     return;
   }
   scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
@@ -406,7 +456,7 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
-  else if (strcmp(element, "parameter") == 0) read_quantity(reader, node, &model->parameters, PARAMETER);
+  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
   else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
