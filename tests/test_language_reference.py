@@ -43,6 +43,11 @@ def chain(t):
     return {f"x[{i}]": 0.1 * np.sin(np.pi * i / 3) * np.cos(w * t) for i in range(1, 6)}
 
 
+def rocket(t):
+    m, u, gain = 100 - 4 * t, 500, np.log(100 / (100 - 4 * t))
+    return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -57,6 +62,8 @@ MOTIONS = {
     "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
     "Hoist": (lambda t: {"x": 5 * 9.81 * t**2 / (2 * (5 + 0.04 * 9 / 0.04))}, 1e-9),
+    "Rocket": (rocket, 1e-6),
+    "HeapedChain": (lambda t: {"x": 9.81 * (0.5 + t)**2 / 6, "v": 9.81 * (0.5 + t) / 3}, 1e-8),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),

@@ -188,6 +188,27 @@ static bool take_component(const struct Reader *reader, const struct Body *body,
   return true;
 }
 
+/*
+ * Where mass joins or leaves, the equations depend on the momentum that it has, which a mass alone does not say:
+ * d(m v)/dt = F + dm/dt w. Lagrange's equation of m(t) v^2/2 is that of w = 0, and of m(q) v^2/2 that of w = v/2.
+ */
+static void require_fixed(const struct Reader *reader, long line, const char *what, struct Quantity inertia,
+                          const char *symbol, const char *rate) {
+  const struct Graph *graph = reader->model->graph;
+  if (graph_depends_on(graph, inertia.node, COORDINATE))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
+                 "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
+                 "besides where it is mass that joins or leaves with the velocity w",
+                 what, what, symbol, rate, rate, symbol, rate);
+  else if (graph_depends_on(graph, inertia.node, TIME))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
+                 "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
+                 "it has the velocity w, as for thrust",
+                 what, what, symbol, rate, symbol, rate, symbol);
+}
+
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
@@ -197,13 +218,15 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
                  other->line);
-  expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
+  expression_attribute(reader, node, "mass", IN_POSITION, &body.mass);
+  require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
     body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis]);
   body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle);
   if (body.has_angle) {
-    expression_attribute(reader, node, "inertia", IN_MASS, &body.inertia);
+    expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
+    require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
