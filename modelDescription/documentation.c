@@ -158,7 +158,7 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   const struct ScalarVariable *entry = &variable->entry;
   char start[NUMBER_LENGTH] = "";
   if (!isnan(entry->start)) number_text(entry->start, start);
-  const char *kind = entry->follows_from != NULL                            ? "calculated parameter"
+  const char *kind = entry->follows_from != NULL                          ? "calculated parameter"
                      : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
                                                                           : kinds[entry->kind];
   xmlTextWriterStartElement(writer, BAD_CAST "tr");

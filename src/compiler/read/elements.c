@@ -196,11 +196,12 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                           const char *symbol, const char *rate) {
   const struct Graph *graph = reader->model->graph;
   if (graph_depends_on(graph, inertia.node, COORDINATE))
-    report_error(reader->diagnostics, line,
-                 "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
-                 "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
-                 "besides where it is mass that joins or leaves with the velocity w",
-                 what, what, symbol, rate, rate, symbol, rate);
+    report_error(
+        reader->diagnostics, line,
+        "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
+        "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
+        "besides where it is mass that joins or leaves with the velocity w",
+        what, what, symbol, rate, rate, symbol, rate);
   else if (graph_depends_on(graph, inertia.node, TIME))
     report_error(reader->diagnostics, line,
                  "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
