@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "memory.h"
-#include "read/elements.h"
+#include "read/named_expressions.h"
 
 /* The value of an index around a definition, and those further out. */
 struct Loop {
