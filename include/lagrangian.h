@@ -52,7 +52,14 @@ struct ScalarVariable {
   size_t index;   /* among the variables of its kind */
   bool is_output; /* causality is output */
   double start, minimum, maximum;
+  /* Of a result that is a calculated parameter: the parameters that it follows from, for messages; NULL of all others. */
+  const char *follows_from;
 };
+
+/* One that may be read in initialization mode, and be differentiated along the knowns. */
+static inline bool is_unknown(const struct ScalarVariable *variable) {
+  return variable->is_output || variable->kind == VARIABLE_DERIVATIVE || variable->follows_from != NULL;
+}
 
 /* The elements of a matrix that may differ from 0. Those of column j are in row[start[j]] to row[start[j + 1] - 1]. */
 struct Sparsity {
@@ -117,7 +124,7 @@ struct Lagrangian {
   int (*jacobian)(const struct Point *point, double *values);
   /*
    * A computed variable; acceleration holds dv/dt at the point, where it is used. result_along: its derivative along
-   * seed, with the accelerations changing by acceleration_along; of outputs alone.
+   * seed, with the accelerations changing by acceleration_along; of outputs and calculated parameters alone.
    */
   double (*result)(const struct Point *point, const double *acceleration, size_t result);
   double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,

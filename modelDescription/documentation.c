@@ -112,6 +112,15 @@ static void write_definitions(const struct Page *page) {
   }
 }
 
+static void write_calculated(const struct Page *page) {
+  const struct VariableList *calculated = &page->model->calculated;
+  size_t shown = calculated->count < SHOWN_LIMIT ? calculated->count : SHOWN_LIMIT;
+  if (shown == 0) return;
+  element(page->writer, "h2", "Calculated parameters");
+  for (size_t i = 0; i < shown; i++) write_equation(page, calculated->items[i].name, calculated->items[i].node);
+  write_rest(page->writer, calculated->count, shown, "parameters");
+}
+
 static void write_mechanics(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
@@ -149,7 +158,9 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   const struct ScalarVariable *entry = &variable->entry;
   char start[NUMBER_LENGTH] = "";
   if (!isnan(entry->start)) number_text(entry->start, start);
-  const char *kind = entry->is_output && entry->kind == VARIABLE_RESULT ? "output" : kinds[entry->kind];
+  const char *kind = entry->follows_from != NULL                          ? "calculated parameter"
+                     : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
+                                                                          : kinds[entry->kind];
   xmlTextWriterStartElement(writer, BAD_CAST "tr");
   element(writer, "td", entry->name);
   element(writer, "td", kind);
@@ -222,6 +233,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
   const struct Page page = {writer, model, equations, interface, summary};
+  write_calculated(&page);
   write_definitions(&page);
   if (equations->count > 0) write_mechanics(&page);
   write_outputs(&page);

@@ -118,11 +118,15 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
       [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
       [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
   };
-  write_attribute(writer, "causality", entry->is_output ? "output" : causalities[entry->kind]);
+  bool is_calculated = entry->follows_from != NULL;
+  write_attribute(writer, "causality",
+                  entry->is_output ? "output"
+                  : is_calculated  ? "calculatedParameter"
+                                   : causalities[entry->kind]);
   write_attribute(writer, "variability",
-                  entry->kind == VARIABLE_PARAMETER   ? "tunable"
-                  : entry->kind == VARIABLE_STATISTIC ? "discrete"
-                                                      : "continuous");
+                  entry->kind == VARIABLE_PARAMETER || is_calculated ? "tunable"
+                  : entry->kind == VARIABLE_STATISTIC                ? "discrete"
+                                                                     : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
     write_attribute(writer, "initial", initials[entry->kind]);
 }

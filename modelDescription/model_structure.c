@@ -88,9 +88,9 @@ static bool is_derivative(const struct ScalarVariable *entry) {
   return entry->kind == VARIABLE_DERIVATIVE;
 }
 
-/* Outputs and derivatives that initialisation computes; states have the initial value that was set. */
-static bool is_initial_unknown(const struct ScalarVariable *entry) {
-  return is_derivative(entry) || (entry->is_output && entry->kind == VARIABLE_RESULT);
+/* What initialisation computes; states have the initial value that was set. */
+static bool is_computed_initially(const struct ScalarVariable *entry) {
+  return is_unknown(entry) && entry->kind != VARIABLE_STATE;
 }
 
 static void write_unknowns(const struct Structure *structure, const char *element,
@@ -120,7 +120,7 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, c
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");
   write_unknowns(&structure, "Outputs", is_output, false);
   write_unknowns(&structure, "Derivatives", is_derivative, false);
-  write_unknowns(&structure, "InitialUnknowns", is_initial_unknown, true);
+  write_unknowns(&structure, "InitialUnknowns", is_computed_initially, true);
   xmlTextWriterEndElement(writer);
   dependencies_free(structure.dependencies);
   free(structure.place_of);

@@ -12,7 +12,7 @@ import numpy as np
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 
-from variables import settable
+from variables import settable, why_not
 
 
 def start_value(text):
@@ -60,7 +60,7 @@ def main():
     for name, _ in arguments.start:
         if name not in free:
             what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is no variable of {description.modelName}"
-            sys.exit(f"scripts/run: {what}; these can be: {', '.join(free)}")
+            sys.exit(f"scripts/run: {what}{why_not(name, description)}; these can be: {', '.join(free)}")
     try:
         result = simulate_fmu(
             arguments.fmu,

@@ -23,7 +23,7 @@ from distributed import Client, LocalCluster, as_completed
 from fmpy import read_model_description
 
 from progress import Progress
-from variables import settable
+from variables import settable, why_not
 
 ROOT = Path(__file__).resolve().parent.parent
 CHUNK = 250  # runs a task
@@ -53,7 +53,8 @@ def known_name(name, description):
         return name
     if name.endswith("0") and name[:-1] in names:
         return name[:-1]
-    sys.exit(f"scripts/sweep: '{name}' has no start value in {description.modelName}; these have one: {', '.join(names)}")
+    what = f"'{name}' has no start value in {description.modelName}{why_not(name, description)}"
+    sys.exit(f"scripts/sweep: {what}; these have one: {', '.join(names)}")
 
 
 def points(variations, random, seed):

@@ -43,6 +43,11 @@ def chain(t):
     return {f"x[{i}]": 0.1 * np.sin(np.pi * i / 3) * np.cos(w * t) for i in range(1, 6)}
 
 
+def rocket(t):
+    m, u, gain = 100 - 4 * t, 500, np.log(100 / (100 - 4 * t))
+    return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -52,10 +57,13 @@ def block(t):
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
+    "Rod": (lambda t: {"theta": pendulum_angle(1, np.sqrt(1.5 * 9.81 / 0.5), t), "J": 0.25 / 3, "w": np.sqrt(1.5 * 9.81 / 0.5)}, 1e-6),
     "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
     "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
     "Hoist": (lambda t: {"x": 5 * 9.81 * t**2 / (2 * (5 + 0.04 * 9 / 0.04))}, 1e-9),
+    "Rocket": (rocket, 1e-6),
+    "HeapedChain": (lambda t: {"x": 9.81 * (0.5 + t)**2 / 6, "v": 9.81 * (0.5 + t) / 3}, 1e-8),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),

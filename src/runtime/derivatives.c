@@ -50,7 +50,7 @@ static enum Status set_seed(struct Instance *instance, struct Direction *directi
 
 static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable,
                                  const char *function) {
-  if (variable->is_output || variable->kind == VARIABLE_DERIVATIVE) return STATUS_DONE;
+  if (is_unknown(variable)) return STATUS_DONE;
   return log_error(instance, "%s: '%s' is no unknown; expected an output or a state derivative", function,
                    variable->name);
 }

@@ -13,8 +13,7 @@
  * it once.
  */
 static void tell_early_reading(struct Instance *instance, const struct ScalarVariable *variable) {
-  if (instance->situation->mode != MODE_INITIALIZATION || variable->is_output || variable->kind == VARIABLE_DERIVATIVE)
-    return;
+  if (instance->situation->mode != MODE_INITIALIZATION || is_unknown(variable)) return;
   if (!instance->told_early_reading)
     log_message(instance, STATUS_WARNING,
                 "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
@@ -61,9 +60,18 @@ static bool is_settable(const struct Instance *instance, const struct ScalarVari
   }
 }
 
+static enum Status refuse_calculated(struct Instance *instance, const struct ScalarVariable *variable,
+                                     const char *function) {
+  if (*variable->follows_from == '\0')
+    return log_error(instance, "%s: '%s' is calculated and cannot be set", function, variable->name);
+  return log_error(instance, "%s: '%s' is calculated from other parameters (%s) and cannot be set; set those instead",
+                   function, variable->name, variable->follows_from);
+}
+
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, const char *function) {
   const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
   if (variable == NULL) return STATUS_ERROR;
+  if (variable->follows_from != NULL) return refuse_calculated(instance, variable, function);
   if (!is_settable(instance, variable))
     return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
                      instance_mode_name(instance));

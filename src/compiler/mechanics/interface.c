@@ -5,6 +5,7 @@
 
 #include "memory.h"
 #include "algebra/kinks.h"
+#include "mechanics/symbol_names.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {
@@ -30,6 +31,21 @@ static void append_list(struct Interface *interface, const struct VariableList *
     variable->unit = variable_unit(source);
     variable->nominal = source->nominal;
     variable->node = source->node;
+  }
+}
+
+/* They are results, computed when they are read. */
+static void append_calculated(struct Interface *interface, const struct Model *model) {
+  for (size_t i = 0; i < model->calculated.count; i++) {
+    const struct Variable *source = &model->calculated.items[i];
+    struct InterfaceVariable *variable =
+        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+    struct SymbolNames names = {0};
+    symbol_names_add(&names, model->graph, &source->node, 1);
+    variable->entry.follows_from = symbol_names_text(&names, model->graph);
+    variable->unit = variable_unit(source);
+    variable->node = source->node;
+    free(names.symbols);
   }
 }
 
@@ -171,6 +187,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   for (size_t i = 0; i < model->outputs.count; i++)
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;
+  append_calculated(interface, model);
   if (n == 0) return interface;
   append_bodies(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
@@ -184,6 +201,7 @@ void interface_free(struct Interface *interface) {
   if (interface == NULL) return;
   for (size_t i = 0; i < interface->count; i++) {
     free((char *)interface->variables[i].entry.name);
+    free((char *)interface->variables[i].entry.follows_from);
     free(interface->variables[i].unit);
     free(interface->variables[i].description);
   }

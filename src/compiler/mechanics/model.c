@@ -21,6 +21,7 @@ void model_free(struct Model *model) {
   free_variables(&model->coordinates);
   free_variables(&model->velocities);
   free_variables(&model->outputs);
+  free_variables(&model->calculated);
   free_variables(&model->definitions);
   for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
   free(model->bodies);

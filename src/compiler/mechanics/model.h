@@ -39,6 +39,7 @@ struct Model {
   char *name, *description;
   struct Graph *graph;
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
   struct Body *bodies;
   size_t body_count;

@@ -9,22 +9,24 @@
 #include "algebra/simplify.h"
 #include "memory.h"
 
-/*
- * The names of the first definitions, but for those of mere numbers and variables, which read as well by themselves. Their
- * expressions do not occur in linearized equations.
- */
-static struct NodeNames definition_names(const struct Model *model) {
+/* Mere numbers and variables read as well by themselves. */
+static void add_names(struct NodeNames *names, const struct Graph *graph, const struct VariableList *list) {
+  for (size_t i = 0; i < list->count && names->named_count < SHOWN_LIMIT; i++) {
+    Node node = list->items[i].node;
+    if (graph->vertices[node].operation == SYMBOL || graph_is_constant(graph, node) || names->of[node] != NULL)
+      continue;
+    names->of[node] = list->items[i].name;
+    names->named[names->named_count++] = node;
+  }
+}
+
+/* The names of the first calculated parameters and definitions. These do not occur in linearized equations. */
+static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
   names.named = allocate(SHOWN_LIMIT, sizeof *names.named);
-  for (size_t i = 0; i < model->definitions.count && names.named_count < SHOWN_LIMIT && !model->linearized; i++) {
-    const struct Variable *definition = &model->definitions.items[i];
-    if (graph->vertices[definition->node].operation == SYMBOL || graph_is_constant(graph, definition->node) ||
-        names.of[definition->node] != NULL)
-      continue;
-    names.of[definition->node] = definition->name;
-    names.named[names.named_count++] = definition->node;
-  }
+  add_names(&names, graph, &model->calculated);
+  if (!model->linearized) add_names(&names, graph, &model->definitions);
   return names;
 }
 
@@ -61,7 +63,7 @@ static size_t at_most(size_t count, size_t limit) {
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
   struct Graph *graph = model->graph;
   struct Summary *summary = allocate(1, sizeof *summary);
-  struct NodeNames names = definition_names(model);
+  struct NodeNames names = author_names(model);
   Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
   *summary = (struct Summary){
       .names = names,

@@ -8,7 +8,7 @@
 enum { SHOWN_LIMIT = 100 }; /* equations of motion, outputs, and definitions, that a page shows */
 
 struct Summary {
-  struct NodeNames names;            /* of the author's definitions that are shown */
+  struct NodeNames names;            /* of the author's calculated parameters and definitions that are shown */
   Node lagrangian_kinetic;           /* K of L = K - U */
   Node kinetic, potential, power;    /* as in struct Equations; potential is U of L where nothing is linearised */
   bool is_autonomous;                /* L does not depend on time explicitly */

@@ -58,14 +58,14 @@ static void create_results(struct Expressions *expressions, const Node *seeds) {
     const struct InterfaceVariable *variable = &interface->variables[i];
     if (variable->entry.kind != VARIABLE_RESULT) continue;
     expressions->result[variable->entry.index] = variable->node;
-    if (variable->entry.is_output) append_node(&outputs, variable->node);
+    if (is_unknown(&variable->entry)) append_node(&outputs, variable->node);
   }
   Node *along = allocate(outputs.count, sizeof *along);
   derivative_along(expressions->model->graph, outputs.nodes, outputs.count, seeds, along);
   size_t next = 0;
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
-    if (entry->kind == VARIABLE_RESULT && entry->is_output) expressions->result_along[entry->index] = along[next++];
+    if (entry->kind == VARIABLE_RESULT && is_unknown(entry)) expressions->result_along[entry->index] = along[next++];
   }
   free(along);
   free(outputs.nodes);

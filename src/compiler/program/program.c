@@ -165,7 +165,7 @@ static void create_results(struct Program *program, struct Values *values) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (entry->kind != VARIABLE_RESULT) continue;
     program->result[entry->index] = result_routine(values, program->expressions->result[entry->index]);
-    if (entry->is_output)
+    if (is_unknown(entry))
       program->result_along[entry->index] = result_routine(values, program->expressions->result_along[entry->index]);
   }
 }

@@ -64,6 +64,13 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
   return value;
 }
 
+struct Dimension unit_of(const char *text) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(text, &dimension, &problem);
+  return dimension;
+}
+
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
   struct Dimension dimension = dimension_unknown;
   const char *problem;

@@ -22,6 +22,17 @@ struct Reader {
   bool has_solver, has_experiment;
 };
 
+/* The kinds of symbols that may stand in a place, as in struct Place. */
+#define KIND(kind) (1u << (kind))
+
+enum {
+  IN_MASS = KIND(PARAMETER),
+  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME),
+  IN_ENERGY = IN_POSITION | KIND(VELOCITY),
+  IN_FORCE = IN_ENERGY | KIND(INPUT),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION),
+};
+
 /* NULL where missing; to be freed with free(). */
 char *attribute(xmlNodePtr node, const char *name);
 
@@ -37,6 +48,9 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
+/* The dimension of a unit that is right. */
+struct Dimension unit_of(const char *text);
 
 /* The element's unit; unknown where missing or after an error. */
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "memory.h"
-#include "read/elements.h"
+#include "read/named_expressions.h"
 
 /* The value of an index around a definition, and those further out. */
 struct Loop {
@@ -168,9 +168,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
       wait(definitions, reader, top);
     } else {
       bool is_new = scope_define(reader->scope, definition->name, value, xmlGetLineNo(definition->node));
-      if (is_new && definition->attribute == NULL)
-        append_variable(&reader->model->definitions,
-                        (struct Variable){.name = copy_text(definition->name), .node = value.node});
+      if (is_new) keep_named_expression(reader, definition->node, definition->name, value);
       definition->state = READ;
     }
   }

@@ -1,6 +1,6 @@
 /*
- * Named expressions: the text of each <define> and each component of a particle or body, which may use each other in any
- * order. All names are collected first; then each expression is read after those that it needs.
+ * Named expressions: the text of each <define>, the value of each calculated <parameter> and each component of a particle
+ * or body, which may use each other in any order. All names are collected first; then each expression is read after those that it needs.
  */
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H

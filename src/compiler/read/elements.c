@@ -7,28 +7,11 @@
 #include "algebra/differentiate.h"
 #include "mechanics/energies.h"
 #include "memory.h"
-#include "read/definitions.h"
+#include "read/named_expressions.h"
 #include "algebra/simplify.h"
 #include "read/similar.h"
 
-#define KIND(kind) (1u << (kind))
-
-enum {
-  IN_MASS = KIND(PARAMETER),
-  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME),
-  IN_ENERGY = IN_POSITION | KIND(VELOCITY),
-  IN_FORCE = IN_ENERGY | KIND(INPUT),
-  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION),
-};
-
 static const char *const axes[3] = {"x", "y", "z"};
-
-static struct Dimension unit_of(const char *text) {
-  struct Dimension dimension;
-  const char *problem;
-  unit_parse(text, &dimension, &problem);
-  return dimension;
-}
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
   list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
@@ -77,6 +60,16 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
+static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
+  static const char *const others[] = {"start", "min", "max"};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "a <parameter> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                   "others, or start=\"...\" for one that is set",
+                   others[i]);
+}
+
 static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
   variable.start = 0.0;
@@ -86,6 +79,18 @@ static void read_quantity(struct Reader *reader, xmlNodePtr node, struct Variabl
   check_range(reader, &variable);
   variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
   append_variable(list, variable);
+}
+
+static void read_parameter(struct Reader *reader, xmlNodePtr node) {
+  if (is_calculated(node)) {
+    check_calculated(reader, node);
+    return;
+  }
+  read_quantity(reader, node, &reader->model->parameters, PARAMETER);
+  if (xmlHasProp(node, (const xmlChar *)"start") == NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<parameter> needs the attribute 'start'; expected start=\"...\", or value=\"...\" for one that "
+                 "follows from others");
 }
 
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -161,6 +166,28 @@ static bool take_component(const struct Reader *reader, const struct Body *body,
   return true;
 }
 
+/*
+ * Where mass joins or leaves, the equations depend on the momentum that it has, which a mass alone does not say:
+ * d(m v)/dt = F + dm/dt w. Lagrange's equation of m(t) v^2/2 is that of w = 0, and of m(q) v^2/2 that of w = v/2.
+ */
+static void require_fixed(const struct Reader *reader, long line, const char *what, struct Quantity inertia,
+                          const char *symbol, const char *rate) {
+  const struct Graph *graph = reader->model->graph;
+  if (graph_depends_on(graph, inertia.node, COORDINATE))
+    report_error(
+        reader->diagnostics, line,
+        "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
+        "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
+        "besides where it is mass that joins or leaves with the velocity w",
+        what, what, symbol, rate, rate, symbol, rate);
+  else if (graph_depends_on(graph, inertia.node, TIME))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
+                 "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
+                 "it has the velocity w, as for thrust",
+                 what, what, symbol, rate, symbol, rate, symbol);
+}
+
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
@@ -170,13 +197,15 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
                  other->line);
-  expression_attribute(reader, node, "mass", IN_MASS, &body.mass);
+  expression_attribute(reader, node, "mass", IN_POSITION, &body.mass);
+  require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
     body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis]);
   body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle);
   if (body.has_angle) {
-    expression_attribute(reader, node, "inertia", IN_MASS, &body.inertia);
+    expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
+    require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
@@ -328,46 +357,6 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   append_variable(&reader->model->outputs, output);
 }
 
-struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *component) {
-  long line = xmlGetLineNo(node);
-  struct Quantity value = {.node = ZERO};
-  bool is_angle = component != NULL && strcmp(component, "angle") == 0;
-  if (component != NULL) expression_attribute(reader, node, component, IN_POSITION, &value);
-  else value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
-  if (definitions_are_waiting(reader->definitions)) return value;
-  struct Dimension unit = component == NULL ? unit_attribute(reader, node) : unit_of(is_angle ? "rad" : "m");
-  require_unit(reader, line, component == NULL ? "the definition" : is_angle ? "the angle" : component, value, unit);
-  if (component != NULL) return value;
-  if (unit.known) value.dimension = unit;
-  value.literal = value.literal && !unit.known;
-  return value;
-}
-
-/* Of several bodies of one name, which is reported later, the first one has the components. */
-static void collect_components(struct Reader *reader, xmlNodePtr node) {
-  static const char *const components[] = {"x", "y", "z", "angle"};
-  char *body = name_attribute(reader, node, "name");
-  reader->named_bodies++;
-  if (body == NULL) body = format_text("body%zu", reader->named_bodies);
-  for (size_t i = 0; i < sizeof components / sizeof *components; i++)
-    if (xmlHasProp(node, (const xmlChar *)components[i]))
-      definitions_add(reader->definitions, format_text("%s.%s", body, components[i]), node, components[i]);
-  free(body);
-}
-
-static void collect(struct Reader *reader, xmlNodePtr node, const char *element) {
-  if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) collect_components(reader, node);
-  if (strcmp(element, "define") != 0) return;
-  char *name = name_attribute(reader, node, "name");
-  if (name == NULL) return;
-  if (scope_find(reader->scope, name) == NULL) {
-    definitions_add(reader->definitions, name, node, NULL);
-    return;
-  }
-  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
-  free(name);
-}
-
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
   reader->model->solver_line = xmlGetLineNo(node);
@@ -406,7 +395,7 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
-  else if (strcmp(element, "parameter") == 0) read_quantity(reader, node, &model->parameters, PARAMETER);
+  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
   else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
@@ -433,6 +422,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   const char *element = (const char *)node->name;
   if (pass == DECLARATIONS) read_declaration(reader, node, element);
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
-  else if (pass == DEFINITIONS) collect(reader, node, element);
+  else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
   else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
 }

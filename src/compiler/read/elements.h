@@ -11,9 +11,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass);
 void read_solver(struct Reader *reader, xmlNodePtr node);
 void read_experiment(struct Reader *reader, xmlNodePtr node);
 
-/* The value of a <define>, or of a component of a particle or body, for NULL or the attribute's name. */
-struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *attribute);
-
 /* Appends a variable, whose strings the list owns from now on. */
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);
 

@@ -124,15 +124,14 @@ const char *hint_for_function(const char *name) {
   return look_up(of_functions, sizeof of_functions / sizeof *of_functions, name);
 }
 
-const char *hint_for_kind(enum SymbolKind kind) {
+const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
+  if (allowed == 0) return "; expected numbers and constants";
+  if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
   switch (kind) {
   case INPUT:
     return "; expected it in a <force>, or what it moves as a <coordinate> that a stiff spring and damper draw there";
   case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
   case ACCELERATION: return "; expected them in an <output> alone: inertia belongs in masses and <kinetic>";
-  case COORDINATE:
-  case TIME: return "; expected numbers and parameters";
-  case PARAMETER: return "; expected numbers and constants";
   default: return "";
   }
 }

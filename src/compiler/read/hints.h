@@ -16,7 +16,7 @@ const char *hint_for_name(const char *name);
 /* For an element of other languages, what to write instead; "" where there is nothing known. */
 const char *hint_for_element(const char *name);
 
-/* What to do instead of using symbols of a kind where they are not allowed. */
-const char *hint_for_kind(enum SymbolKind kind);
+/* What to do instead of using symbols of a kind where only those of others are allowed, one bit (1 << kind) each. */
+const char *hint_for_kind(enum SymbolKind kind, unsigned allowed);
 
 #endif

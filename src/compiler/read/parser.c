@@ -155,7 +155,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
-           is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind));
+           is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, parser->place.kinds));
   return *quantity;
 }
 
@@ -220,7 +220,7 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
     if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
       FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
-           is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind));
+           is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, place.kinds));
   if (parser->failed) return nothing;
   struct Dimension second;
   const char *problem;

@@ -28,6 +28,9 @@ static void write_variables(FILE *file, const struct Interface *interface) {
     write_c_number(file, isnan(entry->minimum) ? -INFINITY : entry->minimum);
     fputs(", ", file);
     write_c_number(file, isnan(entry->maximum) ? INFINITY : entry->maximum);
+    fputs(", ", file);
+    if (entry->follows_from != NULL) write_c_string(file, entry->follows_from);
+    else fputs("NULL", file);
     fputs("},\n", file);
   }
   fputs("};\n\n", file);

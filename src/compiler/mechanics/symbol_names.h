@@ -1,0 +1,19 @@
+/* The names of the symbols that expressions depend on, as a list for messages. */
+#ifndef SYMBOL_NAMES_H
+#define SYMBOL_NAMES_H
+
+#include "algebra/graph.h"
+
+/* Symbols by their numbers in the graph, ascending. */
+struct SymbolNames {
+  size_t *symbols;
+  size_t count;
+};
+
+/* Adds those of count expressions. */
+void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
+
+/* "m, l"; a long list ends with "...". Free with free(). */
+char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph);
+
+#endif
