@@ -267,6 +267,7 @@ CASES = [
      '<coordinate name="x" velocity="v" unit="m"/><kinetic>m*v^2/2 + 2*m*l*v*omega</kinetic>', 10,
      "not positive definite at the start values: it is negative for a motion along 'x'"),
     ("error on a later line of an expression", 8, "<potential>\n  m*g*bob.y\n  + nothing\n</potential>", 10, "'nothing'"),
+    ("error after a sum of several lines", 8, "<potential>m*g*l*sum(i, 1, 3,\n  sqrt(theta)\n  + i)\n  + nothing</potential>", 11, "'nothing'"),
 ]
 
 
