@@ -267,6 +267,7 @@ CASES = [
      '<coordinate name="x" velocity="v" unit="m"/><kinetic>m*v^2/2 + 2*m*l*v*omega</kinetic>', 10,
      "not positive definite at the start values: it is negative for a motion along 'x'"),
     ("error on a later line of an expression", 8, "<potential>\n  m*g*bob.y\n  + nothing\n</potential>", 10, "'nothing'"),
+    ("error after a sum of several lines", 8, "<potential>m*g*l*sum(i, 1, 3,\n  sqrt(theta)\n  + i)\n  + nothing</potential>", 11, "'nothing'"),
 ]
 
 
@@ -383,6 +384,45 @@ def test_linearization_at_a_pole(tmp_path):
     result = lagc("--linearize", "system.xml", "--at", "theta=0", cwd=tmp_path)
     assert result.returncode == 1
     assert re.search(r"system.xml:6: the equation of der\(omega\) has a coefficient that is not finite", result.stderr)
+
+
+COHERENT = "coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' and '/', for example kg.m2/s2 or N/(m.s)"
+
+
+@pytest.mark.parametrize("unit, remedy", [
+    ("cm", "m, and the value times 1e-2"),
+    ("cm2", "m2, and the value times 1e-4"),
+    ("cm-1", "m-1, and the value times 1e2"),
+    ("kg.cm2", "kg.m2, and the value times 1e-4"),
+    ("g/cm3", "kg/m3, and the value times 1e3"),
+    ("N/cm", "N/m, and the value times 1e2"),
+    ("km/h", "m/s, and the value times 1/3.6"),
+    ("km/h2", "m/s2, and the value times 1/12960"),
+    ("1/min", "1/s, and the value times 1/60"),
+    ("min", "s, and the value times 60"),
+    ("kN/m", "N/m, and the value times 1e3"),
+    ("N/(mm.min)", "N/(m.s), and the value times 1/0.06"),
+    ("deg/s", "rad/s, and the value times pi/180"),
+    ("°/s", "rad/s, and the value times pi/180"),
+    ("deg2", "rad2, and the value times pi^2/32400"),
+    ("N.m/deg", "N.m/rad, and the value times 180/pi"),
+    ("rpm", "rad/s, and the value times pi/30"),
+    ("mm/s2", "m/s2, and the value times 1e-3"),
+    ("N.cm", "N.m, and the value times 1e-2"),
+    ("Nm/rad", "N.m/rad, with a point between units"),
+    ("meter/sec", "m/s"),
+    ("rpm/s", COHERENT),
+    ("rpm2", COHERENT),
+    ("Nm2", COHERENT),
+    ("1/Nm", COHERENT),
+    ("cm.lbs", COHERENT),
+    ("cm21", COHERENT),
+    ("%/s", "1/s, and the value times 1e-2"),
+])  # fmt: skip
+def test_what_is_written_for_other_units(unit, remedy, tmp_path):
+    """The factors are those by which a value in the unit is multiplied, by hand."""
+    result = compile_text(broken(2, f'<parameter name="m" start="1" unit="{unit}"/>'), tmp_path)
+    assert result.stderr == f"system.xml:2: the unit '{unit}' is not known: expected {remedy}\n"
 
 
 def test_several_errors_in_one_run(tmp_path):

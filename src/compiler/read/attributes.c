@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/other_units.h"
 #include "memory.h"
 
 char *attribute(xmlNodePtr node, const char *name) {
@@ -75,8 +76,12 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
   struct Dimension dimension = dimension_unknown;
   const char *problem;
   char *text = attribute(node, "unit");
-  if (text != NULL && !unit_parse(text, &dimension, &problem))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text, problem);
+  if (text != NULL && !unit_parse(text, &dimension, &problem)) {
+    char *remedy = unit_remedy(text);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,
+                 remedy != NULL ? remedy : problem);
+    free(remedy);
+  }
   reader->scope->checks_units |= text != NULL;
   free(text);
   return dimension;

@@ -32,10 +32,10 @@ static const struct Quantity nothing = {.node = ZERO};
 static struct Quantity parse_sum(struct Parser *parser);
 static struct Quantity parse_sign(struct Parser *parser);
 
-long current_line(const struct Parser *parser) {
-  long line = parser->place.line;
-  for (const char *c = parser->text; c < parser->next; c++) line += *c == '\n';
-  return line;
+long current_line(struct Parser *parser) {
+  for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';
+  while (parser->counted > parser->next) parser->newlines -= *--parser->counted == '\n';
+  return parser->place.line + parser->newlines;
 }
 
 /* Recursion is bounded here, so that no input exhausts the stack. */
@@ -338,8 +338,13 @@ static struct Quantity parse_sum(struct Parser *parser) {
   return value;
 }
 
+static struct Parser parser_of(struct Scope *scope, const char *text, struct Place place) {
+  return (struct Parser){
+      .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
+}
+
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
-  struct Parser parser = {.scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text};
+  struct Parser parser = parser_of(scope, text, place);
   char buffer[32];
   scope->graph->not_finite = false;
   struct Quantity value = parse_sum(&parser);
@@ -363,7 +368,7 @@ bool parse_number(struct Scope *scope, const char *text, struct Place place, dou
 }
 
 char *parse_name(struct Scope *scope, const char *text, struct Place place) {
-  struct Parser parser = {.scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text};
+  struct Parser parser = parser_of(scope, text, place);
   char *name = NULL;
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
   if (name == NULL || *parser.next != '\0' || strchr(name, '.') != NULL)

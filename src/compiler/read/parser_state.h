@@ -10,13 +10,15 @@ struct Parser {
   struct Graph *graph;
   struct Place place;
   const char *text, *next;
+  const char *counted; /* the line breaks before are newlines: counting goes on from there */
+  long newlines;
   int nesting;
   long repetitions; /* bodies of sum(...) parsed so far */
   bool failed;
 };
 
 /* The line of the reading position. */
-long current_line(const struct Parser *parser);
+long current_line(struct Parser *parser);
 
 /* Reports the first error of an expression; later ones would only follow from it. */
 #define FAIL(parser, ...)                                                                                              \
