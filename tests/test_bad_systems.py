@@ -317,6 +317,11 @@ WARNINGS = [
     ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that the units .* are not checked"),
     ("unit of an input forgotten", 5, '<input name="tau"/>', 5, "'tau' has no unit"),
     ("unit of a coordinate forgotten", 6, '<coordinate name="theta" velocity="omega" start="1"/>', 6, "'theta' has no unit"),
+    ("dissipation with the sign of a force", 11, '<parameter name="b" start="3" unit="N.m.s"/>\n<dissipation>-b*omega^2/2</dissipation>', 12,
+     r"the dissipation is -1\.5 for velocities of \+-1 at the start values"),
+    ("dissipation of two velocities with a wrong sign", 11,
+     '<parameter name="b" start="3" unit="N.m.s"/><coordinate name="x" velocity="v" unit="rad"/><kinetic>m*l^2*v^2/2</kinetic>\n'
+     '<dissipation>-b*(v - omega)^2/2</dissipation>', 12, "the dissipation is -6 for velocities"),
     ("dissipation without velocities", 11, "<dissipation>m*g*l*theta/time</dissipation>", 11, "the dissipation has no velocities, and makes no force"),
     ("tolerance below all numbers", 11, '<solver method="erk" tolerance="1e-20"/>', 11, "tolerance 1e-20 is below what doubles can hold"),
     ("loop that runs backwards", 11, '<for index="i" from="3" to="1"><potential>m*g*l</potential></for>', 11,
@@ -333,6 +338,8 @@ def test_warnings(what, line, text, expected_line, message, tmp_path):
 
 
 QUIET = [
+    ("dissipation of a motion with a belt", 11, '<parameter name="b" start="3" unit="N.m.s"/><dissipation>b*(omega - 2)^2/2 - tau*omega</dissipation>'),
+    ("dissipation that is a force", 11, '<dissipation>-m*g*l*omega</dissipation>'),
     ("no repetitions", 11, '<constant name="N" value="0"/><for index="i" from="1" to="N"></for>'),
     ("none for the first index", 11,
      '<for index="i" from="1" to="3"><for index="j" from="2" to="i-1"><potential>m*g*l</potential></for></for>'),

@@ -185,6 +185,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     read_system(&reader, root);
     free(reader.definition_used);
+    free(reader.dissipations);
     names_free(reader.bodies);
     definitions_free(reader.definitions);
     (*scope)->definitions = NULL;
