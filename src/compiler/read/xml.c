@@ -64,7 +64,7 @@ static char *meaning_of(const xmlError *error) {
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *told = diagnostics;
-  if (error->domain == XML_FROM_IO) return; /* xml_load() tells of a file that cannot be read */
+  if (error->code == XML_IO_LOAD_ERROR) return;                     /* xml_load() tells of a file that cannot be read */
   if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
   char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
   if (meaning != NULL) message = meaning;
