@@ -200,7 +200,7 @@ CASES = [
     ("acceleration in a force by definition", 9, '<force coordinate="theta">der(omega)*m*l^2</force>', 9, "expected them in an <output> alone"),
     ("odd root of a negative number", 8, "<potential>(-8)^(1/3)*m*g*l</potential>", 8, r"sign\(x\)\*abs\(x\)\^n for an odd root"),
     ("definition named like an index", 11, '<for index="i" from="1" to="2"><define name="i">m</define></for>', 11, "'i' is the index of a <for> around it"),
-    ("attribute without quotes", 2, '<parameter name=m start="1"/>', 2, "the value of an attribute is not in quotes"),
+    ("attribute without quotes", 2, '<parameter name=m start="1"/>', 2, "the value of an attribute is not in straight quotes"),
     ("no end", 13, "", 13, "the file ends inside an element"),
     ("attribute with another letter", 2, '<parameter name="m" start="1" units="kg"/>', 2, "<parameter> has no attribute 'units'; did you mean 'unit'"),
     ("attribute in upper case", 2, '<parameter Name="m" start="1"/>', 2, "no attribute 'Name'; did you mean 'name'"),
@@ -250,6 +250,10 @@ CASES = [
     ("equation", 8, "<potential>U = m*g*bob.y</potential>", 8, "unknown name 'U'; write the value alone, without a name and ="),
     ("index in parentheses", 11, '<parameter name="k[1]" start="1"/><potential>m*g*l*k(1)</potential>', 11, r"'k' is no function; write k\[...\] for an index"),
     ("degrees in a number", 6, '<coordinate name="theta" velocity="omega" start="30°"/>', 6, "found '°'; write radians, as in 30\\*pi/180"),
+    ("dash as a minus sign", 8, "<potential>m*g*l – 1</potential>", 8, "found '–'; write - for a minus sign"),
+    ("long dash as a minus sign", 8, "<potential>m*g*l — 1</potential>", 8, "found '—'; write - for a minus sign"),
+    ("curly quotes around a value", 2, '<parameter name=“m” start=“1”/>', 2, "the value of an attribute is not in straight quotes; expected name=\"value\""),
+    ("angular quotes around a value", 2, '<parameter name=«m» start="1"/>', 2, "not in straight quotes"),
     ("blank that is none", 8, "<potential>m*g*\u00a0bob.y</potential>", 8, "write a plain blank"),
     ("velocity in place of its coordinate", 9, '<force coordinate="omega">tau</force>', 9, "no coordinate 'omega' for this force; did you mean 'theta', whose velocity"),
     ("coordinate in upper case", 9, '<force coordinate="Theta">tau</force>', 9, "no coordinate 'Theta' for this force; did you mean 'theta'"),
@@ -313,6 +317,11 @@ WARNINGS = [
     ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that the units .* are not checked"),
     ("unit of an input forgotten", 5, '<input name="tau"/>', 5, "'tau' has no unit"),
     ("unit of a coordinate forgotten", 6, '<coordinate name="theta" velocity="omega" start="1"/>', 6, "'theta' has no unit"),
+    ("dissipation with the sign of a force", 11, '<parameter name="b" start="3" unit="N.m.s"/>\n<dissipation>-b*omega^2/2</dissipation>', 12,
+     r"the dissipation is -1\.5 for velocities of \+-1 at the start values"),
+    ("dissipation of two velocities with a wrong sign", 11,
+     '<parameter name="b" start="3" unit="N.m.s"/><coordinate name="x" velocity="v" unit="rad"/><kinetic>m*l^2*v^2/2</kinetic>\n'
+     '<dissipation>-b*(v - omega)^2/2</dissipation>', 12, "the dissipation is -6 for velocities"),
     ("dissipation without velocities", 11, "<dissipation>m*g*l*theta/time</dissipation>", 11, "the dissipation has no velocities, and makes no force"),
     ("tolerance below all numbers", 11, '<solver method="erk" tolerance="1e-20"/>', 11, "tolerance 1e-20 is below what doubles can hold"),
     ("loop that runs backwards", 11, '<for index="i" from="3" to="1"><potential>m*g*l</potential></for>', 11,
@@ -329,6 +338,8 @@ def test_warnings(what, line, text, expected_line, message, tmp_path):
 
 
 QUIET = [
+    ("dissipation of a motion with a belt", 11, '<parameter name="b" start="3" unit="N.m.s"/><dissipation>b*(omega - 2)^2/2 - tau*omega</dissipation>'),
+    ("dissipation that is a force", 11, '<dissipation>-m*g*l*omega</dissipation>'),
     ("no repetitions", 11, '<constant name="N" value="0"/><for index="i" from="1" to="N"></for>'),
     ("none for the first index", 11,
      '<for index="i" from="1" to="3"><for index="j" from="2" to="i-1"><potential>m*g*l</potential></for></for>'),
@@ -366,6 +377,18 @@ def test_files_that_hold_no_system(text, message, tmp_path):
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 1
     assert re.fullmatch(f"system.xml:({message}).*\n", result.stderr), result.stderr
+
+
+@pytest.mark.parametrize("version", ["1.1", "1.2"])
+def test_another_version_of_xml(version, tmp_path):
+    """The file is read all the same, as XML 1.0 asks for."""
+    result = compile_text(f'<?xml version="{version}"?>\n{RIGHT}', tmp_path)
+    assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names another version of XML than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
+
+
+def test_a_missing_file_is_told_of_once(tmp_path):
+    result = lagc("missing.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (1, "missing.xml: cannot be read; expected an XML file\n")
 
 
 def test_other_encodings_that_a_file_names(tmp_path):
@@ -423,6 +446,14 @@ def test_what_is_written_for_other_units(unit, remedy, tmp_path):
     """The factors are those by which a value in the unit is multiplied, by hand."""
     result = compile_text(broken(2, f'<parameter name="m" start="1" unit="{unit}"/>'), tmp_path)
     assert result.stderr == f"system.xml:2: the unit '{unit}' is not known: expected {remedy}\n"
+
+
+def test_loops_in_loops_that_are_too_many(tmp_path):
+    """One message, at a loop, and none about what was not read for want of work."""
+    inner = '<for index="k" from="1" to="10000"></for>'
+    loops = f'<for index="i" from="1" to="10000">\n<for index="j" from="1" to="10000">\n{inner}</for></for>\n'
+    result = compile_text(broken(11, loops + '<solver method="erk" tolerance="1e-8"/>'), tmp_path)
+    assert re.fullmatch("system.xml:13: <for>: the system is too large: more than .* steps .*; expected fewer .*\n", result.stderr), result.stderr
 
 
 def test_several_errors_in_one_run(tmp_path):

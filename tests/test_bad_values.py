@@ -107,6 +107,16 @@ def test_bad_steps(name, step, open_fmu):
     works_again(instance, name)
 
 
+@pytest.mark.parametrize("time", [math.nan, math.inf])
+@pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
+def test_a_time_that_is_no_number(name, time, open_fmu):
+    """The time is to blame, not the step."""
+    instance = open_fmu(name).initialize()
+    with instance.fails(ERROR, f"currentCommunicationPoint is {time}; expected a finite time"):
+        instance.fmu.doStep(time, 0.1)
+    works_again(instance, name)
+
+
 @pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
 def test_a_step_beyond_all_times(name, open_fmu):
     instance = open_fmu(name).initialize(start_time=1e308)

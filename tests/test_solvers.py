@@ -9,6 +9,7 @@ import matplotlib.image
 import mpmath
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 
 import fmu
 from fmu import DISCARD
@@ -127,6 +128,17 @@ def test_a_trial_stage_may_fail(method, open_fmu):
     exact = reference(3)
     assert instance.get("x") == pytest.approx(float(exact[0]), abs=1e-6)
     assert instance.get("v") == pytest.approx(float(exact[1]), abs=1e-6)
+
+
+def test_a_division_by_zero(open_fmu):
+    """x^-1 at x = 0: the message says what may be the reason."""
+    instance = open_fmu("PowerErk")
+    instance.fmu.setupExperiment()
+    instance.set(a=-1.0, x=0.0)
+    instance.fmu.enterInitializationMode()
+    with pytest.raises(FMICallException):
+        instance.fmu.exitInitializationMode()
+    assert any("as where something is divided by 0, or exp" in text for _, _, text in instance.messages)
 
 
 def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):

@@ -174,7 +174,9 @@ static double rounding_of_sum(const struct Situation *situation, double end, dou
 /* What is wrong with a communication step. */
 static enum Status check_step(struct Instance *instance, double time, double size, const char *function) {
   const struct Situation *situation = instance->situation;
-  if (!isfinite(time) || !isfinite(size) || size <= 0.0)
+  if (!isfinite(time))
+    return log_error(instance, "%s: currentCommunicationPoint is %g; expected a finite time", function, time);
+  if (!isfinite(size) || size <= 0.0)
     return log_error(instance, "%s: step %g at time %g; expected a finite step larger than 0", function, size, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
   if (fabs(time - situation->time) > rounding)

@@ -131,7 +131,8 @@ char *unit_remedy(const char *text) {
   bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, &dimension, &problem);
   char *factor = is_known ? factor_text(translation.factor, translation.pi_power) : NULL;
   if (is_known && translation.factor == 1 && translation.pi_power == 0)
-    remedy = format_text("expected %s%s", si, strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
+    remedy = format_text("expected %s%s", si,
+                         strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
   else if (factor != NULL) remedy = format_text("expected %s, and the value times %s", si, factor);
   free(factor);
   free(si);

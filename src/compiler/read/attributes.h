@@ -10,6 +10,11 @@
 /* Each pass uses the names that the ones before it made known, wherever in the file they stand. */
 enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
 
+struct Dissipation {
+  Node node;
+  long line;
+};
+
 struct Reader {
   struct Model *model;
   struct Scope *scope;
@@ -20,6 +25,8 @@ struct Reader {
   const struct ReaderOptions *options;
   bool *definition_used;
   bool has_solver, has_experiment;
+  struct Dissipation *dissipations; /* each <dissipation> that was read */
+  size_t dissipation_count;
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place. */

@@ -1,5 +1,6 @@
 #include "read/checks.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static void check_content(const struct Reader *reader) {
@@ -49,9 +50,50 @@ static void warn_at_start(const struct Reader *reader) {
   free(symbols);
 }
 
+/* The values of all nodes at the start, but with these velocities: the even ones, and the odd ones. */
+static double *values_at_velocities(const struct Model *model, double even, double odd) {
+  double *symbols = start_values(model);
+  for (size_t i = 0; i < model->velocities.count; i++)
+    symbols[model->graph->vertices[model->velocities.items[i].node].left] = i % 2 == 0 ? even : odd;
+  double *values = graph_evaluate(model->graph, symbols);
+  free(symbols);
+  return values;
+}
+
+/*
+ * Of opposite velocities together, in which a part that is linear in them, a force, cancels: a dissipation grows from
+ * rest. The sign of the odd velocities lets a damper between two coordinates move as well.
+ */
+static void warn_of_dissipation(const struct Reader *reader, double odd) {
+  const struct Model *model = reader->model;
+  double *rest = values_at_velocities(model, 0, 0), *forth = values_at_velocities(model, 1, odd),
+         *back = values_at_velocities(model, -1, -odd);
+  long told = 0;
+  for (size_t i = 0; i < reader->dissipation_count; i++) {
+    struct Dissipation *dissipation = &reader->dissipations[i];
+    Node node = dissipation->node;
+    double growth = (forth[node] - rest[node] + (back[node] - rest[node])) / 2;
+    double rounding = 1e-12 * (fabs(forth[node]) + fabs(back[node]) + fabs(rest[node]));
+    if (!(growth < -rounding)) continue;
+    if (dissipation->line != told)
+      report_warning(reader->diagnostics, dissipation->line,
+                     "the dissipation is %g for velocities of +-1 at the start values, and drives the motion; expected "
+                     "a positive one, such as b*v^2/2",
+                     growth);
+    told = dissipation->line;
+    dissipation->node = ZERO; /* is not told again */
+  }
+  free(rest);
+  free(forth);
+  free(back);
+}
+
 void check_system(struct Reader *reader) {
   check_content(reader);
   if (reader->diagnostics->errors > 0) return;
   warn_without_unit(reader);
   warn_at_start(reader);
+  if (reader->dissipation_count == 0) return;
+  warn_of_dissipation(reader, 1);
+  warn_of_dissipation(reader, -1);
 }

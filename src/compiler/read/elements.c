@@ -403,18 +403,25 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
 }
 
+static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  Node dissipation = read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+  if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
+  size_t count = reader->dissipation_count++;
+  reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
+  reader->dissipations[count] = (struct Dissipation){dissipation, xmlGetLineNo(node)};
+  model->has_forces = true;
+}
+
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
   if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
-  else if (strcmp(element, "dissipation") == 0) {
-    Node dissipation = read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
-    if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
-      report_warning(reader->diagnostics, xmlGetLineNo(node),
-                     "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
-    model->has_forces = true;
-  } else if (strcmp(element, "force") == 0) read_force(reader, node);
+  else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
+  else if (strcmp(element, "force") == 0) read_force(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);
 }
 

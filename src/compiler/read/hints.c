@@ -26,6 +26,8 @@ static const struct Hint of_text[] = {
     {"\xc2\xb7", "; write * for a product"},
     {"\xc3\x97", "; write * for a product"},
     {"\xe2\x88\x92", "; write - for a minus sign"},
+    {"\xe2\x80\x93", "; write - for a minus sign"},
+    {"\xe2\x80\x94", "; write - for a minus sign"},
     {"\xc2\xb2", "; write ^2 for a square"},
     {"\xc2\xb3", "; write ^3 for a cube"},
     {"\xc2\xb0", "; write radians, as in 30*pi/180"},

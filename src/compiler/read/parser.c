@@ -343,11 +343,12 @@ static struct Parser parser_of(struct Scope *scope, const char *text, struct Pla
       .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
 }
 
-struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
+/* False where the text has a mistake; the value is then nothing. */
+static bool read_expression(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
   struct Parser parser = parser_of(scope, text, place);
   char buffer[32];
   scope->graph->not_finite = false;
-  struct Quantity value = parse_sum(&parser);
+  *value = parse_sum(&parser);
   skip_space(&parser);
   if (!parser.failed && *parser.next == ')')
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
@@ -355,14 +356,20 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
     FAIL(&parser, "%s: expected an operator or the end, found %s%s", place.what, found(&parser, buffer),
          hint_for_text(text, parser.next));
   require_limits(&parser);
-  return parser.failed ? nothing : value;
+  if (parser.failed) *value = nothing;
+  return !parser.failed;
+}
+
+struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
+  struct Quantity value;
+  read_expression(scope, text, place, &value);
+  return value;
 }
 
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
   place.kinds = 0;
-  int errors = scope->diagnostics->errors;
-  struct Quantity quantity = parse_expression(scope, text, place);
-  if (scope->diagnostics->errors > errors) return false;
+  struct Quantity quantity;
+  if (!read_expression(scope, text, place, &quantity)) return false;
   *value = graph_value(scope->graph, quantity.node);
   return true;
 }

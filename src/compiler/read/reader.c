@@ -38,6 +38,14 @@ static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char 
   return false;
 }
 
+/* At the innermost <for> that it stops; what follows in the file would only be told as the next to need anything. */
+static void check_limit(struct Reader *reader, xmlNodePtr node) {
+  const char *limit = graph_limit(reader->model->graph);
+  if (limit != NULL && reader->diagnostics->errors == 0)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<for>: the system is too large: %s; expected fewer or shorter repetitions", limit);
+}
+
 static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   struct Scope *scope = reader->scope;
   double from = 0, to = -1;
@@ -58,6 +66,7 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
     read_children(reader, node, pass);
     if (pass == DEFINITIONS) definitions_leave(reader->definitions);
   }
+  check_limit(reader, node);
   scope_remove(scope, index);
   free(index);
 }
@@ -176,6 +185,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     read_system(&reader, root);
     free(reader.definition_used);
+    free(reader.dissipations);
     names_free(reader.bodies);
     definitions_free(reader.definitions);
     (*scope)->definitions = NULL;

@@ -23,7 +23,7 @@ static char *meaning_of(const xmlError *error) {
     return copy_text("'<' stands in an attribute, or a quote is missing before it; write &lt; for the sign itself, and "
                      "min, max, abs or sign for conditions");
   case XML_ERR_ATTRIBUTE_NOT_STARTED:
-    return copy_text("the value of an attribute is not in quotes; expected name=\"value\"");
+    return copy_text("the value of an attribute is not in straight quotes; expected name=\"value\"");
   case XML_ERR_ATTRIBUTE_WITHOUT_VALUE:
     return format_text("the attribute '%s' has no value; expected %s=\"...\"", name, name);
   case XML_ERR_ATTRIBUTE_REDEFINED: return format_text("the attribute '%s' is given twice; expected it once", name);
@@ -54,6 +54,9 @@ static char *meaning_of(const xmlError *error) {
     return format_text("'&%s;' is not known; expected the character itself, and * for a product", name);
   case XML_ERR_INVALID_CHAR:
     return copy_text("an invisible character stands here that no text has; expected it removed");
+  case XML_WAR_UNKNOWN_VERSION:
+    return copy_text("the first line names another version of XML than 1.0; expected <?xml version=\"1.0\"?>, or no "
+                     "such line");
   default: return NULL;
   }
 }
@@ -61,6 +64,7 @@ static char *meaning_of(const xmlError *error) {
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *told = diagnostics;
+  if (error->code == XML_IO_LOAD_ERROR) return;                     /* xml_load() tells of a file that cannot be read */
   if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
   char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
   if (meaning != NULL) message = meaning;
