@@ -260,6 +260,12 @@ FORGERIES += [("=d", TIME + 8 * NUMBERS.index("suggested_step"), -1.0)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("last_start"), 1e3)]
 
 
+def refuses(instance, data, *forgery):
+    with instance.fails(ERROR, "no instance can have saved"):
+        instance.fmu.deSerializeFMUstate(forged(data, *forgery))
+    instance.reset()
+
+
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop", "StateFeedback"])
 def test_forged_states_are_refused(name, open_fmu):
     """Whatever the solver, and all values that a state holds."""
@@ -269,18 +275,14 @@ def test_forged_states_are_refused(name, open_fmu):
     parameter = VALUES + 8 * (len(fmu.states_of(name)) + len(fmu.names_of(name, "input")))
     places = [VALUES] * bool(fmu.states_of(name)) + [parameter]
     for forgery in FORGERIES + [("=d", place, value) for place in places for value in (np.nan, -np.inf)]:
-        with instance.fails(ERROR, "no instance can have saved"):
-            instance.fmu.deSerializeFMUstate(forged(data, *forgery))
-        instance.reset()
+        refuses(instance, data, *forgery)
 
 
 def test_forged_modes_of_the_other_kind_are_refused(open_fmu):
     instance = open_fmu("SimplePendulum", kind=FMU2Model).initialize()
     data = serialized(instance)
     for mode in (4, 5):
-        with instance.fails(ERROR, "no instance can have saved"):
-            instance.fmu.deSerializeFMUstate(forged(data, "=i", MODE, mode))
-        instance.reset()
+        refuses(instance, data, "=i", MODE, mode)
 
 
 def test_forged_series_are_refused(open_fmu):
@@ -297,9 +299,7 @@ def test_forged_series_are_refused(open_fmu):
     assert len(numbers) == 2 + 2 * 24
     forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in reaches]
     for forgery in forgeries + [("=d", place, np.nan) for place in numbers]:
-        with instance.fails(ERROR, "no instance can have saved"):
-            instance.fmu.deSerializeFMUstate(forged(data, *forgery))
-        instance.reset()
+        refuses(instance, data, *forgery)
 
 
 def test_forged_rounding_is_refused(open_fmu):
@@ -310,9 +310,7 @@ def test_forged_rounding_is_refused(open_fmu):
     data, saved = serialized(instance), place_of_saved(name)
     assert len(data) == saved + 16
     for place in (saved, saved + 8):
-        with instance.fails(ERROR, "no instance can have saved"):
-            instance.fmu.deSerializeFMUstate(forged(data, "=d", place, np.inf))
-        instance.reset()
+        refuses(instance, data, "=d", place, np.inf)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop"])

@@ -30,6 +30,12 @@ void *reallocate(void *block, size_t count, size_t size) {
   return resized;
 }
 
+void *make_room(void *items, size_t count, size_t *capacity, size_t size) {
+  if (count < *capacity) return items;
+  *capacity = 2 * *capacity + 16;
+  return reallocate(items, *capacity, size);
+}
+
 FILE *open_text(char **text, size_t *length) {
   FILE *file = open_memstream(text, length);
   if (file == NULL) out_of_memory();

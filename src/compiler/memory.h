@@ -14,6 +14,12 @@ void *allocate(size_t count, size_t size);
 /* Resizes a block to count elements of size bytes; new bytes are not initialised; never NULL. */
 void *reallocate(void *block, size_t count, size_t size);
 
+/*
+ * The items of a list that count and *capacity describe, each of size bytes, with room for one more: where there is none,
+ * the capacity is doubled. New bytes are not initialised; never NULL.
+ */
+void *make_room(void *items, size_t count, size_t *capacity, size_t size);
+
 /* A stream that writes a string, complete after fclose() and to be freed with free(); never NULL. */
 FILE *open_text(char **text, size_t *length);
 

@@ -59,6 +59,9 @@ struct Solver {
  */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
+/* The Jacobian there, in the order of lagrangian.jacobian_pattern; counts it. False where M is singular. */
+bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values);
+
 /* The point for generated functions at a time and state that the solver chose. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
 

@@ -31,6 +31,13 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
   return evaluate_derivatives(instance, &point, derivative);
 }
 
+bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
+  struct Point point = solver_point(instance, time, state);
+  instance->situation->statistics[STATISTIC_JACOBIANS]++;
+  instance->singular = lagrangian.jacobian(&point, values);
+  return instance->singular == 0;
+}
+
 struct Point solver_point(struct Instance *instance, double time, const double *state) {
   struct Point point = evaluate_point(instance);
   point.time = time;

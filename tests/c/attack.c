@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "counted_memory.h"
 #include "fmu_library.h"
 
 enum { LENGTH = 64, SAVED = 4, BYTES = 100000, HEADER = 64 /* bytes before the situation; the last 8 its checksum */ };
@@ -18,7 +19,7 @@ enum { LENGTH = 64, SAVED = 4, BYTES = 100000, HEADER = 64 /* bytes before the s
 static struct FmuLibrary fmu;
 static const char *guid;
 static size_t variables, states;
-static long blocks, failures, right_steps, restored_states;
+static long failures, right_steps, restored_states;
 static uint64_t noise = 88172645463325252u;
 
 static fmi2Component c;
@@ -41,14 +42,7 @@ static bool one_in(uint64_t count) {
 }
 
 static void *allocate(size_t count, size_t size) {
-  void *block = one_in(200) ? NULL : calloc(count, size);
-  if (block != NULL) blocks++;
-  return block;
-}
-
-static void release(void *block) {
-  if (block != NULL) blocks--;
-  free(block);
+  return one_in(200) ? NULL : count_allocation(count, size);
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
@@ -224,7 +218,7 @@ int main(int count, char **words) {
   variables = strtoul(words[3], NULL, 10);
   states = strtoul(words[4], NULL, 10);
   noise ^= strtoull(words[6], NULL, 10) * 0x9E3779B97F4A7C15u; /* spreads small seeds */
-  const fmi2CallbackFunctions callbacks = {logger, allocate, release, NULL, NULL};
+  const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   for (int type = fmi2ModelExchange; type <= fmi2CoSimulation; type++) {
     do c = fmu.fmi2Instantiate("attack", (fmi2Type)type, guid, NULL, &callbacks, fmi2False, fmi2True);
     while (c == NULL);

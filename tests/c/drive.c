@@ -9,20 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "counted_memory.h"
 #include "fmu_library.h"
 
-static long blocks; /* allocated and not freed */
 static int failures;
-
-static void *count_allocation(size_t count, size_t size) {
-  blocks++;
-  return calloc(count, size);
-}
-
-static void count_free(void *block) {
-  if (block != NULL) blocks--;
-  free(block);
-}
 
 static void no_logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                       fmi2String message, ...) {

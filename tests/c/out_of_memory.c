@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "counted_memory.h"
 #include "fmu_library.h"
 
 enum { STEPS = 12 };
@@ -16,7 +17,6 @@ static struct FmuLibrary fmu;
 static const char *guid;
 static fmi2ValueReference output;
 
-static long blocks;           /* allocated and not freed */
 static long count;            /* allocations asked for */
 static long first_refused;    /* the number of an allocation */
 static bool refused_for_good; /* those after it, too */
@@ -26,14 +26,7 @@ static bool told;             /* that there is no memory */
 static void *allocate(size_t number, size_t size) {
   count++;
   bool refused = refuses && (refused_for_good ? count >= first_refused : count == first_refused);
-  void *block = refused ? NULL : calloc(number, size);
-  if (block != NULL) blocks++;
-  return block;
-}
-
-static void release(void *block) {
-  if (block != NULL) blocks--;
-  free(block);
+  return refused ? NULL : count_allocation(number, size);
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
@@ -84,7 +77,7 @@ static bool expect(bool right, const char *what) {
 
 /* Simulates; after a refusal, again with all the memory. */
 static bool survives(double expected) {
-  const fmi2CallbackFunctions callbacks = {logger, allocate, release, NULL, NULL};
+  const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   double end = 0.0;
   count = blocks = 0;
   told = false;
@@ -105,7 +98,7 @@ int main(int words_count, char **words) {
   fmu = fmu_library_open(words[1]);
   guid = words[2];
   output = (fmi2ValueReference)strtoul(words[3], NULL, 10);
-  const fmi2CallbackFunctions callbacks = {logger, allocate, release, NULL, NULL};
+  const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   double expected = 0.0;
   fmi2Component c = fmu.fmi2Instantiate("memory", fmi2CoSimulation, guid, NULL, &callbacks, fmi2False, fmi2True);
   bool right = c != NULL && expect(simulate(c, &expected), "an error");

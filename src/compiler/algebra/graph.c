@@ -72,10 +72,7 @@ static void insert(struct Graph *graph, Node node) {
 }
 
 static void grow(struct Graph *graph) {
-  if (graph->count == graph->capacity) {
-    graph->capacity *= 2;
-    graph->vertices = reallocate(graph->vertices, graph->capacity, sizeof *graph->vertices);
-  }
+  graph->vertices = make_room(graph->vertices, graph->count, &graph->capacity, sizeof *graph->vertices);
   if (2 * graph->count < graph->bucket_count) return;
   graph->bucket_count *= 2;
   free(graph->buckets);

@@ -26,10 +26,7 @@ static bool precedes(struct Waiting a, struct Waiting b) {
 }
 
 static void push(struct Queue *queue, struct Waiting entry) {
-  if (queue->count == queue->capacity) {
-    queue->capacity = 2 * queue->capacity + 1;
-    queue->items = reallocate(queue->items, queue->capacity, sizeof *queue->items);
-  }
+  queue->items = make_room(queue->items, queue->count, &queue->capacity, sizeof *queue->items);
   size_t place = queue->count++;
   for (; place > 0 && precedes(entry, queue->items[(place - 1) / 2]); place = (place - 1) / 2)
     queue->items[place] = queue->items[(place - 1) / 2];

@@ -20,10 +20,7 @@ struct ElementList {
 };
 
 static void append(struct ElementList *list, size_t row, size_t column, Node value) {
-  if (list->count == list->capacity) {
-    list->capacity = 2 * list->capacity + 64;
-    list->items = reallocate(list->items, list->capacity, sizeof *list->items);
-  }
+  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
   list->items[list->count++] = (struct Element){row, column, value};
 }
 

@@ -55,10 +55,7 @@ static void append(struct CheckList *list, struct Check check) {
   }
   size_t number = list->count + 1;
   *end = number;
-  if (list->count == list->capacity) {
-    list->capacity *= 2;
-    list->items = reallocate(list->items, list->capacity, sizeof *list->items);
-  }
+  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
   list->items[list->count++] = check;
 }
 

@@ -3,10 +3,7 @@
 #include "memory.h"
 
 void append_node(struct NodeList *list, Node node) {
-  if (list->count == list->capacity) {
-    list->capacity = 2 * list->capacity + 16;
-    list->nodes = reallocate(list->nodes, list->capacity, sizeof *list->nodes);
-  }
+  list->nodes = make_room(list->nodes, list->count, &list->capacity, sizeof *list->nodes);
   list->nodes[list->count++] = node;
 }
 

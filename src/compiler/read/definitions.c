@@ -65,10 +65,8 @@ void definitions_leave(struct Definitions *definitions) {
 }
 
 void definitions_add(struct Definitions *definitions, char *name, xmlNodePtr node, const char *attribute) {
-  if (definitions->count == definitions->capacity) {
-    definitions->capacity = 2 * definitions->capacity + 16;
-    definitions->items = reallocate(definitions->items, definitions->capacity, sizeof *definitions->items);
-  }
+  definitions->items =
+      make_room(definitions->items, definitions->count, &definitions->capacity, sizeof *definitions->items);
   if (names_find(definitions->numbers, name) == NULL) {
     size_t *number = allocate(1, sizeof *number);
     *number = definitions->count;
@@ -78,10 +76,8 @@ void definitions_add(struct Definitions *definitions, char *name, xmlNodePtr nod
 }
 
 static void push(struct Definitions *definitions, size_t number) {
-  if (definitions->stack_count == definitions->stack_capacity) {
-    definitions->stack_capacity = 2 * definitions->stack_capacity + 16;
-    definitions->stack = reallocate(definitions->stack, definitions->stack_capacity, sizeof *definitions->stack);
-  }
+  definitions->stack =
+      make_room(definitions->stack, definitions->stack_count, &definitions->stack_capacity, sizeof *definitions->stack);
   definitions->stack[definitions->stack_count++] = number;
 }
 

@@ -22,6 +22,7 @@ enum {
   WARM_UP = 1,       /* of a trial, before it is judged */
   TRIAL_LIMIT = 8,   /* how long one goes on while its steps grow */
   LONGEST_WAIT = 16, /* of the series before their coefficients are looked at again */
+  LONG_RUN = 256,    /* of the series, after which Radau IIA needs to promise half as much */
   SHORT_STAY = 8,
   LONG_STAY = 256 /* of Radau IIA where fast motions come again and again: the first, the longest */
 };
@@ -44,7 +45,7 @@ struct Choice {
   double last_speed;       /* progress for work in the window before */
   double trial_work;
   double promised_step;             /* of Radau IIA, the first one */
-  double rate;                      /* stiffness_rate() at the last step of Radau IIA */
+  double rate;                      /* stiffness_rate() at the last step of a window of Radau IIA */
   double taylor_speed, taylor_rate; /* progress for work of the series when they were left, and the rate there */
 };
 
@@ -193,7 +194,7 @@ static bool series_are_slow(struct Instance *instance, struct Choice *choice, do
   double step = taylor->saved->reach * stiffness_promise(taylor, stages + 1, radau_tolerance(instance));
   if (choice->restarts > 0) step = fmin(step, progress / (double)choice->restarts);
   choice->promised_step = fmin(step, FIRST_GROWTH * taylor->saved->reach);
-  double windows = (double)choice->windows, hope = (1.2 + 3.0 / windows) / (1.0 + windows / LONG_STAY);
+  double windows = (double)choice->windows, hope = (1.2 + 3.0 / windows) / (1.0 + windows / LONG_RUN);
   return step * choice->work > hope * progress * work_of_radau(stages, ITERATIONS * stages, 1.0);
 }
 
@@ -273,7 +274,8 @@ static const char *make_step(struct Instance *instance, struct Auto *automatic, 
   choice->work += work_between(instance, choice, before);
   choice->steps++;
   if (choice->method == AUTO_TAYLOR) choice->crosses = ((const struct Taylor *)instance->solver_memory)->crosses;
-  else choice->rate = stiffness_rate(radau_jacobian(instance), automatic->state);
+  else if (choice->steps >= window[AUTO_RADAU])
+    choice->rate = stiffness_rate(radau_jacobian(instance), automatic->state);
   return problem;
 }
 

@@ -23,10 +23,7 @@ static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatri
   (void)unused1;
   (void)unused2;
   (void)unused3;
-  struct Point point = solver_point(instance, time, N_VGetArrayPointer(state));
-  instance->situation->statistics[STATISTIC_JACOBIANS]++;
-  instance->singular = lagrangian.jacobian(&point, bdf->jacobian);
-  if (instance->singular != 0) return 1;
+  if (!solver_jacobian(instance, time, N_VGetArrayPointer(state), bdf->jacobian)) return 1;
   bdf->fill(bdf, matrix);
   return 0;
 }

@@ -44,10 +44,8 @@ void radau_systems_place(struct RadauSystems *systems, double *memory) {
 }
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {
-  struct Point point = solver_point(instance, time, state);
-  instance->situation->statistics[STATISTIC_JACOBIANS]++;
-  instance->singular = lagrangian.jacobian(&point, systems->values);
-  return instance->singular == 0 && are_finite(systems->values, lagrangian.jacobian_pattern.count);
+  return solver_jacobian(instance, time, state, systems->values) &&
+         are_finite(systems->values, lagrangian.jacobian_pattern.count);
 }
 
 /* mu^2 - mu D - K */

@@ -1,0 +1,21 @@
+/* Memory for an FMU that its caller counts, to see that all of it is given back. */
+#ifndef COUNTED_MEMORY_H
+#define COUNTED_MEMORY_H
+
+#include <stdlib.h>
+
+static long blocks; /* allocated and not freed */
+
+/* Zeros; NULL where there is no memory. */
+static inline void *count_allocation(size_t count, size_t size) {
+  void *block = calloc(count, size);
+  if (block != NULL) blocks++;
+  return block;
+}
+
+static inline void count_free(void *block) {
+  if (block != NULL) blocks--;
+  free(block);
+}
+
+#endif
