@@ -26,12 +26,12 @@ class Wrong(Exception):
 def runtime():
     """Object files and libraries that every FMU is linked with."""
     cache = (BUILD / "CMakeCache.txt").read_text()
-    sundials = re.findall(r"^sundials_\w+:FILEPATH=(.*)$", cache, re.MULTILINE)
+    sundials = re.search(r"^sundials_in_use:INTERNAL=(.+)$", cache, re.MULTILINE)
     folder = BUILD / "CMakeFiles" / "interface.dir"
     # Objects of sources that are gone stay in a build folder.
     objects = sorted(path for path in folder.rglob("*.o") if (ROOT / path.relative_to(folder)).with_suffix("").exists())
     assert objects and sundials, f"{BUILD} is not built"
-    return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials, "-Wl,--end-group", "-lm"]
+    return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials[1].split(";"), "-Wl,--end-group", "-lm"]
 
 
 def run(words, what):
