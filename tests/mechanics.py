@@ -22,6 +22,7 @@ class System:
     parameters: list = field(default_factory=list)
     positions: dict = field(default_factory=dict)
     linearized_at: dict = None
+    constraints: list = field(default_factory=list)  # each 0 at all times, of q and time, or linear in v
 
     def __post_init__(self):
         self.Q = self.Q or [sp.Integer(0)] * len(self.q)
@@ -38,7 +39,18 @@ class System:
             )
         if self.linearized_at is not None:
             self._linearize()
+        if self.constraints:
+            self._add_constraints()
         self.arguments = [time, *self.q, *self.v, *self.inputs, *self.parameters]
+
+    def _add_constraints(self):
+        """mass becomes (M J^T; J 0) and terms get rows of what J a must be; evaluator() then returns more rows than q has."""
+        rates = [c if c.has(*self.v) else velocity(c, self.q, self.v) for c in map(sp.sympify, self.constraints)]
+        jacobian = sp.Matrix(len(rates), len(self.q), lambda i, j: sp.diff(rates[i], self.v[j]))
+        self.mass = sp.Matrix(sp.BlockMatrix([[self.mass, jacobian.T], [jacobian, sp.zeros(len(rates))]]))
+        for rate in rates:
+            terms = [-sp.diff(rate, time), *(-sp.diff(rate, qj) * vj for qj, vj in zip(self.q, self.v))]
+            self.terms.append(terms + [sp.Integer(0)] * (len(self.terms[0]) - len(terms)))
 
     def _linearize(self):
         """At an equilibrium M a = rhs becomes M0 a = d rhs / d(q, v, u) (q, v, u): the derivative of M meets a = 0."""
@@ -51,7 +63,7 @@ class System:
 
     def evaluator(self, module):
         """A function of the arguments that returns M by rows and the terms of the right side, one row an equation."""
-        n = len(self.q)
+        n = len(self.terms)
         flat = [*self.mass, *(term for terms in self.terms for term in terms)]
         compiled = sp.lambdify(self.arguments, flat, modules=module, cse=True)
 

@@ -67,7 +67,7 @@ def compile_system(system, folder):
 def pack(system, folder, library):
     """As users get it: packed, and unpacked by FMPy."""
     archive = folder / f"{system.name}.fmu"
-    words = ["cmake", "-D", f"FOLDER={folder / 'fmu'}", "-D", f"LIBRARY={library}", "-D", f"FMU={archive}", "-D", f"SOURCE={ROOT}",
+    words = ["cmake", "-D", f"FOLDER={folder / 'fmu'}", "-D", f"LIBRARY={library}", "-D", f"FMU={archive}", "-D", f"SOURCE={ROOT}", "-D", f"NAMES={BUILD / 'global_names'}",
              "-D", f"ICON={BUILD / 'bin' / 'icon'}", "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
     result = run(words, "pack.cmake")
     if result.returncode != 0:

@@ -40,7 +40,10 @@ class Derivation:
                 self.driven_power += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], time)
                 for i, qi in enumerate(q):
                     forces[i] += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], qi)
-        self.mechanics = Mechanics(q, v, energy, sp.sympify(potential), forces, inputs=inputs, parameters=parameters)
+        constraints = [sp.sympify(self.convert(c)) for c in system.constraints]
+        self.mechanics = Mechanics(
+            q, v, energy, sp.sympify(potential), forces, inputs=inputs, parameters=parameters, constraints=constraints
+        )
         for label, expression in system.outputs.items():
             self.results[label] = sp.sympify(self.convert(expression))
         self._add_energies(potential, v)

@@ -83,7 +83,7 @@ class Exact:
 
     def __init__(self, derivation):
         mechanics = derivation.mechanics
-        self.n, self.names = len(mechanics.q), list(derivation.results)
+        self.n, self.rows, self.names = len(mechanics.q), len(mechanics.terms), list(derivation.results)
         flat = [*mechanics.mass, *(sp.sympify(sum(terms)) for terms in mechanics.terms), *derivation.results.values()]
         terms = [term for row in mechanics.terms for term in row]
         self.arguments = [s.name for s in mechanics.arguments]
@@ -95,10 +95,10 @@ class Exact:
         )
 
     def _split(self, numbers):
-        """Accelerations and results."""
-        n = self.n
+        """Accelerations and results; constraints have rows of their own behind the coordinates'."""
+        n = self.rows
         mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
-        return solve(mass, numbers[n * n : n * n + n]), numbers[n * n + n :]
+        return solve(mass, numbers[n * n : n * n + n])[: self.n], numbers[n * n + n :]
 
     @or_nothing
     def values(self, at):
@@ -110,7 +110,7 @@ class Exact:
     @or_nothing
     def magnitudes(self, at):
         """Of the terms that cancel in the accelerations."""
-        n = self.n
+        n = self.rows
         with precision(DIGITS, 1):
             numbers = self.evaluate_terms(*[arb(at[name]) for name in self.arguments])
             mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
@@ -121,7 +121,7 @@ class Exact:
                 for row in rows
             ]
             columns = [solve(mass, [arb(i == j) for i in range(n)]) for j in range(n)]
-            return [sum(abs(float(columns[j][i])) * sizes[j] for j in range(n)) for i in range(n)]
+            return [sum(abs(float(columns[j][i])) * sizes[j] for j in range(n)) for i in range(self.n)]
 
     @or_nothing
     def along(self, at, direction):

@@ -1,5 +1,7 @@
 """The system that belongs to a seed and a number."""
 
+import math
+
 from .draw import Draw, cos, sin, smooth
 from .expressions import function, name
 from .families import FAMILIES, inputs
@@ -22,6 +24,7 @@ def generate(seed, number):
     actions(draw)
     forces = system.forces or system.cartesian_forces or system.dissipations
     system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # work is not linear in the state
+    follow(Draw(f"{seed}/{number}/constraints", system))
     return system
 
 
@@ -60,6 +63,29 @@ def extra(draw):
     q, _ = coordinate(draw)
     body(draw, x=q)
     draw.system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
+
+
+def follow(draw):
+    """Some systems get a mass, or two, that a constraint ties to another coordinate, by position or by velocity."""
+    system = draw.system
+    for _ in range(draw.choice([0, 0, 0, 0, 1, 2])):
+        if system.method == "exact" or system.work:
+            return
+        leader = draw.choice(system.coordinates)
+        q, rate, (a, b, w) = leader.start, leader.velocity_start, (draw.value(-1.5, 1.5) for _ in range(3))
+        slope, t = a * math.cos(q) + 2 * b * q, system.plan.start_time
+        if draw.chance(0.5):
+            moving = draw.choice([0.0, 0.1])
+            start = (a * math.sin(q) + b * q * q + moving * math.sin(w * t), slope * rate + moving * w * math.cos(w * t))
+            z, _ = coordinate(draw, *start)
+            leads = a * sin(name(leader.name)) + b * name(leader.name) ** 2
+            system.constraints.append(z - leads if moving == 0 else z - leads - moving * sin(w * name("time")))
+        else:
+            z, rate_of_z = coordinate(draw, rate=slope * rate)
+            leads = (a * cos(name(leader.name)) + 2 * b * name(leader.name)) * name(leader.velocity)
+            system.constraints.append(rate_of_z - leads)
+        body(draw, **{draw.choice("xyz"): z})
+        system.families.add("constraints")
 
 
 def linear(draw):

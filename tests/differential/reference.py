@@ -114,7 +114,7 @@ def compile_c(source, library, optimization):
 
 def right_side_in_c(derivation):
     mechanics, guards = derivation.mechanics, guards_of(derivation)
-    n = len(mechanics.q)
+    n, size = len(mechanics.q), len(mechanics.terms)
     system = derivation.system
     lines = [
         PRELUDE,
@@ -145,12 +145,13 @@ def right_side_in_c(derivation):
                             symbols=sp.numbered_symbols("c"), optimizations=None)  # fmt: skip
     lines += [f"real {symbol} = {printer.doprint(part)};" for symbol, part in parts]
     texts = [printer.doprint(result) for result in results]
-    lines.append(f"real m[] = {{{', '.join(texts[: n * n])}}}, x[] = {{{', '.join(texts[n * n : n * n + n])}}};")
-    lines.append(f"solve({n}, m, x);")
+    first = size * size + size
+    lines.append(f"real m[] = {{{', '.join(texts[: size * size])}}}, x[] = {{{', '.join(texts[size * size : first])}}};")
+    lines.append(f"solve({size}, m, x);")
     lines.append(f"for (int i = 0; i < {n}; i++) {{ d[i] = y[{n} + i]; d[{n} + i] = x[i]; }}")
     if system.work:
-        lines.append(f"d[{2 * n}] = {texts[n * n + n]};")
-    for i, (text, (_, scale)) in enumerate(zip(texts[n * n + n + len(power) :], guards)):
+        lines.append(f"d[{2 * n}] = {texts[first]};")
+    for i, (text, (_, scale)) in enumerate(zip(texts[first + len(power) :], guards)):
         lines.append(f"{{ real g = {text}; operand[{i}] = g; scale[{i}] = {scale}; }}")
     return "\n".join([*lines, "}", ""]), len(guards)
 

@@ -63,6 +63,7 @@ class System:
     dissipations: list = field(default_factory=list)
     forces: list = field(default_factory=list)  # (coordinate's name, expression)
     cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
+    constraints: list = field(default_factory=list)
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
     work: bool = False
@@ -101,6 +102,7 @@ class System:
         yield from (force for _, force in self.forces)
         for _, force in self.cartesian_forces:
             yield from force.values()
+        yield from self.constraints
         yield from self.definitions.values()
 
     def xml(self):
@@ -137,6 +139,8 @@ class System:
             add("force", expression, coordinate=coordinate)
         for body, force in self.cartesian_forces:
             add("force", on=body, **force)
+        for i, expression in enumerate(self.constraints, 1):
+            add("constraint", expression, name=f"c{i}")
         for name, expression in self.outputs.items():
             add("output", expression, name=name)
         if self.work:
