@@ -121,6 +121,18 @@ static void write_calculated(const struct Page *page) {
   write_rest(page->writer, calculated->count, shown, "parameters");
 }
 
+static void write_reactions(const struct Page *page) {
+  const struct VariableList *reactions = &page->model->reactions;
+  if (reactions->count == 0) return;
+  element(page->writer, "h2", "Forces of reaction");
+  for (size_t i = 0; i < page->summary->reaction_count; i++)
+    write_equation(page, reactions->items[i].name, page->summary->reactions[i]);
+  write_rest(page->writer, reactions->count, page->summary->reaction_count, "forces");
+  element(page->writer, "p",
+          "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
+          "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer.");
+}
+
 static void write_mechanics(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
@@ -132,6 +144,7 @@ static void write_mechanics(const struct Page *page) {
     free(left);
   }
   write_rest(writer, page->equations->count, summary->motion_count, "equations");
+  write_reactions(page);
   if (!page->model->has_forces) return;
   element(writer, "h2", "Power of the non-conservative forces");
   write_equation(page, "P", summary->power);

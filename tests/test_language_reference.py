@@ -48,6 +48,13 @@ def rocket(t):
     return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
 
 
+def rod_forces(t):
+    angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
+    tension = 2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1))
+    return {"tension": tension, "bearing": abs(tension), "px.force": tension * np.sin(angle),
+            "py.force": -tension * np.cos(angle), "stretch.force": tension}  # fmt: skip
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -67,6 +74,7 @@ MOTIONS = {
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),
+    "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
     "MassChain": (chain, 1e-6),

@@ -90,6 +90,17 @@ static void append_bodies(struct Interface *interface, const struct Model *model
   }
 }
 
+static void append_reactions(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  for (size_t i = 0; i < model->reactions.count; i++) {
+    const struct Variable *source = &model->reactions.items[i];
+    struct InterfaceVariable *variable =
+        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+    variable->unit = variable_unit(source);
+    variable->node = equations->reactions[i];
+  }
+}
+
 static void append_statistics(struct Interface *interface) {
   append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
   if (interface->method->evaluations != NULL)
@@ -107,6 +118,7 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
   for (size_t i = 0; i < equations->count; i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
   for (size_t i = 0; i < model->body_count; i++) {
     for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, equations->placements[i].position[axis], TIME);
@@ -190,6 +202,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_calculated(interface, model);
   if (n == 0) return interface;
   append_bodies(interface, model, equations);
+  append_reactions(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));

@@ -8,6 +8,7 @@
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/energies.h"
+#include "mechanics/reactions.h"
 #include "memory.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
@@ -43,8 +44,7 @@ static struct Motions motions_of(const struct Model *model) {
   return motions;
 }
 
-/* Directions in the space of all symbols: seeds of d/dt with accelerations, and without them. */
-static Node *time_seeds(const struct Model *model, bool with_accelerations) {
+Node *time_seeds(const struct Model *model, bool with_accelerations) {
   const struct Graph *graph = model->graph;
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[model->time].left] = ONE;
@@ -161,13 +161,15 @@ struct Equations *equations_create(const struct Model *model) {
                                   .right_side = allocate(n, sizeof(Node)),
                                   .residual = allocate(n, sizeof(Node)),
                                   .acceleration = allocate(n, sizeof(Node)),
+                                  .reactions = allocate(model->reactions.count, sizeof(Node)),
                                   .outputs = allocate(model->outputs.count, sizeof(Node)),
                                   .placements = allocate(model->body_count, sizeof(struct Placement))};
   return equations;
 }
 
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
-  for (size_t i = 0; i < model->outputs.count; i++) equations->outputs[i] = model->outputs.items[i].node;
+  for (size_t i = 0; i < model->outputs.count; i++)
+    equations->outputs[i] = with_reactions(model, equations->reactions, model->outputs.items[i].node);
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Body *body = &model->bodies[i];
     for (int axis = 0; axis < 3; axis++) equations->placements[i].position[axis] = body->position[axis].node;
@@ -188,6 +190,7 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
     derive_motion(model, equations, force);
     derive_energies(model, equations, force);
     solve_for_accelerations(model, equations);
+    reactions_derive(model, equations->reactions);
     copy_outputs(model, equations);
   }
   if (graph_limit(graph) != NULL)
@@ -212,6 +215,11 @@ static bool are_finite(const struct Graph *graph, const Node *nodes, size_t coun
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics) {
   size_t wrong = 0;
+  for (size_t i = 0; i < model->reactions.count; i++)
+    if (!are_finite(model->graph, &equations->reactions[i], 1))
+      report_error(diagnostics, model->reactions.items[i].line,
+                   "%s has a coefficient that is not finite; expected positions that are smooth there",
+                   model->reactions.items[i].name);
   if (are_finite(model->graph, equations->residual, equations->count)) return;
   while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;
   report_error(diagnostics, model->velocities.items[wrong].line,
@@ -227,6 +235,7 @@ void equations_free(struct Equations *equations) {
   free(equations->residual);
   free(equations->acceleration);
   free(equations->outputs);
+  free(equations->reactions);
   free(equations->placements);
   free(equations);
 }

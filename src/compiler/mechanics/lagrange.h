@@ -29,11 +29,15 @@ struct Equations {
   Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
   Node kinetic, potential, total; /* energies, see energies.h */
   Node *outputs;                  /* of the model */
+  Node *reactions;                /* of the model; they may hold the acceleration symbols */
   struct Placement *placements;   /* of its bodies */
 };
 
 /* Derives the equations of motion; NULL after reporting errors (a coordinate without inertia, ...). */
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics);
+
+/* The direction of d/dt in the space of all symbols, with the accelerations or with 0 for them. Free with free(). */
+Node *time_seeds(const struct Model *model, bool with_accelerations);
 
 /* Equations of a model without anything derived yet. */
 struct Equations *equations_create(const struct Model *model);

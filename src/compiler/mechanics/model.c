@@ -23,10 +23,13 @@ void model_free(struct Model *model) {
   free_variables(&model->outputs);
   free_variables(&model->calculated);
   free_variables(&model->definitions);
+  free_variables(&model->displacements);
+  free_variables(&model->reactions);
   for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
   free(model->bodies);
   free(model->accelerations);
   free(model->forces);
+  free(model->point_forces);
   free(model->point.values);
   free(model->point.given);
   graph_free(model->graph);

@@ -25,8 +25,14 @@ struct Body {
   char *name;
   struct Quantity mass, inertia;
   struct Quantity position[3], angle;
+  Node displaced[4]; /* x, y, z and angle as functions of displacements too */
   bool has_position[3], has_angle;
   long line;
+};
+
+/* A Cartesian force along a component of a position, which is a function of displacements too. */
+struct PointForce {
+  Node position, force;
 };
 
 /* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
@@ -41,6 +47,8 @@ struct Model {
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
+  struct VariableList displacements;
+  struct VariableList reactions; /* forces along the displacements */
   struct Body *bodies;
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
@@ -51,6 +59,10 @@ struct Model {
   bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
   struct Quantity potential, dissipation; /* J, W */
   struct Quantity *forces;                /* generalized force along each coordinate */
+  /* The sums of the <kinetic> terms, potentials and dissipations as functions of displacements too. */
+  struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
+  struct PointForce *point_forces;
+  size_t point_force_count;
   struct Quantity driven_power;           /* W: of Cartesian forces along the motion that time alone gives */
   bool has_forces;                        /* some force or dissipation was given */
   long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */

@@ -13,8 +13,9 @@ struct Summary {
   Node kinetic, potential, power;    /* as in struct Equations; potential is U of L where nothing is linearised */
   bool is_autonomous;                /* L does not depend on time explicitly */
   Node *inertial, *right_side;       /* M a = right side, of the first equations */
+  Node *reactions;                   /* of the first forces of reaction */
   Node *outputs;                     /* of the first outputs */
-  size_t motion_count, output_count; /* how many are shown */
+  size_t motion_count, reaction_count, output_count; /* how many are shown */
 };
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations);

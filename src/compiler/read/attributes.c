@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/differentiate.h"
 #include "algebra/other_units.h"
 #include "memory.h"
 
@@ -41,6 +42,17 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   free(what);
   free(text);
   return true;
+}
+
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node) {
+  struct Graph *graph = reader->model->graph;
+  if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
+  graph->not_finite = false;
+  substitute(graph, &node, 1, reader->undisplaced, &node);
+  if (graph->not_finite)
+    report_error(reader->diagnostics, line,
+                 "%s has no finite value where the displacements are 0; expected one, as they always are", what);
+  return node;
 }
 
 /* The element's text; a comment separates what stands before and after it. */

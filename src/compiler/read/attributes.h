@@ -27,6 +27,7 @@ struct Reader {
   bool has_solver, has_experiment;
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
+  Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place. */
@@ -34,10 +35,10 @@ struct Reader {
 
 enum {
   IN_MASS = KIND(PARAMETER),
-  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME),
+  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
   IN_FORCE = IN_ENERGY | KIND(INPUT),
-  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
 
 /* NULL where missing; to be freed with free(). */
@@ -52,6 +53,9 @@ char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 /* An expression in an attribute; true where present. kinds as in struct Place. */
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
                           struct Quantity *value);
+
+/* The node where nothing is displaced; reports where it has no finite value there. */
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node);
 
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);

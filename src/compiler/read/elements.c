@@ -125,6 +125,21 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   append_variable(&model->velocities, velocity);
 }
 
+/* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
+static void read_displacement(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable displacement = common_attributes(reader, node);
+  int index = 2 * (int)model->displacements.count;
+  displacement.node = scope_symbol(reader->scope, DISPLACEMENT, index, displacement.name, displacement.dimension,
+                                   displacement.line);
+  char *name = format_text("der(%s)", displacement.name);
+  Node rate = scope_symbol(reader->scope, DISPLACEMENT, index + 1, name,
+                           dimension_multiply(displacement.dimension, unit_of("s"), -1.0), displacement.line);
+  scope_set_time_derivative(reader->scope, displacement.node, rate);
+  append_variable(&model->displacements, displacement);
+  free(name);
+}
+
 static void add_term(struct Model *model, struct Quantity *sum, Node term) {
   sum->node = add(model->graph, sum->node, term);
 }
@@ -156,12 +171,14 @@ static void append_body(struct Reader *reader, struct Body body) {
 }
 
 /* A component that definitions.h has read; true where it is given. */
-static bool take_component(const struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
-                           struct Quantity *value) {
+static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
+                           struct Quantity *value, Node *displaced) {
   if (!xmlHasProp(node, (const xmlChar *)component)) return false;
   char *name = format_text("%s.%s", body->name, component);
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
+  *displaced = value->node;
+  value->node = without_displacements(reader, body->line, name, value->node);
   free(name);
   return true;
 }
@@ -186,6 +203,9 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
                  "it has the velocity w, as for thrust",
                  what, what, symbol, rate, symbol, rate, symbol);
+  else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
+    report_error(reader->diagnostics, line, "the %s cannot depend on displacements; expected them in positions and angles",
+                 what);
 }
 
 static void read_body(struct Reader *reader, xmlNodePtr node) {
@@ -201,8 +221,8 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
-    body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis]);
-  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle);
+    body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
+  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
   if (body.has_angle) {
     expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
     require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
@@ -216,20 +236,23 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   append_body(reader, body);
 }
 
-/* Adds the element's expression to a sum and returns it. */
-static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what, unsigned kinds,
-                        const char *unit) {
+/* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
+                        const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
-  add_term(reader->model, sum, term.node);
-  return term.node;
+  add_term(reader->model, displaced, term.node);
+  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
+  add_term(reader->model, sum, undisplaced);
+  return undisplaced;
 }
 
 static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   bool driven;
-  Node term = read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
-  add_term(model, &model->explicit_kinetic, term);
+  Node term = read_energy(reader, node, &model->displaced_kinetic, &model->explicit_kinetic, "the kinetic energy",
+                          IN_ENERGY, "J");
+  add_term(model, &model->kinetic, term);
   add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
   model->driven |= driven;
 }
@@ -283,7 +306,8 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
   require_unit(reader, xmlGetLineNo(node), "the force", force,
                dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces[index], force.node);
+  add_term(model, &model->forces[index],
+           without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
 /* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
@@ -296,6 +320,12 @@ static void add_force(struct Model *model, Node position, Node force) {
     add_term(model, sum, multiply(graph, force, levers.values[i]));
   }
   gradient_free(&levers);
+}
+
+static void append_point_force(struct Model *model, Node position, Node force) {
+  model->point_forces =
+      reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
+  model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
 }
 
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -316,7 +346,9 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
       report_error(reader->diagnostics, xmlGetLineNo(node),
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);
+    force.node = without_displacements(reader, xmlGetLineNo(node), axes[axis], force.node);
     add_force(model, body->position[axis].node, force.node);
+    append_point_force(model, body->displaced[axis], force.node);
   }
 }
 
@@ -349,11 +381,11 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   char *what = format_text("the output '%s'", output.name);
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
   require_unit(reader, output.line, what, value, output.dimension);
-  free(what);
   if (!output.dimension.known) output.dimension = value.dimension;
-  output.node = value.node;
+  output.node = value.node = without_displacements(reader, output.line, what, value.node);
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
+  free(what);
   append_variable(&reader->model->outputs, output);
 }
 
@@ -398,6 +430,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
   else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
   else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
@@ -405,7 +438,8 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
 
 static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  Node dissipation = read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+  Node dissipation =
+      read_energy(reader, node, &model->displaced_dissipation, &model->dissipation, "the dissipation", IN_FORCE, "W");
   if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
@@ -419,7 +453,7 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   struct Model *model = reader->model;
   if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
   else if (strcmp(element, "potential") == 0)
-    read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
+    read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
   else if (strcmp(element, "force") == 0) read_force(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);

@@ -133,6 +133,8 @@ const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   case INPUT:
     return "; expected it in a <force>, or what it moves as a <coordinate> that a stiff spring and damper draw there";
   case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
+  case DISPLACEMENT: return "; expected it in positions, angles, energies and forces";
+  case REACTION: return "; expected it in an <output>";
   case ACCELERATION: return "; expected them in an <output> alone: inertia belongs in masses and <kinetic>";
   default: return "";
   }

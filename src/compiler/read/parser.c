@@ -17,6 +17,7 @@ enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
     [VELOCITY] = "velocities",  [INPUT] = "inputs", [ACCELERATION] = "accelerations",
+    [DISPLACEMENT] = "displacements", [REACTION] = "forces of reaction",
 };
 
 /* What names the argument of der(...) in messages begins so. */
@@ -206,10 +207,10 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
-/* Inputs and accelerations have no derivatives that a system knows. */
+/* Inputs, accelerations and forces of reaction have no derivatives that a system knows. */
 static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Place place = parser->place;
-  parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION));
+  parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION) | (1u << REACTION));
   char *what = format_text("%s%s", derived, place.what);
   parser->place.what = what;
   struct Quantity value = parse_sum(parser);

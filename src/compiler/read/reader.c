@@ -9,6 +9,7 @@
 #include "read/definitions.h"
 #include "read/elements.h"
 #include "read/linearization_reader.h"
+#include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
 #include "read/xml.h"
@@ -112,6 +113,25 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
   }
 }
 
+/* The name and unit of a force that does work along a variable. */
+static void append_reaction(struct Model *model, struct Scope *scope, const struct Variable *along, const char *what) {
+  struct Variable force = {.name = format_text("%s.force", along->name),
+                           .description = format_text("%s %s", what, along->name),
+                           .dimension = dimension_multiply(unit_of("J"), along->dimension, -1.0),
+                           .minimum = NAN,
+                           .maximum = NAN,
+                           .nominal = NAN,
+                           .line = along->line};
+  if (!along->dimension.known) force.dimension = dimension_unknown;
+  force.node = scope_symbol(scope, REACTION, (int)model->reactions.count, force.name, force.dimension, force.line);
+  append_variable(&model->reactions, force);
+}
+
+static void append_reactions(struct Model *model, struct Scope *scope) {
+  for (size_t i = 0; i < model->displacements.count; i++)
+    append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
+}
+
 static void check_definitions_used(struct Reader *reader) {
   for (size_t i = 0; i < reader->options->definition_count; i++)
     if (!reader->definition_used[i])
@@ -151,6 +171,8 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   check_repetitions(reader, root);
   check_definitions_used(reader);
   relate_to_time(reader->model, reader->scope);
+  append_reactions(reader->model, reader->scope);
+  reader->undisplaced = undisplaced_symbols(reader->model->graph);
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
@@ -186,6 +208,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     read_system(&reader, root);
     free(reader.definition_used);
     free(reader.dissipations);
+    free(reader.undisplaced);
     names_free(reader.bodies);
     definitions_free(reader.definitions);
     (*scope)->definitions = NULL;

@@ -103,7 +103,7 @@ Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const ch
   scope->time_derivatives =
       reallocate(scope->time_derivatives, scope->graph->symbol_count, sizeof *scope->time_derivatives);
   scope->time_derivatives[scope->graph->symbol_count - 1] = ZERO;
-  if (kind <= INPUT && kind != ACCELERATION)
+  if (kind < SEED_PARAMETER && kind != ACCELERATION)
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, line);
   return node;
 }

@@ -1,0 +1,98 @@
+"""
+Systems of the tests with displacements and driven coordinates, typed once more in SymPy, where each of these is a genuine
+coordinate that a constraint with a Lagrange multiplier holds.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import sympy as sp
+from sympy import cos, sin, symbols
+
+from mechanics import System, kinetic, time, velocity
+
+
+@dataclass
+class Held:
+    """
+    A system whose coordinates `held` (by index) move with the accelerations given, those of displacements with 0, which
+    stand at 0 themselves. forces: the names of their multipliers, and the sign of each against M a = Q + ... - J^T F.
+    """
+
+    system: System
+    held: dict
+    forces: dict
+    outputs: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        values = [*self.held.values()]
+        self.evaluate = self.system.evaluator("numpy")
+        self.given = sp.lambdify(self.system.arguments, [sp.sympify(value) for value in values], modules="numpy")
+
+    def solve(self, *arguments):
+        """Accelerations, and the multipliers F by name, from [[M, J^T], [J, 0]] [a, F] = [Q + ..., given]."""
+        mass, terms = self.evaluate(*arguments)
+        n, held = len(mass), list(self.held)
+        matrix, right = np.zeros((n + len(held), n + len(held))), np.zeros(n + len(held))
+        matrix[:n, :n] = mass
+        right[:n] = [sum(row) for row in terms]
+        for k, (i, given) in enumerate(zip(held, self.given(*arguments))):
+            matrix[i, n + k] = matrix[n + k, i] = 1.0
+            right[n + k] = given
+        solution = np.linalg.solve(matrix, right)
+        names = zip(self.forces.items(), solution[n:])
+        return solution[:n], {name: sign * value for (name, sign), value in names}
+
+
+m, l, g, b, k, J, F, tau, u = symbols("m l g b k J F tau u")
+
+
+def held(q, v, particles, potential, forces, parameters, inputs, held_ones, names, rotations=(), dissipation=0, further=0):
+    """particles: (mass, position); rotations: (inertia, angle); forces: (F, position) beside those of the dissipation."""
+    T = kinetic(particles, q, v) + kinetic([(inertia, (angle,)) for inertia, angle in rotations], q, v) + further
+    Q = [sum(f * sp.diff(x, qi) for f, x in forces) - sp.diff(dissipation, vi) for qi, vi in zip(q, v)]
+    return Held(System(q, v, T, sp.sympify(potential), Q, inputs, parameters), held_ones, names)
+
+
+def bearing():
+    """A rod with an inertia on a damped hinge, with a force at its end and a torque; its pivot and its angle are displaced."""
+    theta, stretch, px, py, turn, omega, vs, vpx, vpy, vt = symbols("theta stretch px py turn omega vs vpx vpy vt")
+    q, v = [theta, stretch, px, py, turn], [omega, vs, vpx, vpy, vt]
+    angle = theta + turn
+    bob = (px + (l + stretch) * sin(angle), py - (l + stretch) * cos(angle))
+    drag = b * (velocity(bob[0], q, v) ** 2 + velocity(bob[1], q, v) ** 2) / 2
+    return held(
+        q, v, [(m, bob)], m * g * bob[1], [(F, bob[0]), (-2 * F, bob[1]), (tau, theta)], [m, l, g, b, J], [F, tau],
+        {1: 0, 2: 0, 3: 0, 4: 0}, {"stretch.force": 1, "px.force": 1, "py.force": 1, "turn.force": 1},
+        rotations=[(J, angle)], dissipation=drag,
+    )  # fmt: skip
+
+
+def chain(count=3):
+    """Rods whose lengths are displaced, on a pivot that moves with time; the mass matrix is factored at run time."""
+    names = ("theta", "omega", "stretch", "rate")
+    theta, omega, stretch, rate = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in names)
+    q, v = [*theta, *stretch], [*omega, *rate]
+    x, y, bobs = sin(2 * time) / 10, sp.Integer(0), []
+    for i in range(count):
+        x, y = x + (l + stretch[i]) * sin(theta[i]), y - (l + stretch[i]) * cos(theta[i])
+        bobs.append((x, y))
+    forces = {f"stretch[{i + 1}].force": 1 for i in range(count)}
+    return held(
+        q, v, [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [(F, bobs[-1][0])], [m, l, g], [F],
+        {count + i: 0 for i in range(count)}, forces,
+    )  # fmt: skip
+
+
+def charged():
+    """A bead on a turning wire in a magnetic field, with an energy of its own; the wire is displaced across."""
+    s, d, v, vd = symbols("s d v vd")
+    q, rates = [s, d], [v, vd]
+    x, y = s * cos(u) - d * sin(u), s * sin(u) + d * cos(u)
+    vx, vy = velocity(x, q, rates), velocity(y, q, rates)
+    potential = -b * (x * vy - y * vx) / 2 + k * (s - l + d / 3) ** 2 / 2
+    further = J * (vx + 2 * vy) ** 2 / 2
+    return held(q, rates, [(m, (x, y))], potential, [], [m, l, b, k, J, u], [], {1: 0}, {"d.force": 1}, further=further)
+
+
+CASES = {"DisplacedBearing": bearing, "DisplacedChain": chain, "DisplacedWire": charged}
