@@ -37,7 +37,8 @@ void warn_outside_domains(const struct Requirements *requirements, const struct 
     double value = values[requirement->argument];
     bool unknown = graph_depends_on(graph, requirement->argument, ACCELERATION) ||
                    graph_depends_on(graph, requirement->argument, REACTION);
-    if (unknown || isnan(value) || domain_contains(requirement->operation, value) || told[requirement->operation] == requirement->line)
+    if (unknown || isnan(value) || domain_contains(requirement->operation, value) ||
+        told[requirement->operation] == requirement->line)
       continue;
     told[requirement->operation] = requirement->line;
     if (requirement->operation == POWER)

@@ -113,8 +113,7 @@ Node graph_constant(struct Graph *graph, double value) {
 Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name) {
   size_t number = graph->symbol_count++;
   graph->symbols = reallocate(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
-  Node node =
-      intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = 1u << kind});
+  Node node = intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = 1u << kind});
   graph->symbols[number] = (struct Symbol){.kind = kind, .index = index, .name = copy_text(name), .node = node};
   return node;
 }

@@ -221,8 +221,7 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->right_side[i] = linear->acceleration[i];
     linear->residual[i] = subtract(graph, model->accelerations[i], linear->acceleration[i]);
   }
-  for (size_t i = 0; i < model->reactions.count; i++)
-    linear->reactions[i] = expand(expansion, equations->reactions[i]);
+  for (size_t i = 0; i < model->reactions.count; i++) linear->reactions[i] = expand(expansion, equations->reactions[i]);
   for (size_t i = 0; i < model->outputs.count; i++) linear->outputs[i] = expand(expansion, equations->outputs[i]);
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Placement *from = &equations->placements[i];

@@ -63,9 +63,9 @@ struct Model {
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
   struct PointForce *point_forces;
   size_t point_force_count;
-  struct Quantity driven_power;           /* W: of Cartesian forces along the motion that time alone gives */
-  bool has_forces;                        /* some force or dissipation was given */
-  long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
+  struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
+  bool has_forces;              /* some force or dissipation was given */
+  long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
   struct LinearizationPoint point;         /* where linearized */
   const struct Method *method;             /* NULL for the default */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "algebra/differentiate.h"
+#include "algebra/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/lagrange.h"
 #include "memory.h"
@@ -93,6 +94,7 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   Node *force = forces_along(model, DISPLACEMENT, 2 * count), *undisplaced = undisplaced_symbols(graph);
   for (size_t i = 0; i < count; i++) reactions[i] = negate(graph, force[2 * i]);
   substitute(graph, reactions, count, undisplaced, reactions);
+  for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
   free(force);
   free(undisplaced);
 }

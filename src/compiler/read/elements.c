@@ -130,8 +130,8 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable displacement = common_attributes(reader, node);
   int index = 2 * (int)model->displacements.count;
-  displacement.node = scope_symbol(reader->scope, DISPLACEMENT, index, displacement.name, displacement.dimension,
-                                   displacement.line);
+  displacement.node =
+      scope_symbol(reader->scope, DISPLACEMENT, index, displacement.name, displacement.dimension, displacement.line);
   char *name = format_text("der(%s)", displacement.name);
   Node rate = scope_symbol(reader->scope, DISPLACEMENT, index + 1, name,
                            dimension_multiply(displacement.dimension, unit_of("s"), -1.0), displacement.line);
@@ -204,8 +204,8 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "it has the velocity w, as for thrust",
                  what, what, symbol, rate, symbol, rate, symbol);
   else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
-    report_error(reader->diagnostics, line, "the %s cannot depend on displacements; expected them in positions and angles",
-                 what);
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on displacements; expected them in positions and angles", what);
 }
 
 static void read_body(struct Reader *reader, xmlNodePtr node) {
@@ -221,7 +221,8 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
-    body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
+    body.has_position[axis] =
+        take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
   body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
   if (body.has_angle) {
     expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
@@ -306,8 +307,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
   require_unit(reader, xmlGetLineNo(node), "the force", force,
                dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces[index],
-           without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
+  add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
 /* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
@@ -323,8 +323,7 @@ static void add_force(struct Model *model, Node position, Node force) {
 }
 
 static void append_point_force(struct Model *model, Node position, Node force) {
-  model->point_forces =
-      reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
+  model->point_forces = reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
   model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
 }
 

@@ -15,9 +15,14 @@
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
-    [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
-    [VELOCITY] = "velocities",  [INPUT] = "inputs", [ACCELERATION] = "accelerations",
-    [DISPLACEMENT] = "displacements", [REACTION] = "forces of reaction",
+    [PARAMETER] = "parameters",
+    [TIME] = "time",
+    [COORDINATE] = "coordinates",
+    [VELOCITY] = "velocities",
+    [INPUT] = "inputs",
+    [ACCELERATION] = "accelerations",
+    [DISPLACEMENT] = "displacements",
+    [REACTION] = "forces of reaction",
 };
 
 /* What names the argument of der(...) in messages begins so. */
