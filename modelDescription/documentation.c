@@ -130,7 +130,8 @@ static void write_reactions(const struct Page *page) {
   write_rest(page->writer, reactions->count, page->summary->reaction_count, "forces");
   element(page->writer, "p",
           "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
-          "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer.");
+          "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer. The "
+          "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
 }
 
 static void write_mechanics(const struct Page *page) {
@@ -150,7 +151,8 @@ static void write_mechanics(const struct Page *page) {
   write_equation(page, "P", summary->power);
   element(writer, "p",
           "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
-          "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on.");
+          "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on; also of what drives "
+          "coordinates.");
 }
 
 static void write_outputs(const struct Page *page) {

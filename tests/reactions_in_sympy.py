@@ -95,4 +95,49 @@ def charged():
     return held(q, rates, [(m, (x, y))], potential, [], [m, l, b, k, J, u], [], {1: 0}, {"d.force": 1}, further=further)
 
 
-CASES = {"DisplacedBearing": bearing, "DisplacedChain": chain, "DisplacedWire": charged}
+a, M = symbols("a M")
+
+
+def crane():
+    """A load on a crane whose trolley an input drives; the rope's length is displaced, and something pushes the trolley."""
+    x, theta, stretch, v, omega, vs = symbols("x theta stretch v omega vs")
+    q, rates = [x, theta, stretch], [v, omega, vs]
+    load = (x + (l + stretch) * sin(theta), -(l + stretch) * cos(theta))
+    damping = b * v**2 / 2 + b * omega**2 / 2
+    return held(
+        q, rates, [(M, (x,)), (m, load)], m * g * load[1] + k * x**2 / 2, [(F, x)], [M, m, l, g, b, k], [F, u],
+        {0: u, 2: 0}, {"x.force": -1, "stretch.force": 1}, dissipation=damping,
+    )  # fmt: skip
+
+
+def robot(count=4):
+    """Rods in a chain, of which the second is driven by time and the last by an input, between those that move freely."""
+    theta, omega = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in ("theta", "omega"))
+    x, y, bobs = sp.Integer(0), sp.Integer(0), []
+    for i in range(count):
+        x, y = x + l * sin(theta[i]), y - l * cos(theta[i])
+        bobs.append((x, y))
+    return held(
+        theta, omega, [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [], [m, l, g, a], [u],
+        {1: a * cos(3 * time), 3: 2 * u}, {"theta[2].force": -1, "theta[4].force": -1},
+    )  # fmt: skip
+
+
+def arm():
+    """Both joints driven: what is left are the torques."""
+    alpha, beta, va, vb = symbols("alpha beta va vb")
+    q, v = [alpha, beta], [va, vb]
+    elbow = (l * cos(alpha), l * sin(alpha))
+    hand = (elbow[0] + 2 * l * cos(alpha + beta), elbow[1] + 2 * l * sin(alpha + beta))
+    weight = m * g * (elbow[1] + 3 * hand[1])
+    return held(q, v, [(m, elbow), (3 * m, hand)], weight, [], [m, l, g], [u], {0: u, 1: 0}, {"alpha.force": -1, "beta.force": -1})
+
+
+CASES = {
+    "DisplacedBearing": bearing,
+    "DisplacedChain": chain,
+    "DisplacedWire": charged,
+    "DrivenCrane": crane,
+    "DrivenRobot": robot,
+    "DrivenArm": arm,
+}

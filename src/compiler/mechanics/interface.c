@@ -138,12 +138,12 @@ static const char *total_energy_description(const struct Model *model, const str
 }
 
 /* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
-static bool may_be_stiff(const struct Model *model) {
+static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   bool may = graph_depends_on(graph, model->dissipation.node, VELOCITY);
   for (size_t i = 0; i < model->coordinates.count; i++)
     may |= graph_depends_on(graph, model->forces[i].node, VELOCITY) ||
-           graph_depends_on(graph, model->forces[i].node, INPUT);
+           graph_depends_on(graph, equations->residual[i], INPUT);
   return may;
 }
 
@@ -152,7 +152,7 @@ static const struct Method *method_of(const struct Model *model, const struct Eq
   if (model->method != NULL) return model->method;
   if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
-  return method_named(kink != NULL ? "erk" : may_be_stiff(model) ? "auto" : "taylor");
+  return method_named(kink != NULL ? "erk" : may_be_stiff(model, equations) ? "auto" : "taylor");
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */

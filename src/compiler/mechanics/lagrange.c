@@ -49,8 +49,10 @@ Node *time_seeds(const struct Model *model, bool with_accelerations) {
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[model->time].left] = ONE;
   for (size_t i = 0; i < model->coordinates.count; i++) {
+    Node *rate = &seeds[graph->vertices[model->velocities.items[i].node].left];
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-    if (with_accelerations) seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
+    if (model->drives[i].given) *rate = model->drives[i].acceleration;
+    else if (with_accelerations) *rate = model->accelerations[i];
   }
   return seeds;
 }
@@ -81,8 +83,8 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
  * left: the inertial forces without and with accelerations, which are replaced, block by block, where that makes them
  * shorter. Forces and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
  */
-static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *inertia, const Node *accelerations,
-                                    Node *left[2]) {
+static void shorten_inertial_forces(const struct Model *model, const struct Inertia *inertia, Node *left[2]) {
+  struct Graph *graph = model->graph;
   size_t n = inertia->count;
   Node *other = allocate(n, sizeof *other), *part = allocate(n, sizeof *part), *whole = allocate(n, sizeof *whole);
   for (size_t b = 0; b < inertia->block_count; b++) {
@@ -91,8 +93,9 @@ static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *i
     move_block(&inertia->blocks[b], left[0], part, true);
   }
   for (size_t i = 0; i < n; i++) other[i] = left[0][i];
-  inertia_add_product(graph, inertia, accelerations, other);
+  inertia_add_product(graph, inertia, model->accelerations, other);
   for (size_t b = 0; b < inertia->block_count; b++) {
+    if (model->drives[inertia->blocks[b].coordinates[0]].given) continue; /* its M is that of the drive, 1 */
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);
@@ -101,6 +104,16 @@ static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *i
   free(other);
   free(part);
   free(whole);
+}
+
+/* The equation of a driven coordinate tells the force of its drive; what moves it is another one. */
+static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
+  struct Graph *graph = model->graph;
+  const struct Drive *drive = &model->drives[i];
+  shorten(graph, 1, &equations->residual[i]);
+  equations->reactions[drive->reaction] = equations->residual[i];
+  equations->right_side[i] = drive->acceleration;
+  equations->residual[i] = subtract(graph, model->accelerations[i], drive->acceleration);
 }
 
 /* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
@@ -121,11 +134,12 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
     free(seeds);
   }
-  shorten_inertial_forces(graph, equations->inertia, model->accelerations, left);
+  shorten_inertial_forces(model, equations->inertia, left);
   for (size_t i = 0; i < n; i++) {
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = subtract(graph, right, left[0][i]);
     equations->residual[i] = subtract(graph, left[1][i], right);
+    if (model->drives[i].given) give_motion(model, equations, i);
   }
   free(motions.position);
   free(motions.inertia);
@@ -144,11 +158,30 @@ static void solve_for_accelerations(const struct Model *model, struct Equations 
     if (is_looped(equations, i)) equations->acceleration[i] = model->accelerations[i];
 }
 
+/* What is solved for symbolically stands for its symbol. */
+static Node with_accelerations(const struct Model *model, const struct Equations *equations, Node node) {
+  struct Graph *graph = model->graph;
+  if (!graph_depends_on(graph, node, ACCELERATION)) return node;
+  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < equations->count; i++)
+    symbols[graph->vertices[model->accelerations[i]].left] = equations->acceleration[i];
+  substitute(graph, &node, 1, symbols, &node);
+  free(symbols);
+  return node;
+}
+
 static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
-  for (size_t i = 0; i < equations->count; i++)
-    equations->power = add(graph, equations->power, multiply(graph, force[i], model->velocities.items[i].node));
-  equations->power = add(graph, equations->power, model->driven_power.node);
+  Node power = ZERO;
+  for (size_t i = 0; i < equations->count; i++) {
+    const struct Drive *drive = &model->drives[i];
+    Node whole = drive->given ? add(graph, force[i], equations->reactions[drive->reaction]) : force[i];
+    power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
+  }
+  equations->stated_power = add(graph, power, model->driven_power.node);
+  equations->power = equations->stated_power;
+  if (equations->has_work) equations->power = with_accelerations(model, equations, equations->power);
   equations->kinetic = model->kinetic_energy.node;
   equations->potential = stored_energy(model, model->potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
@@ -188,8 +221,8 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   equations->inertia = inertia_derive(model, momentum, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
-    derive_energies(model, equations, force);
     solve_for_accelerations(model, equations);
+    derive_energies(model, equations, force);
     reactions_derive(model, equations->reactions);
     copy_outputs(model, equations);
   }

@@ -228,7 +228,7 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
     linear->placements[i].angle = expand(expansion, from->angle);
   }
-  linear->power = equations->power;
+  linear->power = linear->stated_power = equations->power;
   linear->kinetic = expand_twice(expansion, equations->kinetic);
   linear->potential = expand_twice(expansion, equations->potential);
   linear->total = add(graph, linear->kinetic, linear->potential);

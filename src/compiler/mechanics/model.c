@@ -29,6 +29,7 @@ void model_free(struct Model *model) {
   free(model->bodies);
   free(model->accelerations);
   free(model->forces);
+  free(model->drives);
   free(model->point_forces);
   free(model->point.values);
   free(model->point.given);

@@ -35,6 +35,13 @@ struct PointForce {
   Node position, force;
 };
 
+/* How a coordinate moves that is driven: in a given way. */
+struct Drive {
+  bool given;        /* false of a coordinate that moves by its equation */
+  Node acceleration; /* a function of inputs, parameters and time */
+  size_t reaction;   /* the place of the drive's force among the reactions */
+};
+
 /* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
 struct LinearizationPoint {
   Node *values;
@@ -48,7 +55,9 @@ struct Model {
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
   struct VariableList displacements;
-  struct VariableList reactions; /* forces along the displacements */
+  struct VariableList reactions; /* forces along the displacements, then of the drives */
+  struct Drive *drives;          /* one a coordinate */
+  size_t drive_count;            /* of those that are given */
   struct Body *bodies;
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
@@ -64,7 +73,7 @@ struct Model {
   struct PointForce *point_forces;
   size_t point_force_count;
   struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
-  bool has_forces;              /* some force or dissipation was given */
+  bool has_forces;              /* some force, dissipation or drive was given */
   long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
   struct LinearizationPoint point;         /* where linearized */

@@ -12,8 +12,8 @@
 #include "mechanics/model.h"
 
 /*
- * The forces of model->reactions with the acceleration symbols. Along a displacement it is -R, what the system pushes
- * with: the tension of a rod for a displacement that makes it longer.
+ * The forces along the displacements, the first of model->reactions, with the acceleration symbols: -R, what the system
+ * pushes with, as the tension of a rod for a displacement that makes it longer.
  */
 void reactions_derive(const struct Model *model, Node *reactions);
 

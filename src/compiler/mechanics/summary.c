@@ -70,7 +70,7 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
       .lagrangian_kinetic = readable(graph, &names, model->kinetic.node),
       .kinetic = readable(graph, &names, equations->kinetic),
       .potential = readable(graph, &names, model->linearized ? equations->potential : model->potential.node),
-      .power = readable(graph, &names, equations->power),
+      .power = readable(graph, &names, equations->stated_power),
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = at_most(equations->count, SHOWN_LIMIT),
       .reaction_count = at_most(model->reactions.count, SHOWN_LIMIT),

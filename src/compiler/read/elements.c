@@ -123,6 +123,10 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
+  model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
+  model->drives[index] = (struct Drive){.given = xmlHasProp(node, (const xmlChar *)"acceleration") != NULL};
+  model->drive_count += model->drives[index].given;
+  model->has_forces |= model->drives[index].given;
 }
 
 /* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
@@ -310,6 +314,22 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
+/* The acceleration of a driven coordinate. */
+static void read_drive(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Quantity acceleration = {.node = ZERO};
+  if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
+  char *name = name_attribute(reader, node, "name");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  free(name);
+  if (symbol == NULL) return; /* the name was taken, which is reported */
+  const struct Variable *velocity = &model->velocities.items[symbol->index];
+  if (velocity->dimension.known)
+    require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
+                 dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
+  model->drives[symbol->index].acceleration = acceleration.node;
+}
+
 /* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
 static void add_force(struct Model *model, Node position, Node force) {
   struct Graph *graph = model->graph;
@@ -454,6 +474,7 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   else if (strcmp(element, "potential") == 0)
     read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_drive(reader, node);
   else if (strcmp(element, "force") == 0) read_force(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);
 }

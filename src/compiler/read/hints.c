@@ -128,6 +128,7 @@ const char *hint_for_function(const char *name) {
 
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   if (allowed == 0) return "; expected numbers and constants";
+  if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
   switch (kind) {
   case INPUT:

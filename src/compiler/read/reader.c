@@ -130,6 +130,11 @@ static void append_reaction(struct Model *model, struct Scope *scope, const stru
 static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->displacements.count; i++)
     append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
+  for (size_t i = 0; i < model->coordinates.count; i++) {
+    if (!model->drives[i].given) continue;
+    model->drives[i].reaction = model->reactions.count;
+    append_reaction(model, scope, &model->coordinates.items[i], "force of what drives");
+  }
 }
 
 static void check_definitions_used(struct Reader *reader) {
