@@ -55,6 +55,20 @@ def rod_forces(t):
             "py.force": -tension * np.cos(angle), "stretch.force": tension}  # fmt: skip
 
 
+def motor_and_bead(t):
+    r, vr = 0.2 * np.cosh(2 * t), 0.4 * np.sinh(2 * t)
+    work = 0.1 * (vr**2 + (2 * r) ** 2 - 0.4**2) / 2
+    return {"phi": 2 * t, "W": 2, "r": r, "torque": 2 * 0.1 * r * vr * 2, "nonConservativeWork": work}
+
+
+def trolley(t):
+    tilt, rate = np.arctan(2 / 9.81), np.sqrt(np.hypot(2, 9.81) / 4)
+    angle = pendulum_angle(tilt, rate, t)
+    theta, squared = angle - tilt, 2 * rate**2 * (np.cos(angle) - np.cos(tilt))
+    force = 150 * 2 + 50 * 4 * (-(rate**2) * np.sin(angle) * np.cos(theta) - squared * np.sin(theta))
+    return {"x": t**2, "v": 2 * t, "theta": theta, "x.force": force}
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -74,6 +88,8 @@ MOTIONS = {
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),
+    "MotorAndBead": (motor_and_bead, 1e-6),
+    "DrivenTrolley": (trolley, 1e-5),
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
