@@ -128,10 +128,11 @@ static void write_reactions(const struct Page *page) {
   for (size_t i = 0; i < page->summary->reaction_count; i++)
     write_equation(page, reactions->items[i].name, page->summary->reactions[i]);
   write_rest(page->writer, reactions->count, page->summary->reaction_count, "forces");
-  element(page->writer, "p",
-          "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
-          "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer. The "
-          "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
+  element(
+      page->writer, "p",
+      "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
+      "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer. The "
+      "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
 }
 
 static void write_mechanics(const struct Page *page) {
@@ -152,7 +153,7 @@ static void write_mechanics(const struct Page *page) {
   element(writer, "p",
           "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
           "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on; also of what drives "
-          "coordinates.");
+          "coordinates and of what moves the points that depend on inputs.");
 }
 
 static void write_outputs(const struct Page *page) {

@@ -77,7 +77,8 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   if (graph_limit(model->graph) != NULL) return inertia;
   if (pivots_check(model, inertia, diagnostics)) {
     /* The power of drives rests on accelerations, which its derivatives need as expressions. */
-    bool unroll_all = (model->drive_count > 0 && model->work_line > 0) || model->linearized || (model->method != NULL && model->method->needs_linear);
+    bool unroll_all = ((model->drive_count > 0 || model->inputs_move) && model->work_line > 0) || model->linearized ||
+                      (model->method != NULL && model->method->needs_linear);
     for (size_t b = 0; b < inertia->block_count; b++)
       inertia->blocks[b].is_unrolled = unroll_all || inertia->blocks[b].count <= UNROLL_LIMIT;
     pivots_factor(model->graph, inertia);

@@ -48,6 +48,8 @@ Node *time_seeds(const struct Model *model, bool with_accelerations) {
   const struct Graph *graph = model->graph;
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[model->time].left] = ONE;
+  for (size_t i = 0; i < model->inputs.count; i++)
+    seeds[graph->vertices[model->inputs.items[i].node].left] = model->input_rates[i];
   for (size_t i = 0; i < model->coordinates.count; i++) {
     Node *rate = &seeds[graph->vertices[model->velocities.items[i].node].left];
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
@@ -179,6 +181,7 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
     Node whole = drive->given ? add(graph, force[i], equations->reactions[drive->reaction]) : force[i];
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
+  power = add(graph, power, moving_power(model));
   equations->stated_power = add(graph, power, model->driven_power.node);
   equations->power = equations->stated_power;
   if (equations->has_work) equations->power = with_accelerations(model, equations, equations->power);

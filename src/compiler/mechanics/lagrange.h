@@ -25,8 +25,8 @@ struct Equations {
   Node *acceleration; /* expressions in unrolled blocks, the acceleration symbols in others */
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
-  bool has_work;                  /* the work of the non-conservative forces is a state */
-  /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and what drives deliver. */
+  bool has_work; /* the work of the non-conservative forces is a state */
+  /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
   Node power;
   Node stated_power;              /* the same, which may hold the acceleration symbols */
   Node kinetic, potential, total; /* energies, see energies.h */

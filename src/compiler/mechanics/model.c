@@ -30,6 +30,7 @@ void model_free(struct Model *model) {
   free(model->accelerations);
   free(model->forces);
   free(model->drives);
+  free(model->input_rates);
   free(model->point_forces);
   free(model->point.values);
   free(model->point.given);
@@ -37,6 +38,10 @@ void model_free(struct Model *model) {
   free(model->name);
   free(model->description);
   free(model);
+}
+
+bool is_input_rate(const struct Model *model, size_t input) {
+  return input > 0 && model->input_rates[input - 1] == model->inputs.items[input].node;
 }
 
 double *start_values(const struct Model *model) {

@@ -56,6 +56,8 @@ struct Model {
   struct VariableList definitions; /* what each <define> stands for, in its node */
   struct VariableList displacements;
   struct VariableList reactions; /* forces along the displacements, then of the drives */
+  Node *input_rates;             /* of each input: the one that is its time derivative; ZERO for none */
+  bool inputs_move;              /* positions or energies depend on inputs */
   struct Drive *drives;          /* one a coordinate */
   size_t drive_count;            /* of those that are given */
   struct Body *bodies;
@@ -85,6 +87,9 @@ struct Model {
 };
 
 void model_free(struct Model *model);
+
+/* Whether the input is the time derivative of the one before it. */
+bool is_input_rate(const struct Model *model, size_t input);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);

@@ -58,23 +58,16 @@ static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_
   return work_along(model->graph, &work, kind, count);
 }
 
-/* R for each symbol of the kind; that of its rate follows it, and their number is even. */
+/* R + Q for each symbol of the kind but the last; that of its rate follows it. */
 static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_t count) {
   struct Graph *graph = model->graph;
   Node lagrangian = subtract(graph, model->displaced_kinetic.node, model->displaced_potential.node);
   Node *seeds = time_seeds(model, true), *force = inertial_forces(model, seeds, kind, count);
-  Node *push = point_forces(model, kind, count), *damping = allocate(count, sizeof *damping);
   Node *slope = allocate(count, sizeof *slope), *rate = allocate(count, sizeof *rate);
   gradient_of(graph, lagrangian, kind, count, slope);
-  gradient_of(graph, model->displaced_dissipation.node, kind, count, damping);
   derivative_along(graph, slope, count, seeds, rate);
-  for (size_t i = 0; i + 1 < count; i++) {
-    force[i] = add(graph, force[i], subtract(graph, rate[i + 1], slope[i]));
-    force[i] = add(graph, force[i], subtract(graph, damping[i + 1], push[i]));
-  }
+  for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], subtract(graph, rate[i + 1], slope[i]));
   free(seeds);
-  free(push);
-  free(damping);
   free(slope);
   free(rate);
   return force;
@@ -92,11 +85,29 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   size_t count = model->displacements.count;
   if (count == 0) return;
   Node *force = forces_along(model, DISPLACEMENT, 2 * count), *undisplaced = undisplaced_symbols(graph);
-  for (size_t i = 0; i < count; i++) reactions[i] = negate(graph, force[2 * i]);
+  Node *push = point_forces(model, DISPLACEMENT, 2 * count), *damping = allocate(2 * count, sizeof *damping);
+  gradient_of(graph, model->displaced_dissipation.node, DISPLACEMENT, 2 * count, damping);
+  for (size_t i = 0; i < count; i++)
+    reactions[i] = subtract(graph, subtract(graph, push[2 * i], damping[2 * i + 1]), force[2 * i]);
   substitute(graph, reactions, count, undisplaced, reactions);
   for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
   free(force);
+  free(push);
+  free(damping);
   free(undisplaced);
+}
+
+/* Forces at what an input moves act on the system through it, so that what moves it delivers R, and they Q. */
+Node moving_power(const struct Model *model) {
+  struct Graph *graph = model->graph;
+  size_t count = model->inputs.count;
+  if (!model->inputs_move) return ZERO;
+  Node *force = forces_along(model, INPUT, count), *undisplaced = undisplaced_symbols(graph), power = ZERO;
+  for (size_t i = 0; i + 1 < count; i++) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
+  substitute(graph, &power, 1, undisplaced, &power);
+  free(force);
+  free(undisplaced);
+  return power;
 }
 
 Node *undisplaced_symbols(const struct Graph *graph) {

@@ -37,7 +37,8 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   char *text = attribute(node, name);
   if (text == NULL) return false;
   char *what = format_text("%s of <%s>", name, (const char *)node->name);
-  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   if (*text != '\0') *value = parse_expression(reader->scope, text, place);
   free(what);
   free(text);
@@ -71,7 +72,8 @@ static char *text_of(xmlNodePtr node) {
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
   char *text = text_of(node);
-  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   struct Quantity value = parse_expression(reader->scope, text, place);
   free(text);
   return value;

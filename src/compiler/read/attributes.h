@@ -30,15 +30,17 @@ struct Reader {
   Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
 };
 
-/* The kinds of symbols that may stand in a place, as in struct Place. */
+/* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
 #define KIND(kind) (1u << (kind))
 
 enum {
   IN_MASS = KIND(PARAMETER),
   IN_DRIVE = KIND(PARAMETER) | KIND(TIME) | KIND(INPUT),
-  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
+  IN_INERTIA = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
+  WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
+  IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
-  IN_FORCE = IN_ENERGY | KIND(INPUT),
+  IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
 

@@ -70,7 +70,8 @@ static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
                    others[i]);
 }
 
-static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
+static const struct Variable *read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list,
+                                            enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
   variable.start = 0.0;
   number_attribute(reader, node, "start", &variable.start);
@@ -78,7 +79,38 @@ static void read_quantity(struct Reader *reader, xmlNodePtr node, struct Variabl
   number_attribute(reader, node, "max", &variable.maximum);
   check_range(reader, &variable);
   variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
-  append_variable(list, variable);
+  return append_variable(list, variable);
+}
+
+static Node append_input_rate(struct Reader *reader) {
+  struct VariableList *inputs = &reader->model->inputs;
+  const struct Variable *of = &inputs->items[inputs->count - 1];
+  struct Variable rate = {.name = format_text("der(%s)", of->name),
+                          .description = format_text("time derivative of %s", of->name),
+                          .dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0),
+                          .minimum = NAN,
+                          .maximum = NAN,
+                          .nominal = NAN,
+                          .line = of->line};
+  if (!of->dimension.known) rate.dimension = dimension_unknown;
+  rate.node = scope_symbol(reader->scope, INPUT, (int)inputs->count, rate.name, rate.dimension, rate.line);
+  scope_set_time_derivative(reader->scope, of->node, rate.node);
+  append_variable(inputs, rate);
+  return rate.node;
+}
+
+/* An input, and those that are its time derivatives. */
+static void read_input(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  double derivatives = 0;
+  read_quantity(reader, node, &model->inputs, INPUT);
+  if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
+                 derivatives);
+  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
+  size_t index = model->inputs.count - 1;
+  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
+  if (derivatives >= 2) model->input_rates[index] = ZERO;
 }
 
 static void read_parameter(struct Reader *reader, xmlNodePtr node) {
@@ -182,6 +214,7 @@ static bool take_component(struct Reader *reader, const struct Body *body, xmlNo
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
   *displaced = value->node;
+  reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
   value->node = without_displacements(reader, body->line, name, value->node);
   free(name);
   return true;
@@ -212,6 +245,22 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "the %s cannot depend on displacements; expected them in positions and angles", what);
 }
 
+/* A mass feels the second derivatives of the inputs that its position depends on; a mere point does not. */
+static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
+  const struct Model *model = reader->model;
+  struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
+  for (size_t i = 0; i < levers.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
+    size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
+    Node rate = model->input_rates[input];
+    if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
+    report_error(reader->diagnostics, body->line,
+                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected "
+                 "derivatives=\"2\" of this <input>, or mass=\"0\" for a mere point",
+                 body->name, model->inputs.items[input].name);
+  }
+  gradient_free(&levers);
+}
+
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
@@ -221,7 +270,7 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
                  other->line);
-  expression_attribute(reader, node, "mass", IN_POSITION, &body.mass);
+  expression_attribute(reader, node, "mass", IN_INERTIA, &body.mass);
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
@@ -229,12 +278,13 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
         take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
   body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
   if (body.has_angle) {
-    expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
+    expression_attribute(reader, node, "inertia", IN_INERTIA, &body.inertia);
     require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
+  for (int component = 0; component < 4; component++) require_accelerations(reader, &body, component);
   for (int axis = 0; axis < 3; axis++)
     add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
   add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
@@ -247,6 +297,7 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, displaced, term.node);
+  reader->model->inputs_move |= (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
   Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
   add_term(reader->model, sum, undisplaced);
   return undisplaced;
@@ -447,7 +498,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   struct Model *model = reader->model;
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
   else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
-  else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
+  else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);

@@ -182,6 +182,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
   read_children(reader, root, EXPRESSIONS);
+  reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",

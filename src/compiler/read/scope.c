@@ -112,6 +112,10 @@ void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative
   scope->time_derivatives[scope->graph->vertices[symbol].left] = derivative;
 }
 
+Node time_derivative_of_symbol(const struct Scope *scope, Node symbol) {
+  return scope->time_derivatives[scope->graph->vertices[symbol].left];
+}
+
 Node total_time_derivative(struct Scope *scope, Node node) {
   Node derivative = ZERO;
   derivative_along(scope->graph, &node, 1, scope->time_derivatives, &derivative);
