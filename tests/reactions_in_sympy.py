@@ -95,7 +95,7 @@ def charged():
     return held(q, rates, [(m, (x, y))], potential, [], [m, l, b, k, J, u], [], {1: 0}, {"d.force": 1}, further=further)
 
 
-a, M = symbols("a M")
+a, M, h = symbols("a M h")
 
 
 def crane():
@@ -133,6 +133,50 @@ def arm():
     return held(q, v, [(m, elbow), (3 * m, hand)], weight, [], [m, l, g], [u], {0: u, 1: 0}, {"alpha.force": -1, "beta.force": -1})
 
 
+def moved(name):
+    """An input and its derivatives: the coordinate, its velocity, and the acceleration that holds it."""
+    return sp.Symbol(name), sp.Symbol(f"der({name})"), sp.Symbol(f"der(der({name}))")
+
+
+def seat():
+    """A seat with a driver on a floor that moves; what holds the floor is not asked for, but the force in the seat is."""
+    x, y, s, v, w, vs = symbols("x y s v w vs")
+    zb, rate, acceleration = moved("zb")
+    q, rates = [x, y, s, zb], [v, w, vs, rate]
+    damping = b * (v - rate) ** 2 / 2 + a * (w - v) ** 2 / 2
+    potential = k * (x + s - zb) ** 2 / 2 + 2 * k * (y - x) ** 2 / 2 + M * g * x + m * g * y
+    return held(
+        q, rates, [(M, (x,)), (m, (y,))], potential, [(F, x + zb**2 / h / 2)], [M, m, g, b, k, a, h],
+        [F, acceleration], {2: 0, 3: acceleration}, {"s.force": 1}, dissipation=damping,
+    )  # fmt: skip
+
+
+def hoist(count=3):
+    """A chain on a pivot that moves in x, of which the first rod is drawn in from outside: M depends on an input."""
+    theta, omega = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in ("theta", "omega"))
+    (xp, rate, acceleration), (L, drawn, jerked) = moved("xp"), moved("L")
+    x, y, bobs = xp, sp.Integer(0), []
+    for i in range(count):
+        length = L if i == 0 else l
+        x, y = x + length * sin(theta[i]), y - length * cos(theta[i])
+        bobs.append((x, y))
+    return held(
+        [*theta, xp, L], [*omega, rate, drawn], [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [],
+        [m, l, g], [acceleration, jerked], {count: acceleration, count + 1: jerked}, {},
+    )  # fmt: skip
+
+
+def table():
+    """A bead on a table that is turned from outside, in a magnetic field, with inertias that turn with the table."""
+    r, vr = symbols("r vr")
+    phi, rate, acceleration = moved("phi")
+    q, v = [r, phi], [vr, rate]
+    x, y = r * cos(phi), r * sin(phi)
+    potential = -b * (x * velocity(y, q, v) - y * velocity(x, q, v)) / 2 + k * r**2 / 2
+    further = J * (vr / l + rate) ** 2 / 2
+    return held(q, v, [(m, (x, y))], potential, [], [m, l, b, k, J], [acceleration], {1: acceleration}, {}, further=further)
+
+
 CASES = {
     "DisplacedBearing": bearing,
     "DisplacedChain": chain,
@@ -140,4 +184,7 @@ CASES = {
     "DrivenCrane": crane,
     "DrivenRobot": robot,
     "DrivenArm": arm,
+    "MovedSeat": seat,
+    "MovedHoist": hoist,
+    "MovedTable": table,
 }

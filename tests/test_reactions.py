@@ -124,11 +124,66 @@ ARM = """<system name="DrivenArm" description="Arm of two driven joints">
   {further}
 </system>
 """
+SEAT = """<system name="MovedSeat" description="Seat and driver on a floor that moves">
+  <parameter name="M" start="20" unit="kg" min="0"/>
+  <parameter name="m" start="60" unit="kg" min="0"/>
+  <parameter name="g" start="9.81" unit="m/s2"/>
+  <parameter name="b" start="200" unit="N.s/m"/>
+  <parameter name="a" start="400" unit="N.s/m"/>
+  <parameter name="k" start="8000" unit="N/m"/>
+  <parameter name="h" start="1" unit="m"/>
+  <input name="F" unit="N"/>
+  <input name="zb" unit="m" derivatives="2"/>
+  <coordinate name="x" velocity="v" unit="m"/>
+  <coordinate name="y" velocity="w" unit="m"/>
+  <displacement name="s" unit="m"/>
+  <particle name="seat" mass="M" x="x"/>
+  <particle name="driver" mass="m" x="y"/>
+  <particle name="knob" mass="0" x="x + zb^2/h/2"/>
+  <potential>M*g*x + m*g*y + k*(x + s - zb)^2/2 + 2*k*(y - x)^2/2</potential>
+  <dissipation>b*(v - der(zb))^2/2 + a*(w - v)^2/2</dissipation>
+  <force on="knob" x="F"/>
+  <output name="rise" unit="m/s2">der(der(zb))</output>
+  {further}
+</system>
+"""
+HOIST = """<system name="MovedHoist" description="Rods on a pivot that moves, the first drawn in">
+  <parameter name="m" start="1" unit="kg" min="0"/>
+  <parameter name="l" start="0.5" unit="m" min="0"/>
+  <parameter name="g" start="9.81" unit="m/s2"/>
+  <input name="xp" unit="m" derivatives="2"/>
+  <input name="L" start="0.8" unit="m" min="-9" derivatives="2"/>
+  <for index="i" from="1" to="3">
+    <coordinate name="theta[i]" velocity="omega[i]" unit="rad" start="0.2*i"/>
+    <particle name="bob[i]" mass="m" x="xp + L*sin(theta[1]) + sum(j, 2, i, l*sin(theta[j]))"
+              y="-L*cos(theta[1]) - sum(j, 2, i, l*cos(theta[j]))"/>
+    <potential>m*g*bob[i].y</potential>
+  </for>
+  <output name="speed" unit="m/s">der(bob[2].x)</output>
+  {further}
+</system>
+"""
+TABLE = """<system name="MovedTable" description="Bead on a table that is turned from outside">
+  <parameter name="m" start="1"/>
+  <parameter name="l" start="1"/>
+  <parameter name="b" start="1"/>
+  <parameter name="k" start="1"/>
+  <parameter name="J" start="1"/>
+  <input name="phi" derivatives="2"/>
+  <coordinate name="r" velocity="vr" start="1"/>
+  <particle name="bead" mass="m" x="r*cos(phi)" y="r*sin(phi)"/>
+  <kinetic>J*(vr/l + der(phi))^2/2</kinetic>
+  <potential>-b*(bead.x*der(bead.y) - bead.y*der(bead.x))/2 + k*r^2/2</potential>
+  <output name="across">der(bead.y)</output>
+  {further}
+</system>
+"""
 LINEAR = """<linearization of="../DisplacedBearing/system.xml" name="LinearBearing"/>
 """
 TEXTS = {"DisplacedBearing": BEARING, "DisplacedChain": CHAIN, "DisplacedWire": WIRE,
          "DrivenCrane": CRANE.format(further="<work/>"), "DrivenRobot": ROBOT.format(further=""),
-         "DrivenArm": ARM.format(further="<work/>")}  # fmt: skip
+         "DrivenArm": ARM.format(further="<work/>"), "MovedSeat": SEAT.format(further="<work/>"),
+         "MovedHoist": HOIST.format(further=""), "MovedTable": TABLE.format(further="<work/>")}  # fmt: skip
 DISPLACED = [name for name in TEXTS if name.startswith("Displaced")]
 
 
@@ -158,7 +213,7 @@ def at(name, values, case, open_fmu):
     instance = open_fmu(name)
     instance.fmu.setupExperiment(startTime=values[time])
     known = {symbol.name: value for symbol, value in values.items() if symbol.name in instance.references}
-    inputs = {symbol.name for symbol in case.system.inputs}
+    inputs = set(fmu.names_of(name, "input"))
     instance.set({key: value for key, value in known.items() if key not in inputs and key != "time"})
     instance.fmu.enterInitializationMode()
     instance.set({key: value for key, value in known.items() if key in inputs})
@@ -175,7 +230,7 @@ def test_forces_are_multipliers(name, form, open_fmu):
         instance = at(name + form, values, case, open_fmu)
         accelerations, forces = case.solve(*[values[symbol] for symbol in case.system.arguments])
         for v, expected in zip(case.system.v, accelerations):
-            if v.name in instance.references:
+            if f"der({v.name})" in fmu.names_of(name, "local"):
                 assert instance.get(f"der({v.name})") == pytest.approx(expected, rel=1e-10, abs=1e-10), v
         for force, expected in forces.items():
             assert instance.get(force) == pytest.approx(expected, rel=1e-10, abs=1e-10), force
@@ -243,6 +298,84 @@ def test_work_of_drives_in_a_chain(cranes, open_fmu):
     assert max(np.abs(works)) > 1
 
 
+@pytest.fixture(scope="module")
+def moved():
+    """What inputs move with each solver, and the chain with work."""
+    texts = {f"Seat{m}": rename(SEAT.format(further=f'<work/><solver method="{m}"/>'), f"Seat{m}") for m in METHODS}
+    texts["WorkingHoist"] = rename(HOIST.format(further="<work/>"), "WorkingHoist")
+    texts["ExactSeat"] = rename(SEAT.format(further='<solver method="exact"/>').replace("zb^2/h/2", "zb"), "ExactSeat")
+    fmu.build_systems("moved", texts)
+
+
+def move(instance, motions, time):
+    """Sets inputs and their derivatives so that they are polynomials (of numpy) from this time on."""
+    for name, polynomial in motions.items():
+        rates = [polynomial.deriv(k) if k > 0 else polynomial for k in range(3)]
+        for rate, variable in zip(rates, (name, f"der({name})", f"der(der({name}))")):
+            instance.set({variable: rate(time)})
+    references, orders, values = [], [], []
+    for name, polynomial in motions.items():
+        for k, variable in enumerate((name, f"der({name})", f"der(der({name}))")):
+            for order in (1, 2, 3):
+                references += instance.vr(variable)
+                orders.append(order)
+                values.append(polynomial.deriv(k + order)(time))
+    instance.fmu.setRealInputDerivatives(references, orders, values)
+
+
+def check_balance(instance, motions, stop, steps, least):
+    """With inputs that fit together, totalEnergy changes by nonConservativeWork, at whatever points one looks."""
+    move(instance, motions, 0.0)
+    before, works = instance.get("totalEnergy"), []
+    for time in np.linspace(0, stop, steps + 1)[1:]:
+        instance.step(time - instance.time)
+        move(instance, motions, time)
+        works.append(instance.get("nonConservativeWork"))
+        assert instance.get("totalEnergy") - before == pytest.approx(works[-1], rel=1e-7, abs=1e-7)
+    assert max(np.abs(works)) > least
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_work_of_what_moves_the_floor(method, moved, open_fmu):
+    instance = open_fmu(f"Seat{method}").initialize({"F": 5.0, "der(zb)": 0.2, "der(der(zb))": -1.0}, 1e-10)
+    check_balance(instance, {"zb": np.polynomial.Polynomial([0, 0.2, -0.5, 0.3])}, 1.0, 3, 1.0)
+
+
+def test_work_of_what_draws_a_chain(moved, open_fmu):
+    motions = {"xp": np.polynomial.Polynomial([0, 1.0, -0.4, 0.1]), "L": np.polynomial.Polynomial([0.8, -0.3, 0, 0.1])}
+    instance = open_fmu("WorkingHoist").initialize({"der(xp)": 1.0, "der(L)": -0.3}, 1e-11)
+    check_balance(instance, motions, 1.0, 4, 1.0)
+
+
+def test_work_of_what_turns_a_table(open_fmu):
+    """A gyroscopic potential and a <kinetic> of the table's rate are in the balance too."""
+    motions = {"phi": np.polynomial.Polynomial([0.1, 2.0, 0.5, -0.2])}
+    instance = open_fmu("MovedTable").initialize({"phi": 0.1, "der(phi)": 2.0, "der(der(phi))": 1.0}, 1e-12)
+    check_balance(instance, motions, 1.0, 4, 1.0)
+
+
+def test_exact_method_with_a_moved_floor(moved, open_fmu):
+    """A step of any length as with the Taylor series, inputs held."""
+    values = {"zb": 0.1, "der(zb)": 0.3, "der(der(zb))": 2.0}
+    results = []
+    for name in ("ExactSeat", "Seattaylor"):
+        instance = open_fmu(name).initialize(values, 1e-12)
+        instance.step(0.7)
+        results.append(instance.get("x", "y", "v", "w"))
+    np.testing.assert_allclose(*results, rtol=1e-9)
+
+
+def test_inputs_with_derivatives_are_variables():
+    by_name = {v.name: v for v in fmu.description("MovedHoist").modelVariables}
+    for name, unit, start in [("xp", "m", 0.0), ("der(xp)", "m/s", 0.0), ("der(der(xp))", "m/s2", 0.0), ("L", "m", 0.8)]:
+        variable = by_name[name]
+        assert (variable.causality, variable.unit, float(variable.start)) == ("input", unit, start)
+    assert float(by_name["L"].min) == -9 and by_name["der(L)"].min is None
+    # der(der(x)) is no structured name of the standard, whose second derivative is der(x,2).
+    assert fmu.description("MovedHoist").variableNamingConvention == "flat"
+    assert fmu.description("DrivenArm").variableNamingConvention == "structured"
+
+
 DRIVEN_SPRING = """<system name="DrivenSpring">
   <parameter name="m" start="2" unit="kg"/>
   <parameter name="k" start="18" unit="N/m"/>
@@ -308,7 +441,10 @@ def test_dependencies_of_outputs():
                                           ("DisplacedWire", "D"), ("DrivenCrane", "drive"), ("DrivenRobot", "torque"),
                                           ("DrivenRobot", "der(omega[3])"), ("DrivenArm", "torque"),
                                           ("DrivenCrane", "der(nonConservativeWork)"),
-                                          ("DrivenArm", "der(nonConservativeWork)")])  # fmt: skip
+                                          ("DrivenArm", "der(nonConservativeWork)"), ("MovedSeat", "der(w)"),
+                                          ("MovedSeat", "der(nonConservativeWork)"), ("MovedHoist", "der(omega[2])"),
+                                          ("MovedHoist", "speed"), ("MovedTable", "across"),
+                                          ("MovedTable", "der(nonConservativeWork)")])  # fmt: skip
 @pytest.mark.parametrize("form", ["", "T"])
 def test_derivatives_of_forces(name, output, form, open_fmu):
     """Directional derivatives of an output against central differences of it, by states, inputs and parameters."""

@@ -103,7 +103,8 @@ Node moving_power(const struct Model *model) {
   size_t count = model->inputs.count;
   if (!model->inputs_move) return ZERO;
   Node *force = forces_along(model, INPUT, count), *undisplaced = undisplaced_symbols(graph), power = ZERO;
-  for (size_t i = 0; i + 1 < count; i++) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
+  for (size_t i = 0; i + 1 < count; i++)
+    if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
   substitute(graph, &power, 1, undisplaced, &power);
   free(force);
   free(undisplaced);
