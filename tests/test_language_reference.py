@@ -69,6 +69,12 @@ def trolley(t):
     return {"x": t**2, "v": 2 * t, "theta": theta, "x.force": force}
 
 
+def floor_and_seat(t):
+    d, w = 1.0, np.sqrt(99.0)
+    decay = np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
+    return {"z": 0.1 * (1 - decay), "stretch": -0.1 * decay, "floor.z": 0.1}
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -90,6 +96,7 @@ MOTIONS = {
     "DampedOscillator": (damped, 1e-6),
     "MotorAndBead": (motor_and_bead, 1e-6),
     "DrivenTrolley": (trolley, 1e-5),
+    "FloorAndSeat": (floor_and_seat, 1e-7),
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
