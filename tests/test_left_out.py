@@ -10,7 +10,7 @@ from fmu import BUILD
 
 EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["DampedPendulum", "ElasticPendulum", "Rope"]
+AUTO = ["DampedPendulum", "ElasticPendulum", "Rope", "SeatSuspension"]
 LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
 ERK = ["BeadOnHoop"]  # of tests/systems
 BDF = ["FurutaPendulum"]

@@ -169,6 +169,7 @@ static Node with_accelerations(const struct Model *model, const struct Equations
   for (size_t i = 0; i < equations->count; i++)
     symbols[graph->vertices[model->accelerations[i]].left] = equations->acceleration[i];
   substitute(graph, &node, 1, symbols, &node);
+  shorten(graph, 1, &node);
   free(symbols);
   return node;
 }
