@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 import reactions_in_sympy
+import test_documentation
 from fmu import lagc
 from mechanics import time
 
@@ -487,5 +488,6 @@ def test_page_shows_the_force(tmp_path):
     (tmp_path / "system.xml").write_text(BEARING)
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
     page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    assert test_documentation.check(page) == page.count("<code>")
     section = page[page.index("Forces of reaction") :]
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
