@@ -254,9 +254,11 @@ static void require_accelerations(const struct Reader *reader, const struct Body
     Node rate = model->input_rates[input];
     if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
     report_error(reader->diagnostics, body->line,
-                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected "
-                 "derivatives=\"2\" of this <input>, or mass=\"0\" for a mere point",
-                 body->name, model->inputs.items[input].name);
+                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
+                 "mass=\"0\" for a mere point",
+                 body->name, model->inputs.items[input].name,
+                 is_input_rate(model, input) ? "the <input> itself in place of its derivative"
+                                             : "derivatives=\"2\" of this <input>");
   }
   gradient_free(&levers);
 }

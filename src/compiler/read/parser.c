@@ -174,12 +174,14 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
     else if (known == 0)
       FAIL(parser,
            "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
-           "that "
-           "says where a thing is moved to",
+           "that says where a thing is moved to",
            parser->place.what, name);
+    else if (known < needed && needed > 2)
+      FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->place.what, needed,
+           input);
     else if (known < needed)
-      FAIL(parser, "%s needs %d time derivatives of the input '%s', of which %d is known; expected derivatives=\"%d\"",
-           parser->place.what, needed, input, known, needed);
+      FAIL(parser, "%s needs 2 time derivatives of the input '%s', of which 1 is known; expected derivatives=\"2\"",
+           parser->place.what, input);
   }
 }
 
