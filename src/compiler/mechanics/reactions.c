@@ -5,7 +5,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
-#include "mechanics/lagrange.h"
+#include "mechanics/time_derivative.h"
 #include "memory.h"
 
 /* sum weight . d position / d s for all symbols s of the kind, over positions as functions of displacements too. */

@@ -28,6 +28,7 @@ struct Reader {
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
   Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
+  size_t constraints_read;
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
@@ -40,6 +41,7 @@ enum {
   WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
   IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
+  IN_CONSTRAINT = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY),
   IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
