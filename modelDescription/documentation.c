@@ -124,6 +124,20 @@ static void write_calculated(const struct Page *page) {
   write_rest(page->writer, calculated->count, shown, "parameters");
 }
 
+static void write_reactions(const struct Page *page) {
+  const struct VariableList *reactions = &page->model->reactions;
+  if (reactions->count == 0) return;
+  element(page->writer, "h2", "Forces of reaction");
+  for (size_t i = 0; i < page->summary->reaction_count; i++)
+    write_equation(page, reactions->items[i].name, page->summary->reactions[i]);
+  write_rest(page->writer, reactions->count, page->summary->reaction_count, "forces");
+  element(
+      page->writer, "p",
+      "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
+      "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer. The "
+      "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
+}
+
 static void write_constraints(const struct Page *page) {
   const struct VariableList *constraints = &page->model->constraints;
   size_t shown = constraints->count < SHOWN_LIMIT ? constraints->count : SHOWN_LIMIT;
@@ -150,12 +164,14 @@ static void write_mechanics(const struct Page *page) {
     free(left);
   }
   write_rest(writer, page->equations->count, summary->motion_count, "equations");
+  write_reactions(page);
   if (!page->model->has_forces) return;
   element(writer, "h2", "Power of the non-conservative forces");
   write_equation(page, "P", summary->power);
   element(writer, "p",
           "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
-          "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on.");
+          "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on; also of what drives "
+          "coordinates and of what moves the points that depend on inputs.");
 }
 
 static void write_outputs(const struct Page *page) {

@@ -163,6 +163,13 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
   xmlTextWriterEndElement(writer);
 }
 
+/* der(der(x)) is no structured name (section 2.2.9), where a second derivative is der(x,2). */
+static const char *naming_convention(const struct Model *model) {
+  for (size_t i = 1; i < model->inputs.count; i++)
+    if (is_input_rate(model, i) && is_input_rate(model, i - 1)) return "flat";
+  return "structured";
+}
+
 bool model_description_write(xmlBufferPtr buffer, const struct Program *program, const char *guid) {
   const struct Model *model = program->model;
   const struct Equations *equations = program->equations;
@@ -178,7 +185,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   write_attribute(writer, "guid", guid);
   if (model->description != NULL) write_attribute(writer, "description", model->description);
   write_attribute(writer, "generationTool", "lagrange-fmu");
-  write_attribute(writer, "variableNamingConvention", "structured");
+  write_attribute(writer, "variableNamingConvention", naming_convention(model));
   write_attribute(writer, "numberOfEventIndicators", "0");
   write_interfaces(writer, program);
   write_units(writer, interface);

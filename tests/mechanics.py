@@ -23,6 +23,7 @@ class System:
     positions: dict = field(default_factory=dict)
     linearized_at: dict = None
     constraints: list = field(default_factory=list)  # each 0 at all times, of q and time, or linear in v
+    rates: dict = field(default_factory=dict)  # of inputs that are given with their time derivatives
 
     def __post_init__(self):
         self.Q = self.Q or [sp.Integer(0)] * len(self.q)
@@ -36,6 +37,7 @@ class System:
             self.terms.append(
                 [self.Q[i], sp.diff(L, qi), -sp.diff(momentum, time)]
                 + [-sp.diff(momentum, qj) * vj for qj, vj in zip(self.q, self.v)]
+                + [-sp.diff(momentum, u) * rate for u, rate in self.rates.items()]
             )
         if self.linearized_at is not None:
             self._linearize()

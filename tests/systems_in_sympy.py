@@ -215,6 +215,18 @@ def lattice(count=8):
     return System(x, v, sum(m * vi**2 / 2 for vi in v), U, Q, [F], [m, k, b, c], positions)
 
 
+def seat_suspension():
+    zs, zd, vs, vd, ms, md, ks, cs, kd, cd = symbols("zs zd vs vd ms md ks cs kd cd")
+    zb, rate, acceleration = symbols("zb der(zb) der(der(zb))")
+    T = ms * (rate + vs) ** 2 / 2 + md * vd**2 / 2
+    U = (ks * zs**2 + kd * (zd - zb - zs) ** 2) / 2
+    cushion = cd * (vd - rate - vs)
+    return System(
+        [zs, zd], [vs, vd], T, U, [cushion - cs * vs, -cushion], [zb, rate, acceleration],
+        [ms, md, ks, cs, kd, cd], {"seat": (0, 0, zb + zs), "driver": (0, 0, zd)}, rates={zb: rate, rate: acceleration},
+    )
+
+
 def inerter_tree():
     m, b, a, k = symbols("m b a k")
     x = [sp.Symbol(f"x[{i}]") for i in range(1, 8)]
@@ -243,6 +255,7 @@ DEFINITIONS = {
     "ElasticPendulum": elastic_pendulum,
     "DoublePendulum": double_pendulum,
     "ChainPendulum": chain_pendulum,
+    "SeatSuspension": seat_suspension,
     "BeadOnHoop": bead_on_hoop,
     "SphericalPendulum": spherical_pendulum,
     "FurutaPendulum": furuta_pendulum,

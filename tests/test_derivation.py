@@ -80,6 +80,7 @@ def energies_and_positions(name, definition):
         f"{particle}.{axis}": value
         for particle, position in definition.positions.items()
         for axis, value in zip("xyz", position)
+        if value != 0 or name != "SeatSuspension"
     }
     if name.endswith("Linear"):
         variables = [*definition.q, *definition.v]

@@ -41,7 +41,9 @@ def infix(element):
 def plain(text):
     """The text in the names that infix() gives."""
     text = re.sub(r"\b([A-Za-z_]+?)\[?(\d+)\]?(?![\w.(\[]|\.\d)", lambda m: m[0] if re.fullmatch("e|E", m[1]) else f"{m[1]}_{m[2]}", text)
-    return re.sub(r"der\((\w+)\)", r"der_\1", text).replace("^", "**")
+    for _ in range(2):  # der(der(zb))
+        text = re.sub(r"der\((\w+)\)", r"der_\1", text)
+    return text.replace("^", "**")
 
 
 def check(page):

@@ -48,6 +48,33 @@ def rocket(t):
     return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
 
 
+def rod_forces(t):
+    angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
+    tension = 2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1))
+    return {"tension": tension, "bearing": abs(tension), "px.force": tension * np.sin(angle),
+            "py.force": -tension * np.cos(angle), "stretch.force": tension}  # fmt: skip
+
+
+def motor_and_bead(t):
+    r, vr = 0.2 * np.cosh(2 * t), 0.4 * np.sinh(2 * t)
+    work = 0.1 * (vr**2 + (2 * r) ** 2 - 0.4**2) / 2
+    return {"phi": 2 * t, "W": 2, "r": r, "torque": 2 * 0.1 * r * vr * 2, "nonConservativeWork": work}
+
+
+def trolley(t):
+    tilt, rate = np.arctan(2 / 9.81), np.sqrt(np.hypot(2, 9.81) / 4)
+    angle = pendulum_angle(tilt, rate, t)
+    theta, squared = angle - tilt, 2 * rate**2 * (np.cos(angle) - np.cos(tilt))
+    force = 150 * 2 + 50 * 4 * (-(rate**2) * np.sin(angle) * np.cos(theta) - squared * np.sin(theta))
+    return {"x": t**2, "v": 2 * t, "theta": theta, "x.force": force}
+
+
+def floor_and_seat(t):
+    d, w = 1.0, np.sqrt(99.0)
+    decay = np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
+    return {"z": 0.1 * (1 - decay), "stretch": -0.1 * decay, "floor.z": 0.1}
+
+
 def rod_pendulum(t):
     angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
     square = 2 * 9.81 * 0.5 * (np.cos(angle) - np.cos(1))  # v^2
@@ -80,6 +107,10 @@ MOTIONS = {
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),
+    "MotorAndBead": (motor_and_bead, 1e-6),
+    "DrivenTrolley": (trolley, 1e-5),
+    "FloorAndSeat": (floor_and_seat, 1e-7),
+    "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
     "MassChain": (chain, 1e-6),

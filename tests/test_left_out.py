@@ -10,7 +10,7 @@ from fmu import BUILD
 
 EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["DampedPendulum", "ElasticPendulum", "FourBar", "Rope"]
+AUTO = ["DampedPendulum", "ElasticPendulum", "FourBar", "Rope", "SeatSuspension"]
 LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
 LONG = ["NFourBar", "Rope"]  # systems of many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems

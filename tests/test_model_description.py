@@ -215,6 +215,7 @@ NAMES = {
                       "", "m l g", ""),
     "Rope": (" ".join(f"x[{i}] y[{i}]" for i in range(1, 201)), " ".join(f"vx[{i}] vy[{i}]" for i in range(1, 201)),
              "", "M EA EI tau b kEnd xEnd yEnd g", "tension"),
+    "SeatSuspension": ("zs zd", "vs vd", "zb der(zb) der(der(zb))", "ms md ks cs kd cd", "height shake load"),
     "StateFeedback": ("", "", "x theta v omega", "kx ktheta kv komega xref umax", "F"),
     "SpringDamper": ("", "", "x1 v1 x2 v2", "k c l0", "F1 F2"),
 }
@@ -227,7 +228,7 @@ def test_names_of_the_design(name):
     assert fmu.names_of(name, "parameter") == parameters
     assert fmu.names_of(name, "output") == coordinates + velocities + outputs
     states = coordinates + velocities
-    extra = ["nonConservativeWork"] if name in ("DampedPendulum", "Rope") else []
+    extra = ["nonConservativeWork"] if name in ("DampedPendulum", "Rope", "SeatSuspension") else []
     assert fmu.states_of(name) == states + extra
     every = {v.name for v in fmu.description(name).modelVariables}
     assert {f"der({state})" for state in states} <= every

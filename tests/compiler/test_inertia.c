@@ -96,7 +96,7 @@ static struct Inertia factor(struct Expressions *e, struct InertiaBlock *block, 
   for (int k = 0; k < FULL; k++) nodes[k] = parse(e, mass[k]);
   *block = (struct InertiaBlock){
       .count = SIZE, .coordinates = coordinates, .is_unrolled = true, .start = start, .column = column, .mass = nodes};
-  struct Inertia inertia = {.count = SIZE, .blocks = block, .block_count = 1};
+  struct Inertia inertia = {.count = SIZE, .coordinate_count = SIZE, .blocks = block, .block_count = 1};
   pivots_factor(e->graph, &inertia);
   return inertia;
 }

@@ -35,8 +35,10 @@ void warn_outside_domains(const struct Requirements *requirements, const struct 
   for (size_t i = 0; i < requirements->count; i++) {
     const struct Requirement *requirement = &requirements->items[i];
     double value = values[requirement->argument];
-    if (graph_depends_on(graph, requirement->argument, ACCELERATION) || isnan(value) ||
-        domain_contains(requirement->operation, value) || told[requirement->operation] == requirement->line)
+    bool unknown = graph_depends_on(graph, requirement->argument, ACCELERATION) ||
+                   graph_depends_on(graph, requirement->argument, REACTION);
+    if (unknown || isnan(value) || domain_contains(requirement->operation, value) ||
+        told[requirement->operation] == requirement->line)
       continue;
     told[requirement->operation] = requirement->line;
     if (requirement->operation == POWER)

@@ -113,8 +113,7 @@ Node graph_constant(struct Graph *graph, double value) {
 Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name) {
   size_t number = graph->symbol_count++;
   graph->symbols = reallocate(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
-  Node node =
-      intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = (uint16_t)(1u << kind)});
+  Node node = intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = 1u << kind});
   graph->symbols[number] = (struct Symbol){.kind = kind, .index = index, .name = copy_text(name), .node = node};
   return node;
 }
@@ -124,7 +123,7 @@ const struct Symbol *graph_symbol_of(const struct Graph *graph, Node node) {
 }
 
 Node graph_node(struct Graph *graph, enum Operation operation, Node left, Node right) {
-  uint16_t kinds = graph->vertices[left].kinds;
+  uint32_t kinds = graph->vertices[left].kinds;
   if (operation_arity(operation) == 2) kinds |= graph->vertices[right].kinds;
   return intern(graph, (struct Vertex){.operation = operation, .left = left, .right = right, .kinds = kinds});
 }
@@ -138,7 +137,7 @@ double graph_value(const struct Graph *graph, Node node) {
 }
 
 bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind) {
-  return ((unsigned)graph->vertices[node].kinds >> kind & 1u) != 0;
+  return (graph->vertices[node].kinds >> kind & 1u) != 0;
 }
 
 bool graph_is_constant_in_time(const struct Graph *graph, Node node) {

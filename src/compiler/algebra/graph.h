@@ -50,6 +50,8 @@ enum SymbolKind {
   VELOCITY,
   ACCELERATION,
   INPUT,
+  DISPLACEMENT, /* a virtual one, always 0: index 2 i of the i-th, 2 i + 1 of its rate */
+  REACTION,     /* the force along a displacement, or of the drive of a coordinate */
   SEED_PARAMETER,
   SEED_TIME,
   SEED_COORDINATE,
@@ -68,7 +70,7 @@ struct Symbol {
 
 struct Vertex {
   enum Operation operation;
-  uint16_t kinds;   /* bit k: depends on a symbol of SymbolKind k */
+  uint32_t kinds;   /* bit k: depends on a symbol of SymbolKind k */
   Node left, right; /* operands; SYMBOL: left is the symbol's number; unary: right is 0 */
   double value;     /* CONSTANT only */
 };

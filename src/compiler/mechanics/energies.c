@@ -9,12 +9,19 @@
 #include "algebra/simplify.h"
 #include "memory.h"
 
+/* Velocities of coordinates and of what inputs move. */
+static bool is_velocity(const struct Model *model, Node node) {
+  const struct Symbol *symbol = graph_symbol_of(model->graph, node);
+  return symbol->kind == VELOCITY || (symbol->kind == INPUT && is_input_rate(model, (size_t)symbol->index));
+}
+
 Node stored_energy(const struct Model *model, Node potential) {
   struct Graph *graph = model->graph;
-  struct Gradient slopes = gradient_by_kinds(graph, potential, 1u << VELOCITY);
+  struct Gradient slopes = gradient_by_kinds(graph, potential, 1u << VELOCITY | 1u << INPUT);
   Node energy = potential;
   for (size_t i = 0; i < slopes.count; i++)
-    energy = subtract(graph, energy, multiply(graph, slopes.values[i], slopes.symbols[i]));
+    if (is_velocity(model, slopes.symbols[i]))
+      energy = subtract(graph, energy, multiply(graph, slopes.values[i], slopes.symbols[i]));
   gradient_free(&slopes);
   return energy;
 }
@@ -25,10 +32,12 @@ struct Degrees {
 };
 
 /* of: the degrees of all nodes below, by their places in the graph's cone. */
-static struct Degrees degrees_of_vertex(const struct Graph *graph, Node node, const struct Degrees *of) {
+static struct Degrees degrees_of_vertex(const struct Model *model, Node node, const struct Degrees *of) {
+  const struct Graph *graph = model->graph;
   const struct Vertex *vertex = &graph->vertices[node];
-  if (!graph_depends_on(graph, node, VELOCITY)) return (struct Degrees){0, 0};
-  if (vertex->operation == SYMBOL) return (struct Degrees){1, 1};
+  bool is_symbol = vertex->operation == SYMBOL;
+  if (!graph_depends_on(graph, node, VELOCITY) && !graph_depends_on(graph, node, INPUT)) return (struct Degrees){0, 0};
+  if (is_symbol) return is_velocity(model, node) ? (struct Degrees){1, 1} : (struct Degrees){0, 0};
   struct Degrees left = of[cone_place(graph->cone, vertex->left)], right = {0, 0};
   if (operation_arity(vertex->operation) == 2) right = of[cone_place(graph->cone, vertex->right)];
   switch (vertex->operation) {
@@ -36,28 +45,29 @@ static struct Degrees degrees_of_vertex(const struct Graph *graph, Node node, co
   case MULTIPLY: return (struct Degrees){left.lowest + right.lowest, left.highest + right.highest};
   case POWER: {
     double n = graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
+    if (left.highest == 0 && right.highest == 0) return (struct Degrees){0, 0};
     if (n > 0 && n == floor(n)) return (struct Degrees){n * left.lowest, n * left.highest};
     return (struct Degrees){0, INFINITY};
   }
-  default: return (struct Degrees){0, INFINITY};
+  default: return (struct Degrees){0, left.highest > 0 || right.highest > 0 ? INFINITY : 0};
   }
 }
 
-static struct Degrees degrees_of(const struct Graph *graph, Node target) {
+static struct Degrees degrees_of(const struct Model *model, Node target) {
+  const struct Graph *graph = model->graph;
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, &target, 1, NULL);
   struct Degrees *of = allocate(cone->count, sizeof *of);
-  for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(graph, cone->nodes[place], of);
+  for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(model, cone->nodes[place], of);
   struct Degrees result = of[cone_place(cone, target)];
   free(of);
   return result;
 }
 
 Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {
-  struct Degrees degrees = degrees_of(model->graph, term);
+  struct Degrees degrees = degrees_of(model, term);
   /* Degrees below and above may cancel each other once multiplied out. */
-  if (degrees.lowest != 2 || degrees.highest != 2)
-    degrees = degrees_of(model->graph, simplify_fraction(model->graph, term));
+  if (degrees.lowest != 2 || degrees.highest != 2) degrees = degrees_of(model, simplify_fraction(model->graph, term));
   *driven = degrees.highest == 2 && degrees.lowest < 2;
   return degrees.highest == 2 ? term : negate(model->graph, stored_energy(model, term));
 }

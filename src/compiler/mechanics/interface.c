@@ -90,6 +90,17 @@ static void append_bodies(struct Interface *interface, const struct Model *model
   }
 }
 
+static void append_reactions(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  for (size_t i = 0; i < model->reactions.count; i++) {
+    const struct Variable *source = &model->reactions.items[i];
+    struct InterfaceVariable *variable =
+        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+    variable->unit = variable_unit(source);
+    variable->node = equations->reactions[i];
+  }
+}
+
 /* In the constraint's own unit, energy is force times it. */
 static void append_constraint_forces(struct Interface *interface, const struct Model *model,
                                      const struct Equations *equations) {
@@ -129,6 +140,7 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
   for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
   for (size_t i = 0; i < model->body_count; i++) {
     for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, equations->placements[i].position[axis], TIME);
@@ -149,12 +161,12 @@ static const char *total_energy_description(const struct Model *model, const str
 }
 
 /* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
-static bool may_be_stiff(const struct Model *model) {
+static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   bool may = graph_depends_on(graph, model->dissipation.node, VELOCITY);
   for (size_t i = 0; i < model->coordinates.count; i++)
     may |= graph_depends_on(graph, model->forces[i].node, VELOCITY) ||
-           graph_depends_on(graph, model->forces[i].node, INPUT);
+           graph_depends_on(graph, equations->residual[i], INPUT);
   return may;
 }
 
@@ -163,7 +175,7 @@ static const struct Method *method_of(const struct Model *model, const struct Eq
   if (model->method != NULL) return model->method;
   if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
-  return method_named(kink != NULL ? "erk" : may_be_stiff(model) ? "auto" : "taylor");
+  return method_named(kink != NULL ? "erk" : may_be_stiff(model, equations) ? "auto" : "taylor");
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
@@ -214,6 +226,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_calculated(interface, model);
   if (n == 0) return interface;
   append_bodies(interface, model, equations);
+  append_reactions(interface, model, equations);
   append_constraint_forces(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");

@@ -8,6 +8,7 @@
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/energies.h"
+#include "mechanics/reactions.h"
 #include "mechanics/time_derivative.h"
 #include "memory.h"
 
@@ -65,13 +66,18 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
   }
 }
 
+static bool is_driven(const struct Model *model, size_t row) {
+  return row < model->coordinates.count && model->drives[row].given;
+}
+
 /*
  * Multiplied out, the inertial forces in curvilinear coordinates lose terms that only cancel each other; others grow.
  * left: the inertial forces of the count coordinates, and ZERO for constraints, without and with accelerations, which
  * are replaced, block by block, where that makes them shorter. Forces and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
  */
-static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *inertia, const Node *accelerations,
-                                    size_t count, Node *left[2]) {
+static void shorten_inertial_forces(const struct Model *model, const struct Inertia *inertia, Node *left[2]) {
+  struct Graph *graph = model->graph;
+  size_t count = model->coordinates.count;
   size_t n = inertia->count;
   Node *rows = allocate(n, sizeof *rows), *other = allocate(n, sizeof *other), *part = allocate(n, sizeof *part),
        *whole = allocate(n, sizeof *whole);
@@ -81,10 +87,11 @@ static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *i
     move_block(&inertia->blocks[b], left[0], part, true);
   }
   for (size_t i = 0; i < n; i++) other[i] = left[0][i];
-  for (size_t i = 0; i < count; i++) rows[i] = accelerations[i];
+  for (size_t i = 0; i < count; i++) rows[i] = model->accelerations[i];
   inertia_add_product(graph, inertia, rows, other);
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
+    if (is_driven(model, inertia->blocks[b].coordinates[0])) continue; /* its M is that of the drive, 1 */
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);
@@ -94,6 +101,16 @@ static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *i
   free(other);
   free(part);
   free(whole);
+}
+
+/* The equation of a driven coordinate tells the force of its drive; what moves it is another one. */
+static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
+  struct Graph *graph = model->graph;
+  const struct Drive *drive = &model->drives[i];
+  shorten(graph, 1, &equations->residual[i]);
+  equations->reactions[drive->reaction] = equations->residual[i];
+  equations->right_side[i] = drive->acceleration;
+  equations->residual[i] = subtract(graph, model->accelerations[i], drive->acceleration);
 }
 
 /* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
@@ -114,11 +131,12 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
     free(seeds);
   }
-  shorten_inertial_forces(graph, equations->inertia, model->accelerations, n, left);
+  shorten_inertial_forces(model, equations->inertia, left);
   for (size_t i = 0; i < n; i++) {
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = subtract(graph, right, left[0][i]);
     equations->residual[i] = subtract(graph, left[1][i], right);
+    if (model->drives[i].given) give_motion(model, equations, i);
   }
   free(motions.position);
   free(motions.inertia);
@@ -147,11 +165,32 @@ static void solve_for_accelerations(const struct Model *model, struct Equations 
     if (is_looped(equations, i)) equations->acceleration[i] = unknown_of_row(model, i);
 }
 
+/* What is solved for symbolically stands for its symbol. */
+static Node with_accelerations(const struct Model *model, const struct Equations *equations, Node node) {
+  struct Graph *graph = model->graph;
+  if (!graph_depends_on(graph, node, ACCELERATION)) return node;
+  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < equations->count; i++)
+    symbols[graph->vertices[model->accelerations[i]].left] = equations->acceleration[i];
+  substitute(graph, &node, 1, symbols, &node);
+  shorten(graph, 1, &node);
+  free(symbols);
+  return node;
+}
+
 static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
-  for (size_t i = 0; i < equations->count; i++)
-    equations->power = add(graph, equations->power, multiply(graph, force[i], model->velocities.items[i].node));
-  equations->power = add(graph, equations->power, model->driven_power.node);
+  Node power = ZERO;
+  for (size_t i = 0; i < equations->count; i++) {
+    const struct Drive *drive = &model->drives[i];
+    Node whole = drive->given ? add(graph, force[i], equations->reactions[drive->reaction]) : force[i];
+    power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
+  }
+  power = add(graph, power, moving_power(model));
+  equations->stated_power = add(graph, power, model->driven_power.node);
+  equations->power = equations->stated_power;
+  if (equations->has_work) equations->power = with_accelerations(model, equations, equations->power);
   equations->kinetic = model->kinetic_energy.node;
   equations->potential = stored_energy(model, model->potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
@@ -165,13 +204,15 @@ struct Equations *equations_create(const struct Model *model) {
                                   .right_side = allocate(rows, sizeof(Node)),
                                   .residual = allocate(rows, sizeof(Node)),
                                   .acceleration = allocate(rows, sizeof(Node)),
+                                  .reactions = allocate(model->reactions.count, sizeof(Node)),
                                   .outputs = allocate(model->outputs.count, sizeof(Node)),
                                   .placements = allocate(model->body_count, sizeof(struct Placement))};
   return equations;
 }
 
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
-  for (size_t i = 0; i < model->outputs.count; i++) equations->outputs[i] = model->outputs.items[i].node;
+  for (size_t i = 0; i < model->outputs.count; i++)
+    equations->outputs[i] = with_reactions(model, equations->reactions, model->outputs.items[i].node);
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Body *body = &model->bodies[i];
     for (int axis = 0; axis < 3; axis++) equations->placements[i].position[axis] = body->position[axis].node;
@@ -191,8 +232,9 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     add_constraints(model, equations);
-    derive_energies(model, equations, force);
     solve_for_accelerations(model, equations);
+    derive_energies(model, equations, force);
+    reactions_derive(model, equations->reactions);
     copy_outputs(model, equations);
   }
   if (graph_limit(graph) != NULL)
@@ -217,6 +259,11 @@ static bool are_finite(const struct Graph *graph, const Node *nodes, size_t coun
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics) {
   size_t wrong = 0;
+  for (size_t i = 0; i < model->reactions.count; i++)
+    if (!are_finite(model->graph, &equations->reactions[i], 1))
+      report_error(diagnostics, model->reactions.items[i].line,
+                   "%s has a coefficient that is not finite; expected positions that are smooth there",
+                   model->reactions.items[i].name);
   if (are_finite(model->graph, equations->residual, row_count(equations))) return;
   while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;
   if (wrong >= equations->count) {
@@ -241,6 +288,7 @@ void equations_free(struct Equations *equations) {
   free(equations->residual);
   free(equations->acceleration);
   free(equations->outputs);
+  free(equations->reactions);
   free(equations->placements);
   free(equations);
 }

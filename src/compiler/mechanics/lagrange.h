@@ -28,10 +28,13 @@ struct Equations {
   Node *right_side, *residual, *acceleration;
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
-  bool has_work;                  /* the work of the non-conservative forces is a state */
-  Node power;                     /* of the non-conservative forces: sum Q_i v_i, and F . dr/dt of Cartesian ones */
+  bool has_work; /* the work of the non-conservative forces is a state */
+  /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
+  Node power;
+  Node stated_power;              /* the same, which may hold the acceleration symbols */
   Node kinetic, potential, total; /* energies, see energies.h */
   Node *outputs;                  /* of the model */
+  Node *reactions;                /* of the model; they may hold the acceleration symbols */
   struct Placement *placements;   /* of its bodies */
 };
 

@@ -257,6 +257,8 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->right_side[i] = linear->acceleration[i];
     linear->residual[i] = subtract(graph, model->accelerations[i], linear->acceleration[i]);
   }
+  for (size_t i = 0; i < model->reactions.count; i++)
+    linear->reactions[i] = without_forces(model, linear, expand(expansion, equations->reactions[i]));
   for (size_t i = 0; i < model->outputs.count; i++)
     linear->outputs[i] = without_forces(model, linear, expand(expansion, equations->outputs[i]));
   for (size_t i = 0; i < model->body_count; i++) {
@@ -264,7 +266,7 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
     linear->placements[i].angle = expand(expansion, from->angle);
   }
-  linear->power = equations->power;
+  linear->power = linear->stated_power = equations->power;
   linear->kinetic = expand_twice(expansion, equations->kinetic);
   linear->potential = expand_twice(expansion, equations->potential);
   linear->total = add(graph, linear->kinetic, linear->potential);

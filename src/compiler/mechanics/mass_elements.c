@@ -27,14 +27,20 @@ void elements_free(struct Elements *elements) {
   free(elements->nodes);
 }
 
-/* M_ij = d p_i / d v_j, row by row. */
-static struct Elements differentiate_momenta(struct Graph *graph, const Node *momentum, size_t count) {
+/* M_ij = d p_i / d v_j, row by row; a driven coordinate has 1 alone, for v' = its acceleration. */
+static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
+  struct Graph *graph = model->graph;
+  size_t count = model->coordinates.count;
   struct Elements elements = elements_create(count);
   for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
+    if (model->drives[i].given) {
+      elements_append(&elements, i, i, ONE);
+      continue;
+    }
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (j <= i) elements_append(&elements, i, j, row.values[k]);
+      if (j <= i && !model->drives[j].given) elements_append(&elements, i, j, row.values[k]);
     }
     gradient_free(&row);
   }
@@ -152,7 +158,7 @@ static void shorten_elements(const struct Model *model, const Node *momentum, st
 }
 
 struct Elements elements_of(const struct Model *model, const Node *momentum) {
-  struct Elements elements = differentiate_momenta(model->graph, momentum, model->coordinates.count);
+  struct Elements elements = differentiate_momenta(model, momentum);
   shorten_elements(model, momentum, &elements);
   return elements;
 }

@@ -23,18 +23,27 @@ void model_free(struct Model *model) {
   free_variables(&model->outputs);
   free_variables(&model->calculated);
   free_variables(&model->definitions);
+  free_variables(&model->displacements);
+  free_variables(&model->reactions);
   free_variables(&model->constraints);
   for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
   free(model->bodies);
   free(model->accelerations);
   free(model->constraint_forces);
   free(model->forces);
+  free(model->drives);
+  free(model->input_rates);
+  free(model->point_forces);
   free(model->point.values);
   free(model->point.given);
   graph_free(model->graph);
   free(model->name);
   free(model->description);
   free(model);
+}
+
+bool is_input_rate(const struct Model *model, size_t input) {
+  return input > 0 && model->input_rates[input - 1] == model->inputs.items[input].node;
 }
 
 double *start_values(const struct Model *model) {

@@ -26,8 +26,21 @@ struct Body {
   char *name;
   struct Quantity mass, inertia;
   struct Quantity position[3], angle;
+  Node displaced[4]; /* x, y, z and angle as functions of displacements too */
   bool has_position[3], has_angle;
   long line;
+};
+
+/* A Cartesian force along a component of a position, which is a function of displacements too. */
+struct PointForce {
+  Node position, force;
+};
+
+/* How a coordinate moves that is driven: in a given way. */
+struct Drive {
+  bool given;        /* false of a coordinate that moves by its equation */
+  Node acceleration; /* a function of inputs, parameters and time */
+  size_t reaction;   /* the place of the drive's force among the reactions */
 };
 
 /* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
@@ -42,6 +55,12 @@ struct Model {
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
+  struct VariableList displacements;
+  struct VariableList reactions; /* forces along the displacements, then of the drives */
+  Node *input_rates;             /* of each input: the one that is its time derivative; ZERO for none */
+  bool inputs_move;              /* positions or energies depend on inputs */
+  struct Drive *drives;          /* one a coordinate */
+  size_t drive_count;            /* of those that are given */
   struct Body *bodies;
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
@@ -56,9 +75,13 @@ struct Model {
   bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
   struct Quantity potential, dissipation; /* J, W */
   struct Quantity *forces;                /* generalized force along each coordinate */
-  struct Quantity driven_power;           /* W: of Cartesian forces along the motion that time alone gives */
-  bool has_forces;                        /* some force or dissipation was given */
-  long work_line;                         /* of <work/>, which asks for nonConservativeWork; 0 for none */
+  /* The sums of the <kinetic> terms, potentials and dissipations as functions of displacements too. */
+  struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
+  struct PointForce *point_forces;
+  size_t point_force_count;
+  struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
+  bool has_forces;              /* some force, dissipation or drive was given */
+  long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
   bool linearized;
   struct LinearizationPoint point;         /* where linearized */
   const struct Method *method;             /* NULL for the default */
@@ -69,6 +92,9 @@ struct Model {
 };
 
 void model_free(struct Model *model);
+
+/* Whether the input is the time derivative of the one before it. */
+bool is_input_rate(const struct Model *model, size_t input);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);

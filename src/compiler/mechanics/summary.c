@@ -70,9 +70,10 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
       .lagrangian_kinetic = readable(graph, &names, model->kinetic.node),
       .kinetic = readable(graph, &names, equations->kinetic),
       .potential = readable(graph, &names, model->linearized ? equations->potential : model->potential.node),
-      .power = readable(graph, &names, equations->power),
+      .power = readable(graph, &names, equations->stated_power),
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = at_most(equations->count, SHOWN_LIMIT),
+      .reaction_count = at_most(model->reactions.count, SHOWN_LIMIT),
       .output_count = at_most(model->outputs.count, SHOWN_LIMIT)};
   summary->inertial = allocate(summary->motion_count, sizeof(Node));
   summary->right_side = allocate(summary->motion_count, sizeof(Node));
@@ -81,6 +82,9 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
     summary->inertial[i] = inertial_side(model, equations, &names, i);
     summary->right_side[i] = readable(graph, &names, equations->right_side[i]);
   }
+  summary->reactions = allocate(summary->reaction_count, sizeof(Node));
+  for (size_t i = 0; i < summary->reaction_count; i++)
+    summary->reactions[i] = readable(graph, &names, equations->reactions[i]);
   for (size_t i = 0; i < summary->output_count; i++)
     summary->outputs[i] = readable(graph, &names, equations->outputs[i]);
   return summary;
@@ -92,6 +96,7 @@ void summary_free(struct Summary *summary) {
   free(summary->names.named);
   free(summary->inertial);
   free(summary->right_side);
+  free(summary->reactions);
   free(summary->outputs);
   free(summary);
 }

@@ -20,6 +20,7 @@ static Node *create_seeds(struct Graph *graph) {
   size_t count = graph->symbol_count;
   Node *seeds = allocate(2 * count, sizeof *seeds);
   for (size_t i = 0; i < count; i++) {
+    if (graph->symbols[i].kind == DISPLACEMENT || graph->symbols[i].kind == REACTION) continue; /* 0, or replaced */
     char *name = format_text("d %s", graph->symbols[i].name);
     seeds[i] = graph_symbol(graph, seed_kinds[graph->symbols[i].kind], graph->symbols[i].index, name);
     free(name);

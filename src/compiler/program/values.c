@@ -46,6 +46,8 @@ static Place place_of_symbol(const struct Values *values, const struct Symbol *s
   case SEED_COORDINATE: return place_in(SPACE_SEED_STATE, index);
   case SEED_VELOCITY: return place_in(SPACE_SEED_STATE, n + index);
   case SEED_ACCELERATION: return place_in(SPACE_SEED_ACCELERATION, index);
+  case DISPLACEMENT: /* replaced in all that is computed, and without seeds */
+  case REACTION:
   case SEED_INPUT:
   case SYMBOL_KIND_COUNT: break;
   }

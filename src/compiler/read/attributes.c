@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/differentiate.h"
 #include "algebra/other_units.h"
 #include "memory.h"
 
@@ -36,11 +37,23 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   char *text = attribute(node, name);
   if (text == NULL) return false;
   char *what = format_text("%s of <%s>", name, (const char *)node->name);
-  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   if (*text != '\0') *value = parse_expression(reader->scope, text, place);
   free(what);
   free(text);
   return true;
+}
+
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node) {
+  struct Graph *graph = reader->model->graph;
+  if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
+  graph->not_finite = false;
+  substitute(graph, &node, 1, reader->undisplaced, &node);
+  if (graph->not_finite)
+    report_error(reader->diagnostics, line,
+                 "%s has no finite value where the displacements are 0; expected one, as they always are", what);
+  return node;
 }
 
 /* The element's text; a comment separates what stands before and after it. */
@@ -59,7 +72,8 @@ static char *text_of(xmlNodePtr node) {
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
   char *text = text_of(node);
-  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   struct Quantity value = parse_expression(reader->scope, text, place);
   free(text);
   return value;

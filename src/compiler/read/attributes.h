@@ -27,18 +27,23 @@ struct Reader {
   bool has_solver, has_experiment;
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
+  Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
   size_t constraints_read;
 };
 
-/* The kinds of symbols that may stand in a place, as in struct Place. */
+/* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
 #define KIND(kind) (1u << (kind))
 
 enum {
   IN_MASS = KIND(PARAMETER),
-  IN_POSITION = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME),
+  IN_DRIVE = KIND(PARAMETER) | KIND(TIME) | KIND(INPUT),
+  IN_INERTIA = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
+  WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
+  IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
-  IN_FORCE = IN_ENERGY | KIND(INPUT),
-  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION),
+  IN_CONSTRAINT = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY),
+  IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
 
 /* NULL where missing; to be freed with free(). */
@@ -53,6 +58,9 @@ char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 /* An expression in an attribute; true where present. kinds as in struct Place. */
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
                           struct Quantity *value);
+
+/* The node where nothing is displaced; reports where it has no finite value there. */
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node);
 
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);

@@ -3,18 +3,31 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "memory.h"
+
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
   if (coordinates == 0 && model->outputs.count == 0)
     report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
-  if (coordinates == 0 && (model->body_count > 0 || model->kinetic.node != ZERO || model->has_forces))
+  if (coordinates == 0 &&
+      (model->body_count > 0 || model->displacements.count > 0 || model->kinetic.node != ZERO || model->has_forces))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
   if (coordinates == 0 && reader->has_solver)
     report_error(reader->diagnostics, model->solver_line,
                  "a system without coordinates has nothing to solve; expected no <solver>");
   if (model->work_line > 0 && !model->has_forces)
     report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
+  if (model->constraints.count > 0 && model->drive_count > 0)
+    report_error(reader->diagnostics, model->constraints.items[0].line,
+                 "the constraint '%s' beside a driven coordinate; expected one that holds the coordinate to its motion "
+                 "in place of its acceleration=\"...\"",
+                 model->constraints.items[0].name);
+  if (model->constraints.count > 0 && model->work_line > 0 && model->inputs_move)
+    report_error(
+        reader->diagnostics, model->work_line,
+        "<work/> beside the constraint '%s' and an input that moves positions or energies; expected no <work/>",
+        model->constraints.items[0].name);
   if (model->work_line > 0 && model->moving_constraint != NULL)
     report_error(reader->diagnostics, model->work_line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
@@ -25,14 +38,42 @@ static void check_content(const struct Reader *reader) {
 /* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */
 static void warn_without_unit(const struct Reader *reader) {
   const struct Model *model = reader->model;
-  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates};
-  for (size_t list = 0; reader->scope->checks_units && list < 3; list++)
+  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
+                                              &model->displacements};
+  for (size_t list = 0; reader->scope->checks_units && list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
-      if (lists[list]->items[i].unit == NULL)
+      if (lists[list]->items[i].unit == NULL && !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that the units of what it stands in are not checked; expected one, or "
                        "unit=\"1\"",
                        lists[list]->items[i].name);
+}
+
+/* All that may hold displacements, with those that each holds marked. Free with free(). */
+static bool *mark_displaced(const struct Model *model) {
+  Node *targets = allocate(4 * model->body_count + 3, sizeof *targets);
+  size_t count = 0;
+  for (size_t i = 0; i < model->body_count; i++)
+    for (int component = 0; component < 4; component++) targets[count++] = model->bodies[i].displaced[component];
+  targets[count++] = model->displaced_kinetic.node;
+  targets[count++] = model->displaced_potential.node;
+  targets[count++] = model->displaced_dissipation.node;
+  bool *marks = allocate(model->graph->count, sizeof *marks);
+  graph_mark(model->graph, targets, count, marks);
+  free(targets);
+  return marks;
+}
+
+static void warn_of_displacements(const struct Reader *reader) {
+  const struct VariableList *displacements = &reader->model->displacements;
+  bool *marks = displacements->count > 0 ? mark_displaced(reader->model) : NULL;
+  for (size_t i = 0; i < displacements->count; i++)
+    if (!marks[displacements->items[i].node])
+      report_warning(reader->diagnostics, displacements->items[i].line,
+                     "the displacement '%s' moves nothing, so that its force is 0; expected it in a position, an angle "
+                     "or a potential",
+                     displacements->items[i].name);
+  free(marks);
 }
 
 static void warn_of_inertia(const struct Reader *reader, const struct Body *body, const char *what, Node inertia,
@@ -98,6 +139,7 @@ void check_system(struct Reader *reader) {
   if (reader->diagnostics->errors > 0) return;
   warn_without_unit(reader);
   warn_at_start(reader);
+  warn_of_displacements(reader);
   if (reader->dissipation_count == 0) return;
   warn_of_dissipation(reader, 1);
   warn_of_dissipation(reader, -1);

@@ -71,7 +71,8 @@ static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
                    others[i]);
 }
 
-static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
+static const struct Variable *read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list,
+                                            enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
   variable.start = 0.0;
   number_attribute(reader, node, "start", &variable.start);
@@ -79,7 +80,38 @@ static void read_quantity(struct Reader *reader, xmlNodePtr node, struct Variabl
   number_attribute(reader, node, "max", &variable.maximum);
   check_range(reader, &variable);
   variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
-  append_variable(list, variable);
+  return append_variable(list, variable);
+}
+
+static Node append_input_rate(struct Reader *reader) {
+  struct VariableList *inputs = &reader->model->inputs;
+  const struct Variable *of = &inputs->items[inputs->count - 1];
+  struct Variable rate = {.name = format_text("der(%s)", of->name),
+                          .description = format_text("time derivative of %s", of->name),
+                          .dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0),
+                          .minimum = NAN,
+                          .maximum = NAN,
+                          .nominal = NAN,
+                          .line = of->line};
+  if (!of->dimension.known) rate.dimension = dimension_unknown;
+  rate.node = scope_symbol(reader->scope, INPUT, (int)inputs->count, rate.name, rate.dimension, rate.line);
+  scope_set_time_derivative(reader->scope, of->node, rate.node);
+  append_variable(inputs, rate);
+  return rate.node;
+}
+
+/* An input, and those that are its time derivatives. */
+static void read_input(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  double derivatives = 0;
+  read_quantity(reader, node, &model->inputs, INPUT);
+  if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
+                 derivatives);
+  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
+  size_t index = model->inputs.count - 1;
+  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
+  if (derivatives >= 2) model->input_rates[index] = ZERO;
 }
 
 static void read_parameter(struct Reader *reader, xmlNodePtr node) {
@@ -127,6 +159,25 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
+  model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
+  model->drives[index] = (struct Drive){.given = xmlHasProp(node, (const xmlChar *)"acceleration") != NULL};
+  model->drive_count += model->drives[index].given;
+  model->has_forces |= model->drives[index].given;
+}
+
+/* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
+static void read_displacement(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable displacement = common_attributes(reader, node);
+  int index = 2 * (int)model->displacements.count;
+  displacement.node =
+      scope_symbol(reader->scope, DISPLACEMENT, index, displacement.name, displacement.dimension, displacement.line);
+  char *name = format_text("der(%s)", displacement.name);
+  Node rate = scope_symbol(reader->scope, DISPLACEMENT, index + 1, name,
+                           dimension_multiply(displacement.dimension, unit_of("s"), -1.0), displacement.line);
+  scope_set_time_derivative(reader->scope, displacement.node, rate);
+  append_variable(&model->displacements, displacement);
+  free(name);
 }
 
 static void add_term(struct Model *model, struct Quantity *sum, Node term) {
@@ -160,12 +211,15 @@ static void append_body(struct Reader *reader, struct Body body) {
 }
 
 /* A component that definitions.h has read; true where it is given. */
-static bool take_component(const struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
-                           struct Quantity *value) {
+static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
+                           struct Quantity *value, Node *displaced) {
   if (!xmlHasProp(node, (const xmlChar *)component)) return false;
   char *name = format_text("%s.%s", body->name, component);
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
+  *displaced = value->node;
+  reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
+  value->node = without_displacements(reader, body->line, name, value->node);
   free(name);
   return true;
 }
@@ -190,6 +244,27 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
                  "it has the velocity w, as for thrust",
                  what, what, symbol, rate, symbol, rate, symbol);
+  else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on displacements; expected them in positions and angles", what);
+}
+
+/* A mass feels the second derivatives of the inputs that its position depends on; a mere point does not. */
+static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
+  const struct Model *model = reader->model;
+  struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
+  for (size_t i = 0; i < levers.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
+    size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
+    Node rate = model->input_rates[input];
+    if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
+    report_error(reader->diagnostics, body->line,
+                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
+                 "mass=\"0\" for a mere point",
+                 body->name, model->inputs.items[input].name,
+                 is_input_rate(model, input) ? "the <input> itself in place of its derivative"
+                                             : "derivatives=\"2\" of this <input>");
+  }
+  gradient_free(&levers);
 }
 
 static void read_body(struct Reader *reader, xmlNodePtr node) {
@@ -201,39 +276,45 @@ static void read_body(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
                  other->line);
-  expression_attribute(reader, node, "mass", IN_POSITION, &body.mass);
+  expression_attribute(reader, node, "mass", IN_INERTIA, &body.mass);
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
   for (int axis = 0; axis < 3 && other == NULL; axis++)
-    body.has_position[axis] = take_component(reader, &body, node, axes[axis], &body.position[axis]);
-  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle);
+    body.has_position[axis] =
+        take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
+  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
   if (body.has_angle) {
-    expression_attribute(reader, node, "inertia", IN_POSITION, &body.inertia);
+    expression_attribute(reader, node, "inertia", IN_INERTIA, &body.inertia);
     require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
     require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
+  for (int component = 0; component < 4; component++) require_accelerations(reader, &body, component);
   for (int axis = 0; axis < 3; axis++)
     add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
   add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
   append_body(reader, body);
 }
 
-/* Adds the element's expression to a sum and returns it. */
-static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *sum, const char *what, unsigned kinds,
-                        const char *unit) {
+/* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
+                        const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
-  add_term(reader->model, sum, term.node);
-  return term.node;
+  add_term(reader->model, displaced, term.node);
+  reader->model->inputs_move |= (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
+  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
+  add_term(reader->model, sum, undisplaced);
+  return undisplaced;
 }
 
 static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   bool driven;
-  Node term = read_energy(reader, node, &model->kinetic, "the kinetic energy", IN_ENERGY, "J");
-  add_term(model, &model->explicit_kinetic, term);
+  Node term = read_energy(reader, node, &model->displaced_kinetic, &model->explicit_kinetic, "the kinetic energy",
+                          IN_ENERGY, "J");
+  add_term(model, &model->kinetic, term);
   add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
   model->driven |= driven;
 }
@@ -287,7 +368,23 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
   require_unit(reader, xmlGetLineNo(node), "the force", force,
                dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces[index], force.node);
+  add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
+}
+
+/* The acceleration of a driven coordinate. */
+static void read_drive(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Quantity acceleration = {.node = ZERO};
+  if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
+  char *name = name_attribute(reader, node, "name");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  free(name);
+  if (symbol == NULL) return; /* the name was taken, which is reported */
+  const struct Variable *velocity = &model->velocities.items[symbol->index];
+  if (velocity->dimension.known)
+    require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
+                 dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
+  model->drives[symbol->index].acceleration = acceleration.node;
 }
 
 /* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
@@ -300,6 +397,11 @@ static void add_force(struct Model *model, Node position, Node force) {
     add_term(model, sum, multiply(graph, force, levers.values[i]));
   }
   gradient_free(&levers);
+}
+
+static void append_point_force(struct Model *model, Node position, Node force) {
+  model->point_forces = reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
+  model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
 }
 
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -320,7 +422,9 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
       report_error(reader->diagnostics, xmlGetLineNo(node),
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);
+    force.node = without_displacements(reader, xmlGetLineNo(node), axes[axis], force.node);
     add_force(model, body->position[axis].node, force.node);
+    append_point_force(model, body->displaced[axis], force.node);
   }
 }
 
@@ -353,11 +457,11 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   char *what = format_text("the output '%s'", output.name);
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
   require_unit(reader, output.line, what, value, output.dimension);
-  free(what);
   if (!output.dimension.known) output.dimension = value.dimension;
-  output.node = value.node;
+  output.node = value.node = without_displacements(reader, output.line, what, value.node);
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
+  free(what);
   append_variable(&reader->model->outputs, output);
 }
 
@@ -400,8 +504,9 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   struct Model *model = reader->model;
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
   else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
-  else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
+  else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
   else if (strcmp(element, "constraint") == 0) append_variable(&model->constraints, common_attributes(reader, node));
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
@@ -410,7 +515,8 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
 
 static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  Node dissipation = read_energy(reader, node, &model->dissipation, "the dissipation", IN_FORCE, "W");
+  Node dissipation =
+      read_energy(reader, node, &model->displaced_dissipation, &model->dissipation, "the dissipation", IN_FORCE, "W");
   if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
@@ -445,7 +551,7 @@ static void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   const struct Graph *graph = model->graph;
   struct Variable *constraint = &model->constraints.items[reader->constraints_read++];
-  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_ENERGY);
+  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
   constraint->node = value.node;
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
   if (reader->diagnostics->errors > 0) return;
@@ -466,8 +572,9 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   struct Model *model = reader->model;
   if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
   else if (strcmp(element, "potential") == 0)
-    read_energy(reader, node, &model->potential, "the potential", IN_ENERGY, "J");
+    read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
   else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_drive(reader, node);
   else if (strcmp(element, "force") == 0) read_force(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);
   else if (strcmp(element, "constraint") == 0) read_constraint(reader, node);

@@ -128,11 +128,13 @@ const char *hint_for_function(const char *name) {
 
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   if (allowed == 0) return "; expected numbers and constants";
+  if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
   switch (kind) {
-  case INPUT:
-    return "; expected it in a <force>, or what it moves as a <coordinate> that a stiff spring and damper draw there";
+  case INPUT: return "; expected it in a <force>";
   case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
+  case DISPLACEMENT: return "; expected it in positions, angles, energies and forces";
+  case REACTION: return "; expected it in an <output>";
   case ACCELERATION: return "; expected them in an <output> alone: inertia belongs in masses and <kinetic>";
   default: return "";
   }

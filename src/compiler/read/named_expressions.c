@@ -45,7 +45,7 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
                               .dimension = value.dimension,
-                              .node = value.node};
+                              .node = without_displacements(reader, xmlGetLineNo(node), "the definition", value.node)};
   append_variable(is_definition ? &reader->model->definitions : &reader->model->calculated, variable);
 }
 

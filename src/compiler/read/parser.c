@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "memory.h"
+#include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "read/hints.h"
@@ -15,8 +16,14 @@
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
-    [PARAMETER] = "parameters", [TIME] = "time",    [COORDINATE] = "coordinates",
-    [VELOCITY] = "velocities",  [INPUT] = "inputs", [ACCELERATION] = "accelerations",
+    [PARAMETER] = "parameters",
+    [TIME] = "time",
+    [COORDINATE] = "coordinates",
+    [VELOCITY] = "velocities",
+    [INPUT] = "inputs",
+    [ACCELERATION] = "accelerations",
+    [DISPLACEMENT] = "displacements",
+    [REACTION] = "forces of reaction",
 };
 
 /* What names the argument of der(...) in messages begins so. */
@@ -143,6 +150,41 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
   return name;
 }
 
+/* Time derivatives that the system knows of an input. */
+static int derivatives_of_input(const struct Scope *scope, Node symbol) {
+  int count = 0;
+  while ((symbol = time_derivative_of_symbol(scope, symbol)) != ZERO) count++;
+  return count;
+}
+
+/* Where the motion rests on derivatives of the inputs in a node, which has this name. */
+static void require_input_derivatives(struct Parser *parser, Node node, const char *name) {
+  const struct Graph *graph = parser->graph;
+  int needed = parser->place.input_derivatives;
+  if (needed == 0 || parser->failed || !graph_depends_on(graph, node, INPUT)) return;
+  cone_collect(graph->cone, graph, &node, 1, NULL);
+  for (size_t i = 0; i < graph->cone->count; i++) {
+    Node symbol = graph->cone->nodes[i];
+    if (graph->vertices[symbol].operation != SYMBOL || !graph_depends_on(graph, symbol, INPUT)) continue;
+    int known = derivatives_of_input(parser->scope, symbol);
+    const char *input = graph_symbol_of(graph, symbol)->name;
+    if (known == 0 && is_derived(parser->place.what))
+      FAIL(parser, "%s cannot depend on inputs, but '%s' does%s, or an <input> with derivatives=\"%d\"",
+           parser->place.what, name, no_derivative, needed);
+    else if (known == 0)
+      FAIL(parser,
+           "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
+           "that says where a thing is moved to",
+           parser->place.what, name);
+    else if (known < needed && needed > 2)
+      FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->place.what, needed,
+           input);
+    else if (known < needed)
+      FAIL(parser, "%s needs 2 time derivatives of the input '%s', of which 1 is known; expected derivatives=\"2\"",
+           parser->place.what, input);
+  }
+}
+
 static struct Quantity look_up(struct Parser *parser, const char *name) {
   const struct Quantity *quantity = scope_find(parser->scope, name);
   if (quantity == NULL && definitions_wait_for(parser->scope->definitions, name)) return nothing;
@@ -156,6 +198,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
            is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, parser->place.kinds));
+  require_input_derivatives(parser, quantity->node, name);
   return *quantity;
 }
 
@@ -206,10 +249,11 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
-/* Inputs and accelerations have no derivatives that a system knows. */
+/* Accelerations, forces of reaction, and inputs without derivatives of their own have none that a system knows. */
 static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Place place = parser->place;
-  parser->place.kinds &= ~((1u << INPUT) | (1u << ACCELERATION));
+  parser->place.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
+  parser->place.input_derivatives++;
   char *what = format_text("%s%s", derived, place.what);
   parser->place.what = what;
   struct Quantity value = parse_sum(parser);

@@ -7,8 +7,9 @@
 /* Where an expression stands, for messages, and what it may depend on. */
 struct Place {
   long line;
-  const char *what; /* such as "the potential" */
-  unsigned kinds;   /* bit k: may depend on symbols of kind k */
+  const char *what;      /* such as "the potential" */
+  unsigned kinds;        /* bit k: may depend on symbols of kind k */
+  int input_derivatives; /* how many time derivatives inputs must have there */
 };
 
 /*

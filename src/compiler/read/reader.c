@@ -9,6 +9,7 @@
 #include "read/definitions.h"
 #include "read/elements.h"
 #include "read/linearization_reader.h"
+#include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
 #include "read/xml.h"
@@ -112,6 +113,30 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
   }
 }
 
+/* The name and unit of a force that does work along a variable. */
+static void append_reaction(struct Model *model, struct Scope *scope, const struct Variable *along, const char *what) {
+  struct Variable force = {.name = format_text("%s.force", along->name),
+                           .description = format_text("%s %s", what, along->name),
+                           .dimension = dimension_multiply(unit_of("J"), along->dimension, -1.0),
+                           .minimum = NAN,
+                           .maximum = NAN,
+                           .nominal = NAN,
+                           .line = along->line};
+  if (!along->dimension.known) force.dimension = dimension_unknown;
+  force.node = scope_symbol(scope, REACTION, (int)model->reactions.count, force.name, force.dimension, force.line);
+  append_variable(&model->reactions, force);
+}
+
+static void append_reactions(struct Model *model, struct Scope *scope) {
+  for (size_t i = 0; i < model->displacements.count; i++)
+    append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
+  for (size_t i = 0; i < model->coordinates.count; i++) {
+    if (!model->drives[i].given) continue;
+    model->drives[i].reaction = model->reactions.count;
+    append_reaction(model, scope, &model->coordinates.items[i], "force of what drives");
+  }
+}
+
 /* Symbols for the forces of the constraints, which are numbered after the accelerations. */
 static void declare_constraint_forces(struct Model *model, struct Scope *scope) {
   model->constraint_forces = allocate(model->constraints.count, sizeof *model->constraint_forces);
@@ -166,10 +191,13 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   check_definitions_used(reader);
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
+  append_reactions(reader->model, reader->scope);
+  reader->undisplaced = undisplaced_symbols(reader->model->graph);
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
   read_children(reader, root, EXPRESSIONS);
+  reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
@@ -201,6 +229,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     read_system(&reader, root);
     free(reader.definition_used);
     free(reader.dissipations);
+    free(reader.undisplaced);
     names_free(reader.bodies);
     definitions_free(reader.definitions);
     (*scope)->definitions = NULL;

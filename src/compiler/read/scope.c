@@ -103,13 +103,17 @@ Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const ch
   scope->time_derivatives =
       reallocate(scope->time_derivatives, scope->graph->symbol_count, sizeof *scope->time_derivatives);
   scope->time_derivatives[scope->graph->symbol_count - 1] = ZERO;
-  if (kind <= INPUT && kind != ACCELERATION)
+  if (kind < SEED_PARAMETER && kind != ACCELERATION)
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, line);
   return node;
 }
 
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative) {
   scope->time_derivatives[scope->graph->vertices[symbol].left] = derivative;
+}
+
+Node time_derivative_of_symbol(const struct Scope *scope, Node symbol) {
+  return scope->time_derivatives[scope->graph->vertices[symbol].left];
 }
 
 Node total_time_derivative(struct Scope *scope, Node node) {

@@ -50,6 +50,9 @@ Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const ch
                   long line);
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);
 
+/* As it was set; ZERO for a symbol of which none was. */
+Node time_derivative_of_symbol(const struct Scope *scope, Node symbol);
+
 /* d node / dt by the chain rule, the part explicit in time included. */
 Node total_time_derivative(struct Scope *scope, Node node);
 

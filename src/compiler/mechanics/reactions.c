@@ -1,0 +1,130 @@
+#include "mechanics/reactions.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/shorten.h"
+#include "algebra/simplify.h"
+#include "mechanics/time_derivative.h"
+#include "memory.h"
+
+/* sum weight . d position / d s for all symbols s of the kind, over positions as functions of displacements too. */
+struct Work {
+  Node *positions, *weights;
+  size_t count;
+};
+
+static struct Work work_create(size_t capacity) {
+  return (struct Work){.positions = allocate(capacity, sizeof(Node)), .weights = allocate(capacity, sizeof(Node))};
+}
+
+static void append_work(struct Work *work, Node position, Node weight) {
+  work->positions[work->count] = position;
+  work->weights[work->count++] = weight;
+}
+
+static Node *work_along(struct Graph *graph, struct Work *work, enum SymbolKind kind, size_t count) {
+  Node *force = allocate(count, sizeof *force);
+  weighted_gradient_of(graph, work->positions, work->weights, work->count, kind, count, force);
+  free(work->positions);
+  free(work->weights);
+  return force;
+}
+
+/* sum m (d2r/dt2) . dr/ds */
+static Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count) {
+  struct Graph *graph = model->graph;
+  struct Work work = work_create(4 * model->body_count);
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    for (int component = 0; component < 4; component++) {
+      Node displaced = body->displaced[component];
+      Node inertia = component < 3 ? body->mass.node : body->inertia.node;
+      if (inertia == ZERO || !graph_depends_on(graph, displaced, kind)) continue;
+      Node rate = component < 3 ? body->position[component].node : body->angle.node;
+      derivative_along(graph, &rate, 1, seeds, &rate);
+      derivative_along(graph, &rate, 1, seeds, &rate);
+      append_work(&work, displaced, multiply(graph, inertia, rate));
+    }
+  }
+  return work_along(graph, &work, kind, count);
+}
+
+static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
+  struct Work work = work_create(model->point_force_count);
+  for (size_t i = 0; i < model->point_force_count; i++)
+    if (graph_depends_on(model->graph, model->point_forces[i].position, kind))
+      append_work(&work, model->point_forces[i].position, model->point_forces[i].force);
+  return work_along(model->graph, &work, kind, count);
+}
+
+/* R + Q for each symbol of the kind but the last; that of its rate follows it. */
+static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_t count) {
+  struct Graph *graph = model->graph;
+  Node lagrangian = subtract(graph, model->displaced_kinetic.node, model->displaced_potential.node);
+  Node *seeds = time_seeds(model, true), *force = inertial_forces(model, seeds, kind, count);
+  Node *slope = allocate(count, sizeof *slope), *rate = allocate(count, sizeof *rate);
+  gradient_of(graph, lagrangian, kind, count, slope);
+  derivative_along(graph, slope, count, seeds, rate);
+  for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], subtract(graph, rate[i + 1], slope[i]));
+  free(seeds);
+  free(slope);
+  free(rate);
+  return force;
+}
+
+/* Each symbol for itself. */
+static Node *all_symbols(const struct Graph *graph) {
+  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  return symbols;
+}
+
+void reactions_derive(const struct Model *model, Node *reactions) {
+  struct Graph *graph = model->graph;
+  size_t count = model->displacements.count;
+  if (count == 0) return;
+  Node *force = forces_along(model, DISPLACEMENT, 2 * count), *undisplaced = undisplaced_symbols(graph);
+  Node *push = point_forces(model, DISPLACEMENT, 2 * count), *damping = allocate(2 * count, sizeof *damping);
+  gradient_of(graph, model->displaced_dissipation.node, DISPLACEMENT, 2 * count, damping);
+  for (size_t i = 0; i < count; i++)
+    reactions[i] = subtract(graph, subtract(graph, push[2 * i], damping[2 * i + 1]), force[2 * i]);
+  substitute(graph, reactions, count, undisplaced, reactions);
+  for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
+  free(force);
+  free(push);
+  free(damping);
+  free(undisplaced);
+}
+
+/* Forces at what an input moves act on the system through it, so that what moves it delivers R, and they Q. */
+Node moving_power(const struct Model *model) {
+  struct Graph *graph = model->graph;
+  size_t count = model->inputs.count;
+  if (!model->inputs_move) return ZERO;
+  Node *force = forces_along(model, INPUT, count), *undisplaced = undisplaced_symbols(graph), power = ZERO;
+  for (size_t i = 0; i + 1 < count; i++)
+    if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
+  substitute(graph, &power, 1, undisplaced, &power);
+  free(force);
+  free(undisplaced);
+  return power;
+}
+
+Node *undisplaced_symbols(const struct Graph *graph) {
+  Node *symbols = all_symbols(graph);
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == DISPLACEMENT) symbols[i] = ZERO;
+  return symbols;
+}
+
+Node with_reactions(const struct Model *model, const Node *reactions, Node node) {
+  struct Graph *graph = model->graph;
+  if (!graph_depends_on(graph, node, REACTION)) return node;
+  Node *symbols = all_symbols(graph);
+  for (size_t i = 0; i < model->reactions.count; i++)
+    symbols[graph->vertices[model->reactions.items[i].node].left] = reactions[i];
+  substitute(graph, &node, 1, symbols, &node);
+  free(symbols);
+  return node;
+}
