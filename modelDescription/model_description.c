@@ -118,7 +118,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
       [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
       [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
   };
-  bool is_calculated = entry->follows_from != NULL;
+  bool is_calculated = is_calculated_parameter(entry);
   write_attribute(writer, "causality",
                   entry->is_output ? "output"
                   : is_calculated  ? "calculatedParameter"
@@ -128,7 +128,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
                   : entry->kind == VARIABLE_STATISTIC                ? "discrete"
                                                                      : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
-    write_attribute(writer, "initial", initials[entry->kind]);
+    write_attribute(writer, "initial", has_following_start(entry) ? "approx" : initials[entry->kind]);
 }
 
 static void write_real(xmlTextWriterPtr writer, const struct Interface *interface,

@@ -17,7 +17,8 @@ struct Structure {
 
 /* Symbols that an unknown may depend on. Among initial unknowns, parameters are knowns too. */
 static bool is_known(const struct ScalarVariable *entry, bool initial) {
-  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT ||
+  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_INPUT ||
+         (entry->kind == VARIABLE_STATE && !(initial && has_following_start(entry))) ||
          (initial && entry->kind == VARIABLE_PARAMETER);
 }
 
@@ -35,7 +36,7 @@ static int compare(const void *first, const void *second) {
 static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
   size_t count = 0;
-  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node);
+  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node, initial);
   for (size_t i = 0; i < dependencies->count; i++) {
     size_t place = structure->place_of[dependencies->symbols[i]];
     if (place > 0 && is_known(&structure->interface->variables[place - 1].entry, initial))
@@ -88,9 +89,9 @@ static bool is_derivative(const struct ScalarVariable *entry) {
   return entry->kind == VARIABLE_DERIVATIVE;
 }
 
-/* What initialisation computes; states have the initial value that was set. */
+/* What initialisation computes; other states have the initial value that was set. */
 static bool is_computed_initially(const struct ScalarVariable *entry) {
-  return is_unknown(entry) && entry->kind != VARIABLE_STATE;
+  return is_unknown(entry) && (entry->kind != VARIABLE_STATE || has_following_start(entry));
 }
 
 static void write_unknowns(const struct Structure *structure, const char *element,
@@ -109,12 +110,13 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, c
                            const struct Interface *interface) {
   const struct Graph *graph = model->graph;
   struct Structure structure = {.writer = writer, .interface = interface};
-  structure.dependencies = dependencies_create(graph, equations);
+  structure.dependencies = dependencies_create(model, equations);
   structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
   structure.places = allocate(interface->count, sizeof *structure.places);
   for (size_t i = 0; i < interface->count; i++) {
     const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
-    if (vertex->operation == SYMBOL && is_known(&interface->variables[i].entry, true))
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (vertex->operation == SYMBOL && (is_known(entry, false) || is_known(entry, true)))
       structure.place_of[vertex->left] = i + 1;
   }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "initial_state.h"
 
 /* A direction and what follows from it; the arrays are parts of instance->work. */
 struct Direction {
@@ -84,6 +85,7 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
     const struct ScalarVariable *variable = check_reference(instance, unknown[i], false, function);
     if (variable == NULL || check_unknown(instance, variable, function) != STATUS_DONE) return STATUS_ERROR;
   }
+  initial_state_along(instance, direction.parameter, direction.state, direction.derivative);
   enum Status status = evaluate_prepare(instance);
   struct Point point = evaluate_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);

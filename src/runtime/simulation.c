@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "evaluate.h"
+#include "initial_state.h"
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
@@ -30,6 +31,7 @@ static bool has_accelerations(struct Instance *instance) {
 }
 
 enum Status simulation_start(struct Instance *instance, const char *function) {
+  if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
   if (!has_accelerations(instance)) {
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return log_error(instance, "%s: the system has no acceleration at its start values", function);

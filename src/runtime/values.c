@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "initial_state.h"
 
 /*
  * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
@@ -51,11 +52,10 @@ enum Status values_get_statistics(struct Instance *instance, const unsigned *ref
 
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
-  bool before = instance->situation->mode == MODE_INSTANTIATED || instance->situation->mode == MODE_INITIALIZATION;
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return instance->situation->mode != MODE_CONTINUOUS_TIME;
-  case VARIABLE_STATE: return before;
+  case VARIABLE_STATE: return is_before_start(instance);
   default: return false;
   }
 }
@@ -71,7 +71,7 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, const char *function) {
   const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
   if (variable == NULL) return STATUS_ERROR;
-  if (variable->follows_from != NULL) return refuse_calculated(instance, variable, function);
+  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable, function);
   if (!is_settable(instance, variable))
     return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
                      instance_mode_name(instance));
@@ -93,6 +93,7 @@ static void end_polynomial(struct Instance *instance, size_t input) {
 
 static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
+  if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
                                                       : &instance->parameter[variable->index];
@@ -107,6 +108,7 @@ enum Status values_set(struct Instance *instance, const unsigned *reference, siz
   for (size_t i = 0; i < count; i++)
     if (check_value(instance, reference[i], value[i], function) != STATUS_DONE) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
 }
 

@@ -19,8 +19,17 @@ static struct InterfaceVariable *append(struct Interface *interface, enum Variab
   return variable;
 }
 
-static void append_list(struct Interface *interface, const struct VariableList *list, enum VariableKind kind,
-                        size_t first_index) {
+/* The names of what the node depends on. Free with free(). */
+static char *names_below(const struct Model *model, Node node) {
+  struct SymbolNames names = {0};
+  symbol_names_add(&names, model->graph, &node, 1);
+  char *text = symbol_names_text(&names, model->graph);
+  free(names.symbols);
+  return text;
+}
+
+static void append_list(struct Interface *interface, const struct Model *model, const struct VariableList *list,
+                        enum VariableKind kind, size_t first_index) {
   for (size_t i = 0; i < list->count; i++) {
     const struct Variable *source = &list->items[i];
     struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
@@ -31,6 +40,9 @@ static void append_list(struct Interface *interface, const struct VariableList *
     variable->unit = variable_unit(source);
     variable->nominal = source->nominal;
     variable->node = source->node;
+    if (!start_follows(model, source)) continue;
+    variable->start = source->start_expression;
+    variable->entry.follows_from = names_below(model, source->start_expression);
   }
 }
 
@@ -40,12 +52,9 @@ static void append_calculated(struct Interface *interface, const struct Model *m
     const struct Variable *source = &model->calculated.items[i];
     struct InterfaceVariable *variable =
         append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
-    struct SymbolNames names = {0};
-    symbol_names_add(&names, model->graph, &source->node, 1);
-    variable->entry.follows_from = symbol_names_text(&names, model->graph);
+    variable->entry.follows_from = names_below(model, source->node);
     variable->unit = variable_unit(source);
     variable->node = source->node;
-    free(names.symbols);
   }
 }
 
@@ -162,8 +171,8 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     time->unit = copy_text("s");
     time->node = model->time;
   }
-  append_list(interface, &model->coordinates, VARIABLE_STATE, 0);
-  append_list(interface, &model->velocities, VARIABLE_STATE, n);
+  append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
+  append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
   struct Variable work = {.name = (char *)"nonConservativeWork",
                           .line = 0,
                           .minimum = NAN,
@@ -173,7 +182,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   const char *problem;
   unit_parse("J", &work.dimension, &problem);
   if (equations->has_work) {
-    append_list(interface, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
+    append_list(interface, model, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
     interface->variables[interface->count - 1].entry.is_output = false;
   }
   for (size_t i = 0; i < n; i++)
@@ -181,9 +190,9 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
   if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
-  append_list(interface, &model->inputs, VARIABLE_INPUT, 0);
-  append_list(interface, &model->parameters, VARIABLE_PARAMETER, 0);
-  append_list(interface, &model->outputs, VARIABLE_RESULT, 0);
+  append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
+  append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_list(interface, model, &model->outputs, VARIABLE_RESULT, 0);
   for (size_t i = 0; i < model->outputs.count; i++)
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;

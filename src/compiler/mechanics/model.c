@@ -35,6 +35,10 @@ void model_free(struct Model *model) {
   free(model);
 }
 
+bool start_follows(const struct Model *model, const struct Variable *variable) {
+  return graph_depends_on(model->graph, variable->start_expression, PARAMETER);
+}
+
 double *start_values(const struct Model *model) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
                                               &model->velocities};

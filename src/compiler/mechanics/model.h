@@ -11,6 +11,7 @@ struct Variable {
   char *unit; /* as written, NULL where none was given */
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN where none was given */
+  Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
   long line;
 };
@@ -64,6 +65,9 @@ struct Model {
 };
 
 void model_free(struct Model *model);
+
+/* Whether the start value is an expression of parameters. */
+bool start_follows(const struct Model *model, const struct Variable *variable);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);

@@ -31,6 +31,7 @@ struct Expressions {
   Node *along;                          /* derivative of the accelerations, or right sides for it, as above */
   Node power_along;                     /* of the power of the forces */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
+  Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
   Node *result, *result_along;          /* one for each result; along is ZERO unless it is an output */
 };
 

@@ -150,6 +150,27 @@ static struct Routine *linear_routine(const struct LinearSystem *linear, struct 
   return routine;
 }
 
+/* Of the start values that follow, or of their derivatives. Without prepared values, which may not exist. */
+static struct Routine *initial_routine(const struct Program *program, struct Values *values, const Node *nodes) {
+  const struct Interface *interface = program->interface;
+  struct Routine *routine = values_begin(values);
+  size_t count = 2 * program->equations->count;
+  values_compute(values, nodes, count, true);
+  for (size_t i = 0; i < count; i++)
+    if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
+      values_copy(values, target(i), nodes[i]);
+  return routine;
+}
+
+static void create_initial(struct Program *program, struct Values *values) {
+  const struct Expressions *expressions = program->expressions;
+  bool any = false;
+  for (size_t i = 0; i < 2 * program->equations->count; i++) any |= expressions->initial[i] != ZERO;
+  if (!any) return;
+  program->initial = initial_routine(program, values, expressions->initial);
+  program->initial_along = initial_routine(program, values, expressions->initial_along);
+}
+
 static struct Routine *result_routine(struct Values *values, Node node) {
   struct Routine *routine = values_begin(values);
   values_compute(values, &node, 1, false);
@@ -187,7 +208,7 @@ static size_t count_of(const struct Routine *routine) {
 
 size_t instruction_count(const struct Program *program) {
   size_t count = count_of(program->prepare) + count_of(program->derivatives) + count_of(program->directional) +
-                 count_of(program->jacobian);
+                 count_of(program->jacobian) + count_of(program->initial) + count_of(program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -221,6 +242,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   }
   if (expressions->jacobian != NULL) program->jacobian = jacobian_routine(program, values);
   if (expressions->linear != NULL) program->linear = linear_routine(expressions->linear, values);
+  create_initial(program, values);
   create_results(program, values);
   create_series(program, values);
   values_free(values);
@@ -235,6 +257,8 @@ void program_free(struct Program *program) {
   routine_free(program->directional);
   routine_free(program->jacobian);
   routine_free(program->linear);
+  routine_free(program->initial);
+  routine_free(program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     routine_free(program->result[i]);
     routine_free(program->result_along[i]);

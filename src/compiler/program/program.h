@@ -18,6 +18,7 @@ struct Program {
   struct LoopedBlocks blocks;
   struct Routine *prepare;
   struct Routine *derivatives, *directional; /* NULL without coordinates */
+  struct Routine *initial, *initial_along;   /* NULL where no start value follows from parameters */
   struct Routine *jacobian, *linear;         /* NULL unless the solver asks */
   struct Routine **result, **result_along;   /* of each result; along is NULL unless it is an output */
   struct SeriesProgram *series, *output_series;

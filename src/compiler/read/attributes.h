@@ -20,6 +20,7 @@ struct Reader {
   struct Scope *scope;
   struct Definitions *definitions;
   size_t named_bodies;  /* bodies whose components are among the definitions */
+  size_t started_coordinates; /* those whose start values were read */
   struct Names *bodies; /* name -> size_t, its place among the model's */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;

@@ -10,6 +10,7 @@
 #include "read/named_expressions.h"
 #include "algebra/simplify.h"
 #include "read/similar.h"
+#include "read/start_expressions.h"
 
 static const char *const axes[3] = {"x", "y", "z"};
 
@@ -113,9 +114,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
                               .line = position.line};
   if (velocity.name == NULL) velocity.name = copy_text("?");
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
-  position.start = velocity.start = 0.0;
-  number_attribute(reader, node, "start", &position.start);
-  number_attribute(reader, node, "velocityStart", &velocity.start);
+  position.start = velocity.start = 0.0; /* see start_expressions.h */
   position.nominal = nominal_attribute(reader, node, "nominal");
   velocity.nominal = nominal_attribute(reader, node, "velocityNominal");
   int index = (int)model->coordinates.count;
@@ -430,5 +429,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   if (pass == DECLARATIONS) read_declaration(reader, node, element);
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
   else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_start_expressions(reader, node);
   else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
 }

@@ -11,6 +11,7 @@
 #include "read/linearization_reader.h"
 #include "memory.h"
 #include "read/parser.h"
+#include "read/start_expressions.h"
 #include "read/xml.h"
 
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20 };
@@ -154,6 +155,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
+  evaluate_start_expressions(reader);
   read_children(reader, root, EXPRESSIONS);
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)

@@ -99,6 +99,8 @@ static void write_functions(FILE *file, const struct Program *program) {
   bool moves = program->equations->count > 0;
   const struct SeriesProgram *series = program->series, *output_series = program->output_series;
   fputs("    .prepare = prepare,\n", file);
+  if (program->initial != NULL)
+    fputs("    .initial_state = initial_state,\n    .initial_state_along = initial_state_along,\n", file);
   if (moves) fputs("    .derivatives = derivatives,\n    .directional = directional,\n", file);
   if (program->interface->result_count > 0)
     fputs("    .result_uses_acceleration = result_uses_acceleration,\n    .result = result,\n"

@@ -41,6 +41,8 @@ struct TableContext *table_context_create(const struct Program *program) {
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
   note(context, program->prepare);
+  note(context, program->initial);
+  note(context, program->initial_along);
   note(context, program->derivatives);
   note(context, program->directional);
   note(context, program->jacobian);
@@ -79,6 +81,7 @@ static size_t longest(size_t length, const struct Routine *routine) {
 /* The local variables of the routine that has most. */
 static size_t local_count(const struct Program *program) {
   size_t count = longest(longest(longest(0, program->derivatives), program->directional), program->jacobian);
+  count = longest(longest(count, program->initial), program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count = longest(longest(count, program->result[i]), program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -200,7 +203,7 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
     fputs("  const struct Point values = {.parameter = p, .prepared = c};\n  const struct Point *point = &values;\n",
           file);
   }
-  begin_frame(file, text == &directional_text);
+  begin_frame(file, text == &directional_text || text == &initial_state_along_text);
   set_base(file, "TARGET", text->target);
   if (text == &prepare_text) fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)
