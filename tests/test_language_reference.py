@@ -43,6 +43,11 @@ def chain(t):
     return {f"x[{i}]": 0.1 * np.sin(np.pi * i / 3) * np.cos(w * t) for i in range(1, 6)}
 
 
+def coupled(t):
+    mean, half = 0.1 * np.cos(np.sqrt(25 / 2) * t), 0.2 * np.cos(np.sqrt(49 / 2) * t)
+    return {"left.x": mean + half, "right.x": mean - half, "distance": -2 * half, "left.m": 2.0}
+
+
 def rocket(t):
     m, u, gain = 100 - 4 * t, 500, np.log(100 / (100 - 4 * t))
     return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
@@ -71,6 +76,7 @@ MOTIONS = {
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
     "MassChain": (chain, 1e-6),
+    "CoupledMasses": (coupled, 1e-6),
     "LimitedGain": (lambda t: {"F": -4.0}, 0.0),
     "StiffDamper": (stiff, 1e-5),
     "LinearPendulum": (lambda t: {"theta": np.pi + (1 - np.pi) * np.cosh(np.sqrt(9.81 / 0.5) * t)}, 1e-8),

@@ -22,13 +22,23 @@ bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, 
   return right;
 }
 
-char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
   struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  char *expanded = parse_name(reader->scope, text, place);
+  char *expanded = parse_name(reader->scope, text, place, parts);
+  char *full_name = expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
+  free(expanded);
   free(text);
-  return expanded;
+  return full_name;
+}
+
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, false);
+}
+
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, true);
 }
 
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,

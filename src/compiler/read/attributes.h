@@ -15,13 +15,16 @@ struct Dissipation {
   long line;
 };
 
+struct Source;
+
 struct Reader {
   struct Model *model;
   struct Scope *scope;
   struct Definitions *definitions;
-  size_t named_bodies;  /* bodies whose components are among the definitions */
   size_t started_coordinates; /* those whose start values were read */
-  struct Names *bodies; /* name -> size_t, its place among the model's */
+  struct Names *bodies; /* name -> struct NamedBody */
+  struct Source *source;     /* the file being read */
+  struct Includes *includes; /* all files that are included */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;
@@ -47,8 +50,14 @@ char *attribute(xmlNodePtr node, const char *name);
 /* True and *value set where the attribute is present and right; reports an error where it is not right. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
 
-/* The name in an attribute, its index worked out; NULL where missing or after an error. Free with free(). */
+/*
+ * The full name in an attribute, its index worked out, of what the element declares; NULL where missing or after an
+ * error. Free with free().
+ */
 char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* The same of what is declared elsewhere, perhaps in an included file. */
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* An expression in an attribute; true where present. kinds as in struct Place. */
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,

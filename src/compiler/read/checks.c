@@ -6,7 +6,7 @@
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
-  if (coordinates == 0 && model->outputs.count == 0)
+  if (coordinates == 0 && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
   if (coordinates == 0 && (model->body_count > 0 || model->kinetic.node != ZERO || model->has_forces))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");

@@ -7,6 +7,7 @@
 #include "algebra/differentiate.h"
 #include "mechanics/energies.h"
 #include "memory.h"
+#include "read/includes.h"
 #include "read/named_expressions.h"
 #include "algebra/simplify.h"
 #include "read/similar.h"
@@ -44,9 +45,10 @@ static void check_range(struct Reader *reader, const struct Variable *variable) 
 }
 
 static void read_constant(struct Reader *reader, xmlNodePtr node) {
-  char *name = attribute(node, "name");
+  char *name = name_attribute(reader, node, "name");
   double value = 0;
-  bool right = name != NULL && number_attribute(reader, node, "value", &value);
+  const struct Given *given = given_for(reader, node, name);
+  bool right = name != NULL && given_number_attribute(reader, node, given, "value", &value);
   struct Place place = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
@@ -61,34 +63,40 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
-static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
+/* Of an element with a value of its own, or a given one, which goes before the file's start, min and max. */
+static void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
   static const char *const others[] = {"start", "min", "max"};
+  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
+  if (is_given(given, "value")) node = given->node;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
       report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "a <parameter> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                   "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
                    "others, or start=\"...\" for one that is set",
-                   others[i]);
+                   (const char *)node->name, others[i]);
+  source_enter(reader, present);
 }
 
 static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
   struct Variable variable = common_attributes(reader, node);
+  const struct Given *given = given_for(reader, node, variable.name);
   variable.start = 0.0;
-  number_attribute(reader, node, "start", &variable.start);
-  number_attribute(reader, node, "min", &variable.minimum);
-  number_attribute(reader, node, "max", &variable.maximum);
+  given_number_attribute(reader, node, given, "start", &variable.start);
+  given_number_attribute(reader, node, given, "min", &variable.minimum);
+  given_number_attribute(reader, node, given, "max", &variable.maximum);
   check_range(reader, &variable);
   variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
   append_variable(list, variable);
 }
 
-static void read_parameter(struct Reader *reader, xmlNodePtr node) {
-  if (is_calculated(node)) {
-    check_calculated(reader, node);
+static void read_parameter(struct Reader *reader, xmlNodePtr node, const struct Given *given) {
+  if (has_value(node, given)) {
+    check_calculated(reader, given, node);
     return;
   }
   read_quantity(reader, node, &reader->model->parameters, PARAMETER);
-  if (xmlHasProp(node, (const xmlChar *)"start") == NULL)
+  if (xmlHasProp(node, (const xmlChar *)"start") == NULL && !is_given(given, "start"))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "<parameter> needs the attribute 'start'; expected start=\"...\", or value=\"...\" for one that "
                  "follows from others");
@@ -113,6 +121,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
                               .maximum = NAN,
                               .line = position.line};
   if (velocity.name == NULL) velocity.name = copy_text("?");
+  given_for(reader, node, position.name); /* is there, and read with the start values */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
   position.start = velocity.start = 0.0; /* see start_expressions.h */
   position.nominal = nominal_attribute(reader, node, "nominal");
@@ -120,6 +129,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   int index = (int)model->coordinates.count;
   position.node = scope_symbol(reader->scope, COORDINATE, index, position.name, position.dimension, position.line);
   velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
+  position.line = velocity.line = scope_line(reader->scope, position.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
 }
@@ -138,18 +148,26 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   model->driven |= graph_depends_on(graph, position, TIME);
 }
 
+/* Where the body of a name is: its place among the model's, and the line of its own file. */
+struct NamedBody {
+  size_t place;
+  long line;
+};
+
 static const struct Body *find_body(const struct Reader *reader, const char *name) {
-  const size_t *place = names_find(reader->bodies, name);
-  return place != NULL ? &reader->model->bodies[*place] : NULL;
+  const struct NamedBody *named = names_find(reader->bodies, name);
+  return named != NULL ? &reader->model->bodies[named->place] : NULL;
 }
 
 /* Of several bodies of one name, which is reported, the first keeps it. */
 static void append_body(struct Reader *reader, struct Body body) {
   struct Model *model = reader->model;
-  size_t *place = allocate(1, sizeof *place);
-  *place = model->body_count;
-  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, place);
-  else free(place);
+  struct NamedBody *named = allocate(1, sizeof *named);
+  *named = (struct NamedBody){model->body_count, body.line};
+  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
+  else free(named);
+  body.line = scope_line(reader->scope, body.line);
+  reader->source->body_count++;
   model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
@@ -190,12 +208,12 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
-  if (body.name == NULL) body.name = format_text("body%zu", model->body_count + 1);
+  if (body.name == NULL) body.name = format_text("%sbody%zu", reader->source->prefix, reader->source->body_count + 1);
   const struct Body *other = find_body(reader, body.name);
   if (other != NULL)
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
-                 other->line);
+                 ((struct NamedBody *)names_find(reader->bodies, body.name))->line);
   expression_attribute(reader, node, "mass", IN_POSITION, &body.mass);
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
@@ -327,7 +345,7 @@ static bool is_blank(xmlNodePtr node) {
 }
 
 static void read_force(struct Reader *reader, xmlNodePtr node) {
-  char *coordinate = name_attribute(reader, node, "coordinate"), *on = name_attribute(reader, node, "on");
+  char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
   reader->model->has_forces = true;
   bool has_components = false;
   for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
@@ -353,6 +371,7 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   output.node = value.node;
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
+  output.line = scope_line(reader->scope, output.line);
   append_variable(&reader->model->outputs, output);
 }
 
@@ -391,12 +410,24 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
                  start);
 }
 
+/* With a value from an <include>, it is an expression like a definition. */
+static void read_input(struct Reader *reader, xmlNodePtr node, const struct Given *given) {
+  if (is_given(given, "value")) check_calculated(reader, given, node);
+  else read_quantity(reader, node, &reader->model->inputs, INPUT);
+}
+
+/* Solver, experiment and work are the system's own. */
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
+  char *name = strcmp(element, "parameter") == 0 || strcmp(element, "input") == 0 ? name_attribute(reader, node, "name")
+                                                                                  : NULL;
+  const struct Given *given = given_for(reader, node, name);
+  free(name);
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
-  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
-  else if (strcmp(element, "input") == 0) read_quantity(reader, node, &model->inputs, INPUT);
+  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node, given);
+  else if (strcmp(element, "input") == 0) read_input(reader, node, given);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
   else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
@@ -410,7 +441,7 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
   size_t count = reader->dissipation_count++;
   reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
-  reader->dissipations[count] = (struct Dissipation){dissipation, xmlGetLineNo(node)};
+  reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
   model->has_forces = true;
 }
 

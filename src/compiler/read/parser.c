@@ -121,8 +121,8 @@ static char *read_identifier(struct Parser *parser) {
   return identifier;
 }
 
-/* The rest of a name after its identifier: an index, a component. Takes and returns an allocated string. */
-static char *read_name_suffix(struct Parser *parser, char *name) {
+/* The index after an identifier, if there is one. Takes and returns an allocated string. */
+static char *read_index(struct Parser *parser, char *name) {
   if (*parser->next == '[') {
     parser->next++;
     long index = parse_whole(parser, "the index in brackets");
@@ -133,19 +133,29 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
     free(name);
     name = indexed;
   }
-  if (*parser->next == '.' && isalpha((unsigned char)parser->next[1])) {
+  return name;
+}
+
+/* The rest of a name after its first identifier. Takes and returns an allocated string. */
+static char *read_name_suffix(struct Parser *parser, char *name) {
+  name = read_index(parser, name);
+  while (!parser->failed && *parser->next == '.' &&
+         (isalpha((unsigned char)parser->next[1]) || parser->next[1] == '_')) {
     parser->next++;
-    char *component = read_identifier(parser), *whole = format_text("%s.%s", name, component);
-    free(component);
+    char *part = read_identifier(parser), *whole = format_text("%s.%s", name, part);
+    free(part);
     free(name);
-    name = whole;
+    name = read_index(parser, whole);
   }
   return name;
 }
 
 static struct Quantity look_up(struct Parser *parser, const char *name) {
-  const struct Quantity *quantity = scope_find(parser->scope, name);
-  if (quantity == NULL && definitions_wait_for(parser->scope->definitions, name)) return nothing;
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Quantity *quantity = scope_find(parser->scope, full_name);
+  bool waits = quantity == NULL && definitions_wait_for(parser->scope->definitions, full_name);
+  free(full_name);
+  if (waits) return nothing;
   if (quantity == NULL) {
     report_unknown_name(parser, name);
     return nothing;
@@ -178,7 +188,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
     FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
          parser->place.what, found(parser, buffer));
-  char *index = read_identifier(parser);
+  char *index_name = read_identifier(parser), *index = scope_full_name(parser->scope, index_name);
   expect(parser, ',', "after the index of sum(index, first, last, expression)");
   const char *bounds = parser->next;
   long first = parse_whole(parser, "the first index of sum(...)");
@@ -189,7 +199,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
          first, last);
   expect(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index);
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index_name);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
   if (first > last) skip_to_end(parser);
@@ -201,6 +211,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     total = quantity_add(parser, total, parse_sum(parser));
   }
   scope_remove(parser->scope, index);
+  free(index_name);
   free(index);
   expect(parser, ')', "at the end of sum(...)");
   return total;
@@ -374,12 +385,13 @@ bool parse_number(struct Scope *scope, const char *text, struct Place place, dou
   return true;
 }
 
-char *parse_name(struct Scope *scope, const char *text, struct Place place) {
+char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts) {
   struct Parser parser = parser_of(scope, text, place);
   char *name = NULL;
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
-  if (name == NULL || *parser.next != '\0' || strchr(name, '.') != NULL)
-    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]", place.what, text);
+  if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
+    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]%s", place.what, text,
+         parts ? ", also of what is included, as in motor.theta" : "");
   if (!parser.failed) return name;
   free(name);
   return NULL;

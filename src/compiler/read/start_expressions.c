@@ -3,18 +3,26 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void read_start(struct Reader *reader, xmlNodePtr node, const char *attribute, struct Variable *variable) {
+#include "read/includes.h"
+
+static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *attribute,
+                       struct Variable *variable) {
   struct Quantity value = {.node = ZERO, .literal = true};
+  struct Source *present = source_enter(reader, is_given(given, attribute) ? given->source : reader->source);
+  if (is_given(given, attribute)) node = given->node;
   expression_attribute(reader, node, attribute, IN_MASS, &value);
-  require_unit(reader, variable->line, "the start value", value, variable->dimension);
+  require_unit(reader, xmlGetLineNo(node), "the start value", value, variable->dimension);
   variable->start_expression = value.node;
+  source_enter(reader, present);
 }
 
 void read_start_expressions(struct Reader *reader, xmlNodePtr node) {
   size_t index = reader->started_coordinates++;
   if (index >= reader->model->coordinates.count) return; /* a mistake that was reported already */
-  read_start(reader, node, "start", &reader->model->coordinates.items[index]);
-  read_start(reader, node, "velocityStart", &reader->model->velocities.items[index]);
+  struct Variable *coordinate = &reader->model->coordinates.items[index];
+  const struct Given *given = given_for(reader, node, coordinate->name);
+  read_start(reader, node, given, "start", coordinate);
+  read_start(reader, node, given, "velocityStart", &reader->model->velocities.items[index]);
 }
 
 static void evaluate_start(struct Reader *reader, struct Variable *variable, const double *values) {

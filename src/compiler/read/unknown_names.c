@@ -26,7 +26,11 @@ static const char *expected_names(const struct Parser *parser) {
 }
 
 static bool is_known(const struct Parser *parser, const char *name) {
-  return scope_find(parser->scope, name) != NULL || definitions_contain(parser->scope->definitions, name);
+  char *full_name = scope_full_name(parser->scope, name);
+  bool known =
+      scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+  free(full_name);
+  return known;
 }
 
 /* The components that a particle or body has, such as "bob.x or bob.y"; "" where there is none of this name. */
@@ -49,7 +53,8 @@ void report_unknown_name(struct Parser *parser, const char *name) {
   /* A search through all names is for messages that are shown. */
   bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
   const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
-  char *components = components_of(parser, name, strcspn(name, "."));
+  const char *point = strrchr(name, '.');
+  char *components = components_of(parser, name, point != NULL ? (size_t)(point - name) : strlen(name));
   const char *next = parser->next + strspn(parser->next, " \t\r\n");
   if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
   if (*components != '\0')
@@ -94,7 +99,7 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
-  else if (scope_find(parser->scope, name) != NULL)
+  else if (is_known(parser, name))
     FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
   else if (*hint_for_function(name) != '\0')
     FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
