@@ -14,6 +14,7 @@
 #include "arithmetic.h"
 #include "series.h"
 #include "series_limit.h"
+#include "variable_type.h"
 
 /* Where the equations are evaluated. */
 struct Point {
@@ -40,7 +41,7 @@ enum VariableKind {
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
   VARIABLE_RESULT,   /* computed when read */
-  VARIABLE_STATISTIC /* Integer; the index is an enum Statistic */
+  VARIABLE_STATISTIC /* the index is an enum Statistic */
 };
 
 enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_HANDOVERS, STATISTIC_COUNT };
@@ -49,6 +50,7 @@ enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, ST
 struct ScalarVariable {
   const char *name;
   enum VariableKind kind;
+  enum VariableType type;
   size_t index;   /* among the variables of its kind */
   bool is_output; /* causality is output */
   double start, minimum, maximum;

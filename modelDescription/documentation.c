@@ -172,7 +172,8 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   };
   const struct ScalarVariable *entry = &variable->entry;
   char start[NUMBER_LENGTH] = "";
-  if (!isnan(entry->start)) number_text(entry->start, start);
+  if (entry->type == TYPE_BOOLEAN) snprintf(start, sizeof start, "%s", entry->start == 0.0 ? "false" : "true");
+  else if (!isnan(entry->start)) number_text(entry->start, start);
   const char *kind = is_calculated_parameter(entry)                       ? "calculated parameter"
                      : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
                                                                           : kinds[entry->kind];

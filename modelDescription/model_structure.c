@@ -22,7 +22,9 @@ static bool is_known(const struct ScalarVariable *entry, bool initial) {
          (initial && entry->kind == VARIABLE_PARAMETER);
 }
 
-static const char *kind_name(enum Dependency dependency, bool initial) {
+/* Factors are of Real variables alone. */
+static const char *kind_name(enum Dependency dependency, enum VariableType type, bool initial) {
+  if (type != TYPE_REAL) return "dependent";
   if (dependency == CONSTANT_FACTOR) return "constant";
   return dependency == TUNABLE_FACTOR && !initial ? "tunable" : "dependent";
 }
@@ -52,9 +54,10 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
   qsort(structure->places, count, sizeof *structure->places, compare);
   FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
   for (size_t i = 0; i < count; i++) {
-    size_t symbol = graph->vertices[structure->interface->variables[structure->places[i]].node].left;
+    const struct InterfaceVariable *known = &structure->interface->variables[structure->places[i]];
+    enum Dependency dependency = structure->dependencies->of[graph->vertices[known->node].left];
     fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
-    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->dependencies->of[symbol], initial));
+    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(dependency, known->entry.type, initial));
   }
   fclose(places_file);
   fclose(kinds_file);

@@ -69,6 +69,18 @@ static bool are_flags(const void *numbers, size_t count) {
   return true;
 }
 
+/* Whether the parameters are of their types. */
+static bool have_types(const char *parameters) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    if (variable->kind != VARIABLE_PARAMETER || variable->type == TYPE_REAL) continue;
+    double value;
+    memcpy(&value, parameters + variable->index * sizeof value, sizeof value);
+    if (value != floor(value) || fabs(value) > INT32_MAX + 1.0) return false;
+  }
+  return true;
+}
+
 /*
  * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
  * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
@@ -84,7 +96,7 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
-         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) &&
+         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
          (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
           lagrangian.solver->could_save(fixed, situation + saved));
 }

@@ -34,6 +34,7 @@ static void append_list(struct Interface *interface, const struct Model *model, 
     const struct Variable *source = &list->items[i];
     struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
     variable->entry.is_output = kind == VARIABLE_STATE || kind == VARIABLE_RESULT;
+    variable->entry.type = source->type;
     variable->entry.start = source->start;
     variable->entry.minimum = source->minimum;
     variable->entry.maximum = source->maximum;
@@ -99,17 +100,19 @@ static void append_bodies(struct Interface *interface, const struct Model *model
   }
 }
 
+static void append_statistic(struct Interface *interface, enum Statistic statistic, const char *name,
+                             const char *description) {
+  append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
+}
+
 static void append_statistics(struct Interface *interface) {
-  append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
+  append_statistic(interface, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
   if (interface->method->evaluations != NULL)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
-           interface->method->evaluations);
+    append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", interface->method->evaluations);
   if (interface->method->needs_jacobian)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
-           "evaluations of the Jacobian matrix");
+    append_statistic(interface, STATISTIC_JACOBIANS, "jacobianEvaluations", "evaluations of the Jacobian matrix");
   if (interface->method->hands_over)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_HANDOVERS, "solverHandovers",
-           "handovers between the methods of the solver");
+    append_statistic(interface, STATISTIC_HANDOVERS, "solverHandovers", "handovers between the methods of the solver");
 }
 
 static bool uses_time(const struct Model *model, const struct Equations *equations) {

@@ -5,12 +5,14 @@
 
 #include "memory.h"
 
+void variable_free(struct Variable *variable) {
+  free(variable->name);
+  free(variable->description);
+  free(variable->unit);
+}
+
 static void free_variables(struct VariableList *list) {
-  for (size_t i = 0; i < list->count; i++) {
-    free(list->items[i].name);
-    free(list->items[i].description);
-    free(list->items[i].unit);
-  }
+  for (size_t i = 0; i < list->count; i++) variable_free(&list->items[i]);
   free(list->items);
 }
 

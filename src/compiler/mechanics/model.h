@@ -5,10 +5,12 @@
 #include "algebra/quantity.h"
 #include "diagnostics.h"
 #include "mechanics/methods.h"
+#include "variable_type.h"
 
 struct Variable {
   char *name, *description;
   char *unit; /* as written, NULL where none was given */
+  enum VariableType type;
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN where none was given */
   Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
@@ -65,6 +67,9 @@ struct Model {
 };
 
 void model_free(struct Model *model);
+
+/* Frees what a variable that is in no list owns. */
+void variable_free(struct Variable *variable);
 
 /* Whether the start value is an expression of parameters. */
 bool start_follows(const struct Model *model, const struct Variable *variable);

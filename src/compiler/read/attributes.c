@@ -13,11 +13,14 @@ char *attribute(xmlNodePtr node, const char *name) {
   return copy;
 }
 
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  return *text != '\0' && parse_number(reader->scope, text, place, value);
+}
+
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
   char *text = attribute(node, name);
-  if (text == NULL) return false;
-  struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  bool right = *text != '\0' && parse_number(reader->scope, text, place, value);
+  bool right = text != NULL && number_in(reader, node, name, text, value);
   free(text);
   return right;
 }

@@ -50,6 +50,9 @@ char *attribute(xmlNodePtr node, const char *name);
 /* True and *value set where the attribute is present and right; reports an error where it is not right. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
 
+/* The same of a text from the node that the attribute's name stands for in messages. */
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value);
+
 /*
  * The full name in an attribute, its index worked out, of what the element declares; NULL where missing or after an
  * error. Free with free().

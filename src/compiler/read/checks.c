@@ -23,7 +23,7 @@ static void warn_without_unit(const struct Reader *reader) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates};
   for (size_t list = 0; reader->scope->checks_units && list < 3; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
-      if (lists[list]->items[i].unit == NULL)
+      if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL)
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that the units of what it stands in are not checked; expected one, or "
                        "unit=\"1\"",

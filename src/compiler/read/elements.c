@@ -10,6 +10,7 @@
 #include "read/includes.h"
 #include "read/named_expressions.h"
 #include "algebra/simplify.h"
+#include "read/parameters.h"
 #include "read/similar.h"
 #include "read/start_expressions.h"
 
@@ -21,7 +22,7 @@ struct Variable *append_variable(struct VariableList *list, struct Variable vari
   return &list->items[list->count++];
 }
 
-static struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
+struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = {.name = name_attribute(reader, node, "name"),
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
@@ -35,7 +36,7 @@ static struct Variable common_attributes(struct Reader *reader, xmlNodePtr node)
   return variable;
 }
 
-static void check_range(struct Reader *reader, const struct Variable *variable) {
+void check_range(struct Reader *reader, const struct Variable *variable) {
   if (variable->minimum > variable->maximum)
     report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
                  variable->minimum, variable->maximum);
@@ -61,45 +62,6 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
       .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
   if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
   free(name);
-}
-
-/* Of an element with a value of its own, or a given one, which goes before the file's start, min and max. */
-static void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
-  static const char *const others[] = {"start", "min", "max"};
-  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
-  if (is_given(given, "value")) node = given->node;
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
-                   "others, or start=\"...\" for one that is set",
-                   (const char *)node->name, others[i]);
-  source_enter(reader, present);
-}
-
-static void read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list, enum SymbolKind kind) {
-  struct Variable variable = common_attributes(reader, node);
-  const struct Given *given = given_for(reader, node, variable.name);
-  variable.start = 0.0;
-  given_number_attribute(reader, node, given, "start", &variable.start);
-  given_number_attribute(reader, node, given, "min", &variable.minimum);
-  given_number_attribute(reader, node, given, "max", &variable.maximum);
-  check_range(reader, &variable);
-  variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
-  variable.line = scope_line(reader->scope, variable.line);
-  append_variable(list, variable);
-}
-
-static void read_parameter(struct Reader *reader, xmlNodePtr node, const struct Given *given) {
-  if (has_value(node, given)) {
-    check_calculated(reader, given, node);
-    return;
-  }
-  read_quantity(reader, node, &reader->model->parameters, PARAMETER);
-  if (xmlHasProp(node, (const xmlChar *)"start") == NULL && !is_given(given, "start"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<parameter> needs the attribute 'start'; expected start=\"...\", or value=\"...\" for one that "
-                 "follows from others");
 }
 
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -410,22 +372,31 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
                  start);
 }
 
-/* With a value from an <include>, it is an expression like a definition. */
-static void read_input(struct Reader *reader, xmlNodePtr node, const struct Given *given) {
-  if (is_given(given, "value")) check_calculated(reader, given, node);
-  else read_quantity(reader, node, &reader->model->inputs, INPUT);
+static void read_input(struct Reader *reader, xmlNodePtr node) {
+  struct VariableList *list = &reader->model->inputs;
+  struct Variable variable = common_attributes(reader, node);
+  const struct Given *given = given_for(reader, node, variable.name);
+  if (is_given(given, "value")) { /* an expression like a definition */
+    check_calculated(reader, given, node);
+    variable_free(&variable);
+    return;
+  }
+  variable.start = 0.0;
+  given_number_attribute(reader, node, given, "start", &variable.start);
+  given_number_attribute(reader, node, given, "min", &variable.minimum);
+  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  check_range(reader, &variable);
+  variable.node = scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
+  append_variable(list, variable);
 }
 
 /* Solver, experiment and work are the system's own. */
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
-  char *name = strcmp(element, "parameter") == 0 || strcmp(element, "input") == 0 ? name_attribute(reader, node, "name")
-                                                                                  : NULL;
-  const struct Given *given = given_for(reader, node, name);
-  free(name);
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
-  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node, given);
-  else if (strcmp(element, "input") == 0) read_input(reader, node, given);
+  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
+  else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);

@@ -49,18 +49,33 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
   return list;
 }
 
+/* How many of name[1], name[2], ... there are. */
+static int count_indices(const struct Parser *parser, const char *name) {
+  enum { LIMIT = 1000 };
+  for (int i = 1; i <= LIMIT; i++) {
+    char *indexed = format_text("%s[%d]", name, i);
+    bool known = is_known(parser, indexed);
+    free(indexed);
+    if (!known) return i - 1;
+  }
+  return LIMIT;
+}
+
 void report_unknown_name(struct Parser *parser, const char *name) {
   /* A search through all names is for messages that are shown. */
   bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
   const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
   const char *point = strrchr(name, '.');
   char *components = components_of(parser, name, point != NULL ? (size_t)(point - name) : strlen(name));
+  int indices = shown ? count_indices(parser, name) : 0;
   const char *next = parser->next + strspn(parser->next, " \t\r\n");
   if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
   if (*components != '\0')
     FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->place.what, name,
          components);
   else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->place.what, name, hint);
+  else if (indices > 0)
+    FAIL(parser, "%s: unknown name '%s'; expected %s[1], ..., %s[%d]", parser->place.what, name, name, name, indices);
   else if (similar != NULL)
     FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));

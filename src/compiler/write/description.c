@@ -17,12 +17,15 @@ static void write_variables(FILE *file, const struct Interface *interface) {
       [VARIABLE_RESULT] = "VARIABLE_RESULT",
       [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
   };
+  static const char *const types[] = {
+      [TYPE_REAL] = "TYPE_REAL", [TYPE_INTEGER] = "TYPE_INTEGER", [TYPE_BOOLEAN] = "TYPE_BOOLEAN"};
   fputs("static const struct ScalarVariable variables[] = {\n", file);
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     fputs("    {", file);
     write_c_string(file, entry->name);
-    fprintf(file, ", %s, %zu, %s, ", kinds[entry->kind], entry->index, entry->is_output ? "true" : "false");
+    fprintf(file, ", %s, %s, %zu, %s, ", kinds[entry->kind], types[entry->type], entry->index,
+            entry->is_output ? "true" : "false");
     write_c_number(file, isnan(entry->start) ? 0.0 : entry->start);
     fputs(", ", file);
     write_c_number(file, isnan(entry->minimum) ? -INFINITY : entry->minimum);
