@@ -41,7 +41,7 @@ def infix(element):
 def plain(text):
     """The text in the names that infix() gives."""
     text = re.sub(r"\b([A-Za-z_]+?)\[?(\d+)\]?(?![\w.(\[]|\.\d)", lambda m: m[0] if re.fullmatch("e|E", m[1]) else f"{m[1]}_{m[2]}", text)
-    return re.sub(r"der\((\w+)\)", r"der_\1", text).replace("^", "**")
+    return re.sub(r"der\(([\w.]+)\)", r"der_\1", text).replace("^", "**")
 
 
 def check(page):

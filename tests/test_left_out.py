@@ -8,9 +8,9 @@ import pytest
 import fmu
 from fmu import BUILD
 
-EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
+EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["DampedPendulum", "ElasticPendulum", "Rope"]
+AUTO = ["DampedPendulum", "ElasticPendulum", "MotorPendulum", "Rope"]
 LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
 ERK = ["BeadOnHoop"]  # of tests/systems
 BDF = ["FurutaPendulum"]

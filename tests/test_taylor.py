@@ -23,7 +23,7 @@ DIGITS = 50
 ORDER = 12
 
 SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu.all_names()
-           and not name.endswith("Linear") and name not in ("ParticleCartesian", "DampedPendulum", "ElasticPendulum")]
+           and not name.endswith("Linear") and name not in ("ParticleCartesian", "DampedPendulum", "ElasticPendulum", "Motor", "MotorPendulum")]
 
 
 def series_of(instance):
