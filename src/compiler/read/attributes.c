@@ -85,10 +85,10 @@ struct Dimension unit_of(const char *text) {
   return dimension;
 }
 
-struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Dimension dimension = dimension_unknown;
   const char *problem;
-  char *text = attribute(node, "unit");
+  char *text = attribute(node, name);
   if (text != NULL && !unit_parse(text, &dimension, &problem)) {
     char *remedy = unit_remedy(text);
     report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,

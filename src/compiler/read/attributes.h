@@ -72,8 +72,8 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);
 
-/* The element's unit; unknown where missing or after an error. */
-struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node);
+/* The unit in an attribute of the element; unknown where missing or after an error. */
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,

@@ -13,6 +13,7 @@
 #include "read/parameters.h"
 #include "read/similar.h"
 #include "read/start_expressions.h"
+#include "read/tables.h"
 
 static const char *const axes[3] = {"x", "y", "z"};
 
@@ -26,7 +27,7 @@ struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = {.name = name_attribute(reader, node, "name"),
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
-                              .dimension = unit_attribute(reader, node),
+                              .dimension = unit_attribute(reader, node, "unit"),
                               .start = NAN,
                               .minimum = NAN,
                               .maximum = NAN,
@@ -398,6 +399,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
   else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (strcmp(element, "table") == 0) read_table(reader, node);
   else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);

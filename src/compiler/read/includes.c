@@ -61,8 +61,7 @@ struct Source *source_enter(struct Reader *reader, struct Source *source) {
   return before;
 }
 
-/* The path of a file that the present one names. */
-static char *path_of(const struct Reader *reader, const char *file) {
+char *path_beside(const struct Reader *reader, const char *file) {
   const char *present = reader->source->file, *slash = strrchr(present, '/');
   if (*file == '/' || slash == NULL) return copy_text(file);
   return format_text("%.*s/%s", (int)(slash - present), present, file);
@@ -145,7 +144,7 @@ static struct Source *create_source(struct Reader *reader, xmlNodePtr node, cons
   struct Source *source = allocate(1, sizeof *source), *outer = reader->source;
   char *file = attribute(node, "file");
   long line = xmlGetLineNo(node);
-  *source = (struct Source){.file = path_of(reader, file),
+  *source = (struct Source){.file = path_beside(reader, file),
                             .prefix = copy_text(prefix),
                             .origin = format_text(" (included as '%s' on line %ld of %s)", name, line, outer->file),
                             .include_line = outer->include_line > 0 ? outer->include_line : line,

@@ -25,7 +25,7 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
                      : is_element(node, "parameter") ? "the value of the parameter"
                                                      : "the value of the input";
   struct Source *present = source_enter(reader, expression->source);
-  struct Dimension unit = unit_attribute(reader, node);
+  struct Dimension unit = unit_attribute(reader, node, "unit");
   source_enter(reader, present);
   require_unit(reader, xmlGetLineNo(where), what, value, unit);
   if (unit.known) value.dimension = unit;

@@ -10,6 +10,7 @@
 #include "algebra/simplify.h"
 #include "read/hints.h"
 #include "read/quantities.h"
+#include "read/tables.h"
 #include "read/unknown_names.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
@@ -239,7 +240,23 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
 }
 
+static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
+  struct Quantity argument = parse_sum(parser);
+  expect(parser, ')', "after the argument of a table");
+  return parser->failed ? nothing : table_at(parser, table, name, argument);
+}
+
+/* The table of a name as the file calls it; NULL where there is none. */
+static const struct Table *find_table(const struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Table *table = table_named(parser->scope, full_name);
+  free(full_name);
+  return table;
+}
+
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
+  const struct Table *table = find_table(parser, name);
+  if (table != NULL) return parse_table(parser, table, name);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
   bool is_root = strcmp(name, "sqrt") == 0;
@@ -297,6 +314,9 @@ static struct Quantity parse_primary(struct Parser *parser) {
   if (!call) {
     parser->next = end; /* an error about the name is on its line */
     name = read_name_suffix(parser, name);
+    end = parser->next;
+    call = !parser->failed && find_table(parser, name) != NULL && accept(parser, '(');
+    if (!call) parser->next = end;
   }
   struct Quantity value = nothing;
   if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);

@@ -7,6 +7,7 @@
 #include "algebra/differentiate.h"
 #include "memory.h"
 #include "read/similar.h"
+#include "read/tables.h"
 
 struct Entry {
   struct Quantity quantity;
@@ -19,6 +20,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->graph = graph;
   scope->diagnostics = diagnostics;
   scope->names = names_create();
+  scope->tables = names_create();
   scope->prefix = "";
   return scope;
 }
@@ -26,6 +28,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
 void scope_free(struct Scope *scope) {
   if (scope == NULL) return;
   names_free(scope->names);
+  tables_free(scope->tables);
   free(scope->time_derivatives);
   free(scope->requirements.items);
   free(scope);

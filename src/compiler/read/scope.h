@@ -15,6 +15,7 @@ struct Scope {
   struct Names *names;              /* name -> struct Entry */
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
+  struct Names *tables;             /* full name -> struct Table, see tables.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
   const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */

@@ -8,6 +8,7 @@
 #include "read/definitions.h"
 #include "read/hints.h"
 #include "read/similar.h"
+#include "read/tables.h"
 
 const char *const special_functions[] = {"sqrt", "der", "sum", NULL};
 
@@ -85,9 +86,12 @@ void report_unknown_name(struct Parser *parser, const char *name) {
 void report_reserved(struct Parser *parser, const char *name) {
   bool is_function = find_function(name) < OPERATION_COUNT;
   for (size_t i = 0; special_functions[i] != NULL; i++) is_function |= strcmp(name, special_functions[i]) == 0;
-  if (is_function)
-    FAIL(parser, "%s: '%s' is no variable but a function; expected its argument in parentheses, as in %s(...)",
-         parser->place.what, name, name);
+  char *full_name = scope_full_name(parser->scope, name);
+  bool is_table = table_named(parser->scope, full_name) != NULL;
+  free(full_name);
+  if (is_function || is_table)
+    FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
+         parser->place.what, name, is_table ? "table" : "function", name);
   else
     FAIL(parser, "%s: '%s' is no variable but a result, which expressions cannot use; expected %s", parser->place.what,
          name, expected_names(parser));
@@ -106,11 +110,21 @@ static char *function_names(void) {
   return names;
 }
 
+/* Those of the file being read, as it calls them. */
+static void consider_tables(struct Similar *similar, const struct Scope *scope) {
+  size_t length = strlen(scope->prefix);
+  for (size_t i = 0; i < scope->tables->capacity; i++) {
+    const char *name = scope->tables->places[i].text;
+    if (name != NULL && strncmp(name, scope->prefix, length) == 0) similar_consider(similar, name + length);
+  }
+}
+
 void report_unknown_function(struct Parser *parser, const char *name) {
   struct Similar similar = {.wanted = name};
   for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
+  consider_tables(&similar, parser->scope);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
