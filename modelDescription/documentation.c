@@ -129,8 +129,7 @@ static void write_starts(const struct Page *page) {
     for (size_t i = 0; i < lists[list]->count; i++) {
       const struct Variable *state = &lists[list]->items[i];
       if (!start_follows(page->model, state)) continue;
-      if (count++ == 0)
-        element(page->writer, "h2", "Start values, of what is not set before the simulation");
+      if (count++ == 0) element(page->writer, "h2", "Start values, of what is not set before the simulation");
       if (count <= SHOWN_LIMIT) write_equation(page, state->name, state->start_expression);
     }
   write_rest(page->writer, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");

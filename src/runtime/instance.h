@@ -60,7 +60,7 @@ struct Instance {
   enum Kind kind;
   struct Situation *situation;
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
-  void *saved;                                           /* what the solver keeps inside situation->values */
+  void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
   bool solver_is_stale;      /* the situation was replaced: what the solver keeps outside of it no longer counts */

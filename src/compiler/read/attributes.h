@@ -22,9 +22,9 @@ struct Reader {
   struct Scope *scope;
   struct Definitions *definitions;
   size_t started_coordinates; /* those whose start values were read */
-  struct Names *bodies; /* name -> struct NamedBody */
-  struct Source *source;     /* the file being read */
-  struct Includes *includes; /* all files that are included */
+  struct Names *bodies;       /* name -> struct NamedBody */
+  struct Source *source;      /* the file being read */
+  struct Includes *includes;  /* all files that are included */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;

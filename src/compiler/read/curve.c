@@ -64,8 +64,8 @@ static struct Row row_of(const struct Curve *curve, size_t i) {
   if (curve->count == 3 && i == 2) return (struct Row){1, 1, 0, 2 * secant(curve, 1)};
   if (i == 0) return shared_cubic(width(curve, 0), width(curve, 1), secant(curve, 0), secant(curve, 1));
   if (i == last) {
-    struct Row row = shared_cubic(width(curve, last - 1), width(curve, last - 2), secant(curve, last - 1),
-                                  secant(curve, last - 2));
+    struct Row row =
+        shared_cubic(width(curve, last - 1), width(curve, last - 2), secant(curve, last - 1), secant(curve, last - 2));
     return (struct Row){row.above, row.diagonal, 0, row.right};
   }
   double before = width(curve, i - 1), after = width(curve, i);

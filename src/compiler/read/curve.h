@@ -7,7 +7,7 @@
 enum Interpolation {
   LINEAR,   /* straight lines, whose slopes jump at the points */
   MONOTONE, /* rises and falls where the points do: slopes of Fritsch and Butland, as in PCHIP */
-  SPLINE    /* continuous with its second derivative; its third one does not jump at the second and the last point but one */
+  SPLINE    /* with a continuous second derivative; the first two intervals share one cubic, as do the last two */
 };
 
 /* y + s (b + s (c + s d)) with s = x - x[i] between the points i and i + 1; at the last point b is the slope. */

@@ -387,7 +387,8 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   given_number_attribute(reader, node, given, "min", &variable.minimum);
   given_number_attribute(reader, node, given, "max", &variable.maximum);
   check_range(reader, &variable);
-  variable.node = scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.node =
+      scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
   variable.line = scope_line(reader->scope, variable.line);
   append_variable(list, variable);
 }

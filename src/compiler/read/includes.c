@@ -29,8 +29,7 @@ void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root) {
   reader->includes = allocate(1, sizeof *reader->includes);
   *reader->includes = (struct Includes){names_create(), names_create(), names_create()};
   struct Source *own = allocate(1, sizeof *own);
-  *own = (struct Source){
-      .file = path, .canonical_path = realpath(path, NULL), .prefix = copy_text(""), .root = root};
+  *own = (struct Source){.file = path, .canonical_path = realpath(path, NULL), .prefix = copy_text(""), .root = root};
   names_set(reader->includes->sources, "", own);
   reader->source = own;
 }
@@ -210,8 +209,9 @@ void check_given(struct Reader *reader) {
     reader->scope->prefix = given->target->prefix;
     const char *similar = scope_similar_name(reader->scope, name);
     report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
-                 (const char *)given->node->name, name, similar != NULL ? "did you mean '" : "expected one of its names",
-                 similar != NULL ? similar : "", similar != NULL ? "'?" : "");
+                 (const char *)given->node->name, name,
+                 similar != NULL ? "did you mean '" : "expected one of its names", similar != NULL ? similar : "",
+                 similar != NULL ? "'?" : "");
     source_enter(reader, present);
   }
 }

@@ -23,7 +23,7 @@ struct Source {
 
 /* What an <include> gives to something that the file declares. */
 struct Given {
-  xmlNodePtr node;       /* the element in the <include> */
+  xmlNodePtr node;             /* the element in the <include> */
   struct Source *source;       /* in which it stands */
   const struct Source *target; /* the file that it gives to */
   bool is_used;

@@ -13,15 +13,14 @@ static bool is_element(xmlNodePtr node, const char *name) {
 
 bool has_value(xmlNodePtr node, const struct Given *given) {
   if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
-  return is_given(given, "value") ||
-         (!is_given(given, "start") && xmlHasProp(node, (const xmlChar *)"value") != NULL);
+  return is_given(given, "value") || (!is_given(given, "start") && xmlHasProp(node, (const xmlChar *)"value") != NULL);
 }
 
 /* The value of a definition, parameter or input, in its unit where it gives one. */
 static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpression *expression,
                                    struct Quantity value) {
   xmlNodePtr node = expression->node, where = expression->given != NULL ? expression->given->node : node;
-  const char *what = expression->attribute == NULL  ? "the definition"
+  const char *what = expression->attribute == NULL   ? "the definition"
                      : is_element(node, "parameter") ? "the value of the parameter"
                                                      : "the value of the input";
   struct Source *present = source_enter(reader, expression->source);

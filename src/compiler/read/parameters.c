@@ -10,8 +10,7 @@
 #include "read/elements.h"
 #include "read/named_expressions.h"
 
-static const char *const type_names[] = {
-    [TYPE_REAL] = "Real", [TYPE_INTEGER] = "Integer", [TYPE_BOOLEAN] = "Boolean"};
+static const char *const type_names[] = {[TYPE_REAL] = "Real", [TYPE_INTEGER] = "Integer", [TYPE_BOOLEAN] = "Boolean"};
 
 static enum VariableType type_of(xmlNodePtr node) {
   char *text = attribute(node, "type");

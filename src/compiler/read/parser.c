@@ -200,7 +200,8 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
          first, last);
   expect(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index_name);
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
+         index_name);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
   if (first > last) skip_to_end(parser);

@@ -54,7 +54,7 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   double from = 0, to = -1;
   if (node->_private == &refused) return;
   char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
-  if ( !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
+  if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
       !check_repetition(reader, node, index, index_name, from, to)) {
     node->_private = &refused;
     free(index_name);

@@ -110,8 +110,8 @@ static void read_file(struct Points *points, xmlNodePtr node, const char *name) 
   char *path = path_beside(points->reader, name), *text = text_of_file(path);
   if (text == NULL) {
     report_error(diagnostics, xmlGetLineNo(node),
-                 "the file '%s' cannot be read: %s; expected two columns of numbers, its path relative to this file", path,
-                 strerror(errno));
+                 "the file '%s' cannot be read: %s; expected two columns of numbers, its path relative to this file",
+                 path, strerror(errno));
     points->wrong = true;
   } else {
     const char *present = diagnostics->file;
@@ -212,8 +212,7 @@ static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i,
   return multiply(graph, s, inner);
 }
 
-struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name,
-                         struct Quantity argument) {
+struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name, struct Quantity argument) {
   struct Graph *graph = parser->graph;
   const struct Curve *curve = &table->curve;
   size_t last = curve->count - 1;

@@ -22,6 +22,7 @@ enum Operation find_function(const char *name) {
 
 /* What may stand where numbers alone are allowed, or everything. */
 static const char *expected_names(const struct Parser *parser) {
+  if (parser->place.kinds == 1u << PARAMETER) return "a parameter or a constant";
   return parser->place.kinds == 0 ? "a number, or a constant that stands further up"
                                   : "a parameter, coordinate, velocity, input, definition or time";
 }
