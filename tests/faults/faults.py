@@ -200,7 +200,7 @@ FAULTS = [
      pytest("test_up_to_date", "other_type")),
     ("src/runtime/values.c", "value != 0.0 && value != 1.0", "false", pytest("test_parameter_types", "boolean_that_is_neither")),
     ("src/runtime/initial_state.c", " && instance->state_was_set[variable->index] == 0.0", "", pytest("test_start_expressions", "what_is_set_stays")),
-    ("src/compiler/mechanics/dependencies.c", "  if (initial) follow_starts(dependencies);\n", "", pytest("test_start_expressions", "description")),
+    ("src/compiler/mechanics/dependencies.c", "if (initial) follow_starts(", "if (false) follow_starts(", pytest("test_start_expressions", "description")),
     ("src/compiler/read/includes.c", "if (other == NULL && name != NULL) {", "if (name != NULL) {", pytest("test_includes", "parts_in_parts")),
     ("src/compiler/read/curve.c", "left * right > 0 ?", "true ?", pytest("test_tables", "values_and_derivatives")),
     ("src/compiler/read/tables.c", "(graph, MINIMUM, graph_constant(graph, curve->x[i + 1] - curve->x[i]), from_start)",
