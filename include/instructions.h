@@ -109,7 +109,10 @@ enum Opcode {
 struct BlockTable {
   size_t count, first_mass, first_side;
   const size_t *start, *column; /* NULL where the pattern is full */
-  const int *coordinate;        /* of each row */
+  const int *coordinate;        /* of each row: 1 + its number; of a constraint -1 - its number */
+  /* saddle_factor() and saddle_solve() of a block with constraints, NULL of others */
+  size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
+  void (*solve)(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
 };
 
 /* What all tables of a system share. */

@@ -99,6 +99,7 @@ struct LuPattern {
 };
 
 struct Lu;
+struct Projection;
 struct Solver;
 
 struct Lagrangian {
@@ -122,10 +123,15 @@ struct Lagrangian {
   struct OperationCounts operations;
   const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
   struct LuPattern lu_pattern; /* where that is lu_sparse */
+  size_t constraint_count;
+  const char *const *constraints;      /* their names */
+  const bool *coordinate_is_fixed;     /* at the start; NULL where none is */
+  const struct Projection *projection; /* projection.h; NULL without constraints */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
-   * definite; results are then undefined.
+   * definite; results are then undefined. For systems with constraints, acceleration[coordinate_count +
+   * constraint_count] holds the accelerations and then the forces of the constraints; M a + J^T F = Q.
    */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
@@ -143,12 +149,28 @@ struct Lagrangian {
   /* d derivatives / d state: the elements of jacobian_pattern, in its order */
   int (*jacobian)(const struct Point *point, double *values);
   /*
-   * A computed variable; acceleration holds dv/dt at the point, where it is used. result_along: its derivative along
-   * seed, with the accelerations changing by acceleration_along; of outputs and calculated parameters alone.
+   * A computed variable; acceleration holds dv/dt at the point, and the constraints' forces, where it is used.
+   * result_along: its derivative along seed, with the accelerations changing by acceleration_along; of outputs and
+   * calculated parameters alone.
    */
   double (*result)(const struct Point *point, const double *acceleration, size_t result);
   double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
                          const double *acceleration_along, size_t result);
+  /* What result() and result_along() take, in systems with constraints; NULL in others. */
+  int (*accelerations)(const struct Point *point, double *acceleration);
+  int (*accelerations_along)(const struct Point *point, const struct Seed *seed, double *acceleration);
+  /*
+   * What brings a state back to the constraints, the least in the metric of M: with n coordinates and m constraints,
+   * correction[n + 3 m] holds the changes of the coordinates, how much each constraint lacks (that is, less its value),
+   * the last pivot of its row, infinite where it follows from others, and the length of its row of J. seed->state holds
+   * by how much the coordinates have been moved already. correct_velocities() does the same at the present coordinates,
+   * where constraints are linear in the velocities.
+   */
+  int (*correct_positions)(const struct Point *point, const struct Seed *seed, double *correction);
+  int (*correct_velocities)(const struct Point *point, double *correction);
+  /* The same for start values, where fixed coordinates and their velocities stay; NULL where none is fixed. */
+  int (*start_positions)(const struct Point *point, const struct Seed *seed, double *correction);
+  int (*start_velocities)(const struct Point *point, double *correction);
   /* The same as derivatives(); also fills the first coefficients in the workspace w[series_rows] of series(). */
   int (*start)(const struct Point *point, double *derivative, Series *w);
   /*

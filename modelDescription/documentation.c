@@ -61,6 +61,9 @@ static void write_rest(xmlTextWriterPtr writer, size_t count, size_t shown, cons
 
 /* Which law totalEnergy obeys (see energies.h). */
 static const char *balance_of(const struct Model *model, bool autonomous) {
+  if (model->moving_constraint != NULL)
+    return "A constraint moves in a given way: its force does work, so that totalEnergy is not constant even without "
+           "other forces.";
   if (!model->driven && autonomous)
     return model->has_forces
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
@@ -135,10 +138,25 @@ static void write_starts(const struct Page *page) {
   write_rest(page->writer, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
 }
 
+static void write_constraints(const struct Page *page) {
+  const struct VariableList *constraints = &page->model->constraints;
+  size_t shown = constraints->count < SHOWN_LIMIT ? constraints->count : SHOWN_LIMIT;
+  if (shown == 0) return;
+  element(page->writer, "h2", "Constraints");
+  for (size_t i = 0; i < shown; i++) write_equation(page, constraints->items[i].name, constraints->items[i].node);
+  write_rest(page->writer, constraints->count, shown, "constraints");
+  element(
+      page->writer, "p",
+      "Each is 0 at all times. Its force F stands on the left of the equations of motion with the derivatives of the "
+      "constraint by the coordinates, or of one with velocities by these: it is a tension where the constraint is a "
+      "distance less a length. After each step of the solver the state is brought back to the constraints.");
+}
+
 static void write_mechanics(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
   write_energies(page);
+  write_constraints(page);
   element(writer, "h2", "Equations of motion");
   for (size_t i = 0; i < summary->motion_count; i++) {
     char *left = expression_text_with_names(page->model->graph, summary->inertial[i], &summary->names);

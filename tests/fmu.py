@@ -37,7 +37,7 @@ temporary_folders = []  # removed at the end of the process
 
 def small_names():
     """Without those of hundreds of states, which take minutes where every access to memory is watched, or every pair of variables tried."""
-    return [name for name in all_names() if name != "Rope"]
+    return [name for name in all_names() if name not in ("Rope", "NFourBar")]
 
 
 @functools.cache
@@ -108,6 +108,10 @@ def further_names():
 def moving_names():
     """The systems with coordinates."""
     return [name for name in all_names() if description(name).numberOfContinuousStates > 0]
+
+
+def is_constrained(name):
+    return any(variable.name.endswith(".force") for variable in description(name).modelVariables)
 
 
 def references(name):

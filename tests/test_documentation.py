@@ -51,8 +51,9 @@ def check(page):
         for paragraph, details in zip(list(parent), list(parent)[1:]):
             if paragraph.get("class") != "formula":
                 continue
-            typeset = "".join(infix(math) for math in paragraph).split("=")
-            text = plain(details.find("code").text).split(" = ")
+            indexed = lambda side: re.sub(r"\[(\d+)\]\.", r"_\1.", side)  # loop[1].force, which stays a word
+            typeset = indexed("".join(infix(math) for math in paragraph)).split("=")
+            text = plain(indexed(details.find("code").text)).split(" = ")
             names = {name: generator.uniform(0.1, 0.9) for name in set(re.findall(r"[A-Za-z_][\w.]*", " ".join(text)))}
             dots = lambda side: re.sub(r"(?<=[A-Za-z_])(\w*)\.(?=[A-Za-z])", r"\1__", side)
             values = {dots(name): value for name, value in names.items()}

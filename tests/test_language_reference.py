@@ -53,6 +53,17 @@ def rocket(t):
     return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
 
 
+def rod_pendulum(t):
+    angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
+    square = 2 * 9.81 * 0.5 * (np.cos(angle) - np.cos(1))  # v^2
+    return {"x": 0.5 * np.sin(angle), "y": -0.5 * np.cos(angle), "tension": 2 * (square / 0.5 + 9.81 * np.cos(angle))}
+
+
+def skate(t):
+    scale = 9.81 * np.sin(0.1) / 8
+    return {"x": scale * np.sin(2 * t) ** 2, "y": scale * (2 * t - np.sin(4 * t) / 2)}
+
+
 def block(t):
     stop = 2 / (0.3 * 9.81)
     moving = min(t, stop)
@@ -72,6 +83,8 @@ MOTIONS = {
     "Hoist": (lambda t: {"x": 5 * 9.81 * t**2 / (2 * (5 + 0.04 * 9 / 0.04))}, 1e-9),
     "Rocket": (rocket, 1e-6),
     "HeapedChain": (lambda t: {"x": 9.81 * (0.5 + t)**2 / 6, "v": 9.81 * (0.5 + t) / 3}, 1e-8),
+    "RodPendulum": (rod_pendulum, 1e-6),
+    "Skate": (skate, 1e-7),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),

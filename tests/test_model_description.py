@@ -120,7 +120,10 @@ def test_dependencies_are_true(name, open_fmu):
                     if before != after:
                         changed[index].add(candidate)
         for index, dependencies, _ in rows:
-            assert set(dependencies) == changed[index], reals[index - 1]
+            if fmu.is_constrained(name):  # what is solved for at run time may cancel
+                assert set(dependencies) >= changed[index], reals[index - 1]
+            else:
+                assert set(dependencies) == changed[index], reals[index - 1]
 
 
 @pytest.mark.parametrize("name", ALL_NAMES)
@@ -223,6 +226,7 @@ NAMES = {
 }
 
 
+@pytest.mark.parametrize("name", NAMES)
 def test_names_of_the_design(name):
     coordinates, velocities, inputs, parameters, outputs = (words.split() for words in NAMES[name])
     assert fmu.names_of(name, "input") == inputs

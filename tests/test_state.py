@@ -148,6 +148,8 @@ def test_restored_parameters_count(name, open_fmu):
 @pytest.mark.parametrize("name", [*fmu.moving_names(), "FurutaPendulum"])
 def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
     """What was prepared for the old value is not used: a new instance with the same values moves alike."""
+    if fmu.is_constrained(name):
+        pytest.skip("lengths that are tuned move the state: tests/test_constraints.py")
     instance, fresh = open_fmu(name).initialize(tolerance=1e-9), open_fmu(name)
     instance.step(0.01)
     parameters, states = fmu.names_of(name, "parameter"), fmu.states_of(name)
@@ -374,7 +376,7 @@ def test_instances_are_independent(name, open_fmu):
     alone = drive(open_fmu(name).initialize(), name, 6)
     first, second = open_fmu(name).initialize(), open_fmu(name)
     parameter = fmu.names_of(name, "parameter")[0]
-    second.initialize({parameter: 1.9})
+    second.initialize({parameter: 1.1 * fmu.start_values(name)[parameter]})
     interleaved = []
     names = [v.name for v in first.description.modelVariables if v.type == "Real"]
     for i in range(6):

@@ -12,6 +12,7 @@ struct Direction {
   struct Seed seed;
   double *state, *input, *parameter;
   double *derivative, *derivative_along;
+  const double *acceleration, *acceleration_along; /* what result_along() takes */
 };
 
 static struct Direction direction_create(struct Instance *instance) {
@@ -31,6 +32,10 @@ static enum Status follow(struct Instance *instance, const struct Point *point, 
   if (lagrangian.derivatives == NULL) return STATUS_DONE;
   if (!evaluate_derivatives(instance, point, direction->derivative)) return discard_for_singularity(instance);
   instance->singular = lagrangian.directional(point, &direction->seed, direction->derivative_along);
+  if (instance->singular != 0) return STATUS_DISCARD;
+  direction->acceleration = evaluate_accelerations(instance, point, direction->derivative);
+  direction->acceleration_along =
+      evaluate_accelerations_along(instance, point, &direction->seed, direction->derivative_along);
   return instance->singular == 0 ? STATUS_DONE : STATUS_DISCARD;
 }
 
@@ -61,8 +66,8 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
                               const unsigned *reference, size_t count, double *value, const char *function) {
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
-    double derivative =
-        evaluate_along(variable, point, &direction->seed, direction->derivative, direction->derivative_along);
+    double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
+                                       direction->acceleration, direction->acceleration_along);
     if (!isfinite(derivative)) {
       log_message(instance, STATUS_DISCARD, "%s: the derivative of '%s' is not finite here", function, variable->name);
       return STATUS_DISCARD;

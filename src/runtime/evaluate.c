@@ -78,13 +78,28 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
   }
 }
 
+const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
+  if (lagrangian.accelerations == NULL) return derivative + lagrangian.coordinate_count;
+  instance->singular = lagrangian.accelerations(point, instance->acceleration);
+  return instance->singular == 0 ? instance->acceleration : NULL;
+}
+
+const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
+                                           const struct Seed *seed, const double *derivative_along) {
+  if (lagrangian.accelerations_along == NULL) return derivative_along + lagrangian.coordinate_count;
+  double *along = instance->acceleration + lagrangian.coordinate_count + lagrangian.constraint_count;
+  instance->singular = lagrangian.accelerations_along(point, seed, along);
+  return instance->singular == 0 ? along : NULL;
+}
+
 static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
-  enum Status status = lagrangian.result_uses_acceleration[variable->index]
-                           ? evaluate_situation(instance, instance->work)
-                           : evaluate_prepare(instance);
+  bool uses_acceleration = lagrangian.result_uses_acceleration[variable->index];
+  enum Status status = uses_acceleration ? evaluate_situation(instance, instance->work) : evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
-  *value = lagrangian.result(&point, instance->work + lagrangian.coordinate_count, variable->index);
+  const double *acceleration = uses_acceleration ? evaluate_accelerations(instance, &point, instance->work) : NULL;
+  if (uses_acceleration && acceleration == NULL) return discard_for_singularity(instance);
+  *value = lagrangian.result(&point, acceleration, variable->index);
   return STATUS_DONE;
 }
 
@@ -121,14 +136,12 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
 }
 
 double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
-                      const double *derivative, const double *derivative_along) {
+                      const double *derivative_along, const double *acceleration, const double *acceleration_along) {
   switch (variable->kind) {
   case VARIABLE_TIME: return seed->time;
   case VARIABLE_STATE: return seed->state[variable->index];
   case VARIABLE_DERIVATIVE: return derivative_along[variable->index];
-  case VARIABLE_RESULT:
-    return lagrangian.result_along(point, seed, derivative + lagrangian.coordinate_count,
-                                   derivative_along + lagrangian.coordinate_count, variable->index);
+  case VARIABLE_RESULT: return lagrangian.result_along(point, seed, acceleration, acceleration_along, variable->index);
   default: return NAN;
   }
 }

@@ -38,14 +38,24 @@ void expand_input(const struct Instance *instance, size_t i, double time, double
 /* The inputs at time; input[input_count]. */
 void evaluate_inputs(const struct Instance *instance, double time, double *input);
 
+/*
+ * What result() takes at a point, from the derivative of the state there: the accelerations and the forces of
+ * constraints. NULL where the mass matrix is singular, which instance->singular then tells.
+ */
+const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative);
+
+/* The same along a direction, from the derivative of the state along it. */
+const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
+                                           const struct Seed *seed, const double *derivative_along);
+
 /* The value of a Real variable. Discards after logging where it is not finite. */
 enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value);
 
 /*
- * The derivative of an output, a state or a state derivative along seed; derivative and derivative_along hold
- * state_count values from derivatives() and directional().
+ * The derivative of an output, a state or a state derivative along seed; derivative_along holds state_count values from
+ * directional(), the accelerations are those of the functions above.
  */
 double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
-                      const double *derivative, const double *derivative_along);
+                      const double *derivative_along, const double *acceleration, const double *acceleration_along);
 
 #endif

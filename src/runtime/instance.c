@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "initial_state.h"
+#include "projection.h"
 #include "solver.h"
 
 static size_t set_count(void) {
@@ -44,6 +45,16 @@ void instance_reset(struct Instance *instance) {
   instance->told_singularity = 0;
 }
 
+/* Systems without constraints find them among the derivatives of the state. */
+static size_t acceleration_count(void) {
+  return lagrangian.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraint_count;
+}
+
+static size_t evaluation_count(void) {
+  return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + 2 * acceleration_count() +
+         3 * lagrangian.state_count + 2 * lagrangian.input_count + lagrangian.parameter_count + 1;
+}
+
 /* Divides the blocks of memory among the arrays. */
 static void lay_out(struct Instance *instance, double *evaluation) {
   instance->state = instance->situation->values;
@@ -54,12 +65,9 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->saved = instance->state_was_set + set_count();
   instance->prepared = evaluation;
   instance->point_work = instance->prepared + lagrangian.prepared_count;
-  instance->work = instance->point_work + lagrangian.work_count;
-}
-
-static size_t evaluation_count(void) {
-  return lagrangian.prepared_count + lagrangian.work_count + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
-         lagrangian.parameter_count + 1;
+  instance->projection_work = instance->point_work + lagrangian.work_count;
+  instance->acceleration = instance->projection_work + projection_work_count();
+  instance->work = instance->acceleration + 2 * acceleration_count();
 }
 
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {

@@ -70,6 +70,8 @@ struct Instance {
   const char *limited_by;    /* the elementary function that shortened the solver's last step; NULL for none */
   double *work;              /* 3 state_count + 2 input_count + parameter_count, for evaluations */
   double *point_work;        /* lagrangian.work_count, for generated functions */
+  double *projection_work;   /* projection_work_count() */
+  double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;
 };
 

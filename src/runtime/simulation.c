@@ -4,6 +4,7 @@
 
 #include "evaluate.h"
 #include "initial_state.h"
+#include "projection.h"
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
@@ -22,17 +23,23 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
   return STATUS_DONE;
 }
 
-static bool has_accelerations(struct Instance *instance) {
+static bool is_prepared(struct Instance *instance) {
   instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
-  if (instance->singular != 0) return false;
-  instance->prepared_is_stale = false;
+  if (instance->singular == 0) instance->prepared_is_stale = false;
+  return instance->singular == 0;
+}
+
+static bool has_accelerations(struct Instance *instance) {
   struct Point point = evaluate_point(instance);
   return lagrangian.derivatives == NULL || evaluate_derivatives(instance, &point, instance->work);
 }
 
 enum Status simulation_start(struct Instance *instance, const char *function) {
   if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
-  if (!has_accelerations(instance)) {
+  bool is_ready = is_prepared(instance);
+  if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, true, function))
+    return STATUS_ERROR;
+  if (!is_ready || !has_accelerations(instance)) {
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return log_error(instance, "%s: the system has no acceleration at its start values", function);
   }

@@ -65,6 +65,12 @@ bool solver_jacobian(struct Instance *instance, double time, const double *state
 /* The point for generated functions at a time and state that the solver chose. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
 
+/*
+ * Brings the state at the end of a step back to the constraints, where there are some. NULL, or the reason why the
+ * motion cannot go on.
+ */
+const char *solver_project(struct Instance *instance, double time, double *state);
+
 /* Logs that the solver has no memory; returns false. */
 bool solver_lacks_memory(const struct Instance *instance);
 

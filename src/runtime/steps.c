@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "evaluate.h"
+#include "projection.h"
 #include "solver.h"
 
 enum StepResult {
@@ -49,6 +50,14 @@ struct Point solver_point(struct Instance *instance, double time, const double *
   return point;
 }
 
+/* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
+const char *solver_project(struct Instance *instance, double time, double *state) {
+  static const char problem[] = "a constraint cannot be kept there";
+  if (lagrangian.projection == NULL) return NULL;
+  double moved = lagrangian.projection->project(instance, time, state);
+  return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
+}
+
 bool solver_lacks_memory(const struct Instance *instance) {
   log_message(instance, STATUS_ERROR, "there is no memory for the solver");
   return false;
@@ -67,6 +76,9 @@ static bool make_ready(struct Instance *instance, const struct CommunicationStep
                  step->start <= situation->last_step.end && (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
     situation->last_step = (struct Span){step->start, step->start};
+    /* The state or the parameters may have been set. */
+    if (lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, false, "the step"))
+      return false;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return false;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -106,6 +118,17 @@ static bool take_state(struct Instance *instance, double time) {
   return are_finite(instance->state, lagrangian.state_count);
 }
 
+/* Where a mechanism comes to its limit, its user looks for the part that holds it. */
+static void log_weakest(struct Instance *instance, double time) {
+  const char *name = lagrangian.projection->weakest(instance, time, instance->state);
+  if (name != NULL)
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "
+        "limit of its reach",
+        time, name);
+}
+
 /* The state becomes that of the time which the solver came to, and says why it is not the end. */
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                             double reached) {
@@ -113,6 +136,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   const char *function = instance->limited_by;
   if (!take_state(instance, reached)) return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
+  if (lagrangian.projection != NULL) log_weakest(instance, reached);
   const char *others = solver->alternatives;
   log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s%s%s", solver->name, reached,
               step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
@@ -128,8 +152,12 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   if (lagrangian.solver == NULL) return STEP_DONE;
   if (!make_ready(instance, step)) return STEP_FAILED;
   const char *problem = reach(instance, step);
-  if (problem == NULL && take_state(instance, step->end)) return STEP_DONE;
+  if (problem == NULL && take_state(instance, step->end)) {
+    problem = solver_project(instance, step->end, instance->state);
+    if (problem == NULL) return STEP_DONE;
+  }
   *reached = problem != NULL ? last->end : last->start;
+  if (*reached > step->end) *reached = last->start;
   return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
 }
 

@@ -86,7 +86,7 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
 }
 
 /* Eliminates all rows; the sets are then the columns of L below the diagonal. */
-static void eliminate_rows(size_t count, struct Set *sets, size_t *order, size_t *place) {
+static void eliminate_rows(size_t count, size_t late, struct Set *sets, size_t *order, size_t *place) {
   struct Queue queue = {0};
   bool *is_eliminated = allocate(count, sizeof *is_eliminated);
   for (size_t row = 0; row < count; row++) push(&queue, (struct Waiting){sets[row].count, row});
@@ -94,6 +94,7 @@ static void eliminate_rows(size_t count, struct Set *sets, size_t *order, size_t
     struct Waiting waiting = pop(&queue);
     const struct Set *set = &sets[waiting.row];
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
+    if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* comes again when these are gone */
     is_eliminated[waiting.row] = true;
     place[waiting.row] = next;
     order[next++] = waiting.row;
@@ -118,12 +119,12 @@ static struct Elimination full_elimination(size_t count) {
   return result;
 }
 
-struct Elimination eliminate(size_t count, const struct Position *positions, size_t position_count) {
+struct Elimination eliminate(size_t count, size_t late, const struct Position *positions, size_t position_count) {
   if (position_count == count * (count + 1) / 2) return full_elimination(count);
   struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
   struct Set *sets = neighbours_of(count, positions, position_count);
   size_t *place = allocate(count, sizeof *place), *end = allocate(count, sizeof *end);
-  eliminate_rows(count, sets, result.order, place);
+  eliminate_rows(count, late, sets, result.order, place);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < sets[i].count; k++) result.start[place[sets[i].items[k]] + 1]++;
   for (size_t i = 0; i < count; i++) {

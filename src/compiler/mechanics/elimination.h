@@ -21,8 +21,9 @@ struct Position {
 /*
  * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
  * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree
- * fills nothing in, and a full matrix stays as it is. The caller frees the three arrays.
+ * fills nothing in, and a full matrix stays as it is. A row from late on is not taken before its neighbours below late;
+ * late is count for none. The caller frees the three arrays.
  */
-struct Elimination eliminate(size_t count, const struct Position *positions, size_t position_count);
+struct Elimination eliminate(size_t count, size_t late, const struct Position *positions, size_t position_count);
 
 #endif

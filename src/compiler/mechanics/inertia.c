@@ -27,14 +27,15 @@ static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j
   return find(inertia_block_of(inertia, i), a > b ? a : b, a > b ? b : a);
 }
 
-/* The block of these elements; members: its coordinates, ascending. */
+/* The block of these elements; members: its rows, ascending. */
 static void create_block(struct Inertia *inertia, size_t number, size_t *members, struct Position *positions,
                          const Node *nodes, size_t position_count) {
   struct InertiaBlock *block = &inertia->blocks[number];
   struct Position *local = allocate(position_count, sizeof *local);
   for (size_t k = 0; k < position_count; k++)
     local[k] = (struct Position){inertia->place_of[positions[k].row], inertia->place_of[positions[k].column]};
-  struct Elimination elimination = eliminate(block->count, local, position_count);
+  size_t late = block->count - block->constraint_count;
+  struct Elimination elimination = eliminate(block->count, late, local, position_count);
   block->start = elimination.start;
   block->column = elimination.column;
   block->coordinates = elimination.order;
@@ -48,17 +49,22 @@ static void create_block(struct Inertia *inertia, size_t number, size_t *members
   free(local);
 }
 
-static struct Inertia *create_blocks(size_t count, struct Elements *elements) {
+/* count: all rows, the last of which are those of constraints. */
+static struct Inertia *create_blocks(size_t count, size_t constraint_count, struct Elements *elements) {
   struct Components components = find_components(count, elements);
   size_t *start = sort_by_components(elements, &components);
   struct Inertia *inertia = allocate(1, sizeof *inertia);
-  *inertia = (struct Inertia){.count = count, .block_of = components.of, .place_of = allocate(count, sizeof(size_t))};
+  *inertia = (struct Inertia){.count = count,
+                              .coordinate_count = count - constraint_count,
+                              .block_of = components.of,
+                              .place_of = allocate(count, sizeof(size_t))};
   inertia->block_count = components.count;
   inertia->blocks = allocate(components.count, sizeof *inertia->blocks);
   size_t **members = allocate(components.count, sizeof *members);
   for (size_t i = 0; i < count; i++) inertia->place_of[i] = inertia->blocks[components.of[i]].count++;
   for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
   for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
+  for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
   for (size_t b = 0; b < components.count; b++) {
     create_block(inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
                  start[b + 1] - start[b]);
@@ -69,21 +75,33 @@ static struct Inertia *create_blocks(size_t count, struct Elements *elements) {
   return inertia;
 }
 
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, struct Diagnostics *diagnostics) {
+/* The same matrix with the borders J and J^T. */
+static struct Inertia *border(size_t count, struct Elements *elements, const struct Constraints *constraints) {
+  const struct Elements *jacobian = &constraints->jacobian;
+  for (size_t k = 0; k < jacobian->count; k++)
+    elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
+  return create_blocks(count + constraints->count, constraints->count, elements);
+}
+
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
+                               struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   struct Elements elements = elements_of(model, momentum);
-  struct Inertia *inertia = create_blocks(count, &elements);
-  elements_free(&elements);
-  if (graph_limit(model->graph) != NULL) return inertia;
-  if (pivots_check(model, inertia, diagnostics)) {
-    bool unroll_all = model->linearized || (model->method != NULL && model->method->needs_linear);
-    for (size_t b = 0; b < inertia->block_count; b++)
-      inertia->blocks[b].is_unrolled = unroll_all || inertia->blocks[b].count <= UNROLL_LIMIT;
-    pivots_factor(model->graph, inertia);
-    return inertia;
+  struct Inertia *inertia = create_blocks(count, 0, &elements);
+  bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
+  if (!is_right || constraints->count > 0) {
+    inertia_free(inertia);
+    inertia = is_right ? border(count, &elements, constraints) : NULL;
   }
-  inertia_free(inertia);
-  return NULL;
+  elements_free(&elements);
+  if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
+  bool unroll_all = model->linearized || (model->method != NULL && model->method->needs_linear);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);
+  }
+  pivots_factor(model->graph, inertia);
+  return inertia;
 }
 
 void inertia_free(struct Inertia *inertia) {
@@ -138,6 +156,7 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
     const struct InertiaBlock *from = &inertia->blocks[b];
     size_t count = from->count, elements = from->start[count];
     result->blocks[b] = (struct InertiaBlock){.count = count,
+                                              .constraint_count = from->constraint_count,
                                               .coordinates = copy_sizes(from->coordinates, count),
                                               .is_unrolled = from->is_unrolled,
                                               .start = copy_sizes(from->start, count + 1),
@@ -196,5 +215,5 @@ const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_
 }
 
 bool block_is_full(const struct InertiaBlock *block) {
-  return block->start[block->count] == block->count * (block->count + 1) / 2;
+  return block->constraint_count == 0 && block->start[block->count] == block->count * (block->count + 1) / 2;
 }

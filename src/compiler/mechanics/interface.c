@@ -100,6 +100,28 @@ static void append_bodies(struct Interface *interface, const struct Model *model
   }
 }
 
+/* In the constraint's own unit, energy is force times it. */
+static void append_constraint_forces(struct Interface *interface, const struct Model *model,
+                                     const struct Equations *equations) {
+  for (size_t i = 0; i < model->constraints.count; i++) {
+    const struct Variable *constraint = &model->constraints.items[i];
+    char *name = format_text("%s.force", constraint->name);
+    const char *description = constraint->description != NULL ? constraint->description : constraint->name;
+    char *text = format_text("force of the constraint: %s", description);
+    Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->constraint_forces[i];
+    append_result(interface, name, "", force, text);
+    struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
+    free(variable->unit);
+    struct Dimension energy;
+    const char *problem;
+    unit_parse("J", &energy, &problem);
+    struct Dimension dimension = dimension_multiply(energy, constraint->dimension, -1.0);
+    variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
+    free(name);
+    free(text);
+  }
+}
+
 static void append_statistic(struct Interface *interface, enum Statistic statistic, const char *name,
                              const char *description) {
   append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
@@ -118,7 +140,7 @@ static void append_statistics(struct Interface *interface) {
 static bool uses_time(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
-  for (size_t i = 0; i < equations->count; i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
   for (size_t i = 0; i < model->body_count; i++) {
     for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, equations->placements[i].position[axis], TIME);
@@ -130,7 +152,8 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
 /* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
 static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
-  bool changes = model->driven || model->linearized || graph_depends_on(graph, model->kinetic.node, TIME) ||
+  bool changes = model->driven || model->moving_constraint != NULL || model->linearized ||
+                 graph_depends_on(graph, model->kinetic.node, TIME) ||
                  graph_depends_on(graph, model->potential.node, TIME);
   if (changes || (model->has_forces && !equations->has_work)) return "kinetic and potential energy";
   return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
@@ -151,7 +174,7 @@ static const struct Method *method_of(const struct Model *model, const struct Eq
   if (model->coordinates.count == 0) return NULL;
   if (model->method != NULL) return model->method;
   if (model->linearized) return method_named("exact");
-  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
+  const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
   return method_named(kink != NULL ? "erk" : may_be_stiff(model) ? "auto" : "taylor");
 }
 
@@ -159,6 +182,7 @@ static const struct Method *method_of(const struct Model *model, const struct Eq
 static int output_derivative_order(const struct Interface *interface, const struct Model *model,
                                    const struct Equations *equations) {
   if (interface->method != NULL && interface->method->series == FIRST_TERMS) return 1;
+  if (depend_on_constraint_force(model, equations->outputs, model->outputs.count)) return 1;
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 
@@ -202,6 +226,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_calculated(interface, model);
   if (n == 0) return interface;
   append_bodies(interface, model, equations);
+  append_constraint_forces(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));

@@ -8,6 +8,7 @@
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/energies.h"
+#include "mechanics/time_derivative.h"
 #include "memory.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
@@ -43,18 +44,6 @@ static struct Motions motions_of(const struct Model *model) {
   return motions;
 }
 
-/* Directions in the space of all symbols: seeds of d/dt with accelerations, and without them. */
-static Node *time_seeds(const struct Model *model, bool with_accelerations) {
-  const struct Graph *graph = model->graph;
-  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
-  seeds[graph->vertices[model->time].left] = ONE;
-  for (size_t i = 0; i < model->coordinates.count; i++) {
-    seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-    if (with_accelerations) seeds[graph->vertices[model->velocities.items[i].node].left] = model->accelerations[i];
-  }
-  return seeds;
-}
-
 /* sum m (d2r/dt2) . dr/dq_i, with the accelerations or with 0 for them. */
 static void inertial_forces(const struct Model *model, const struct Motions *motions, bool with_accelerations,
                             Node *force) {
@@ -78,26 +67,30 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
 
 /*
  * Multiplied out, the inertial forces in curvilinear coordinates lose terms that only cancel each other; others grow.
- * left: the inertial forces without and with accelerations, which are replaced, block by block, where that makes them
- * shorter. Forces and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
+ * left: the inertial forces of the count coordinates, and ZERO for constraints, without and with accelerations, which
+ * are replaced, block by block, where that makes them shorter. Forces and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
  */
 static void shorten_inertial_forces(struct Graph *graph, const struct Inertia *inertia, const Node *accelerations,
-                                    Node *left[2]) {
+                                    size_t count, Node *left[2]) {
   size_t n = inertia->count;
-  Node *other = allocate(n, sizeof *other), *part = allocate(n, sizeof *part), *whole = allocate(n, sizeof *whole);
+  Node *rows = allocate(n, sizeof *rows), *other = allocate(n, sizeof *other), *part = allocate(n, sizeof *part),
+       *whole = allocate(n, sizeof *whole);
   for (size_t b = 0; b < inertia->block_count; b++) {
     move_block(&inertia->blocks[b], left[0], part, false);
     shorten(graph, inertia->blocks[b].count, part);
     move_block(&inertia->blocks[b], left[0], part, true);
   }
   for (size_t i = 0; i < n; i++) other[i] = left[0][i];
-  inertia_add_product(graph, inertia, accelerations, other);
+  for (size_t i = 0; i < count; i++) rows[i] = accelerations[i];
+  inertia_add_product(graph, inertia, rows, other);
+  for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);
     move_block(&inertia->blocks[b], left[1], whole, true);
   }
+  free(rows);
   free(other);
   free(part);
   free(whole);
@@ -111,7 +104,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
   Node lagrangian = subtract(graph, model->explicit_kinetic.node, model->potential.node);
   Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
   Node *rate = allocate(n, sizeof *rate), *inertial = allocate(n, sizeof *inertial);
-  Node *left[2] = {allocate(n, sizeof(Node)), allocate(n, sizeof(Node))};
+  Node *left[2] = {allocate(row_count(equations), sizeof(Node)), allocate(row_count(equations), sizeof(Node))};
   gradient_of(graph, lagrangian, VELOCITY, n, momentum);
   gradient_of(graph, lagrangian, COORDINATE, n, gradient);
   for (int with_accelerations = 0; with_accelerations <= 1; with_accelerations++) {
@@ -121,7 +114,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
     free(seeds);
   }
-  shorten_inertial_forces(graph, equations->inertia, model->accelerations, left);
+  shorten_inertial_forces(graph, equations->inertia, model->accelerations, n, left);
   for (size_t i = 0; i < n; i++) {
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = subtract(graph, right, left[0][i]);
@@ -137,11 +130,21 @@ static void derive_motion(const struct Model *model, struct Equations *equations
   free(left[1]);
 }
 
-/* What M leaves to ldlt.h at run time keeps the symbols of the accelerations. */
+/* The rows of the constraints, and their forces in those of the coordinates. */
+static void add_constraints(const struct Model *model, struct Equations *equations) {
+  const struct Constraints *constraints = equations->constraints;
+  constraints_add_forces(model->graph, constraints, model->constraint_forces, equations->residual);
+  for (size_t j = 0; j < constraints->count; j++) {
+    equations->residual[equations->count + j] = constraints->acceleration[j];
+    equations->right_side[equations->count + j] = negate(model->graph, constraints->acceleration_rest[j]);
+  }
+}
+
+/* What is left to ldlt.h at run time keeps the symbols of the accelerations. */
 static void solve_for_accelerations(const struct Model *model, struct Equations *equations) {
   inertia_solve(model->graph, equations->inertia, equations->right_side, equations->acceleration);
-  for (size_t i = 0; i < equations->count; i++)
-    if (is_looped(equations, i)) equations->acceleration[i] = model->accelerations[i];
+  for (size_t i = 0; i < row_count(equations); i++)
+    if (is_looped(equations, i)) equations->acceleration[i] = unknown_of_row(model, i);
 }
 
 static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
@@ -155,12 +158,13 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
 }
 
 struct Equations *equations_create(const struct Model *model) {
-  size_t n = model->coordinates.count;
+  size_t n = model->coordinates.count, rows = n + model->constraints.count;
   struct Equations *equations = allocate(1, sizeof *equations);
   *equations = (struct Equations){.count = n,
-                                  .right_side = allocate(n, sizeof(Node)),
-                                  .residual = allocate(n, sizeof(Node)),
-                                  .acceleration = allocate(n, sizeof(Node)),
+                                  .constraints = constraints_derive(model),
+                                  .right_side = allocate(rows, sizeof(Node)),
+                                  .residual = allocate(rows, sizeof(Node)),
+                                  .acceleration = allocate(rows, sizeof(Node)),
                                   .outputs = allocate(model->outputs.count, sizeof(Node)),
                                   .placements = allocate(model->body_count, sizeof(struct Placement))};
   return equations;
@@ -183,9 +187,10 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
   gradient_of(graph, subtract(graph, model->kinetic.node, model->potential.node), VELOCITY, n, momentum);
   equations->has_work = model->work_line > 0;
-  equations->inertia = inertia_derive(model, momentum, diagnostics);
+  equations->inertia = inertia_derive(model, momentum, equations->constraints, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
+    add_constraints(model, equations);
     derive_energies(model, equations, force);
     solve_for_accelerations(model, equations);
     copy_outputs(model, equations);
@@ -212,8 +217,16 @@ static bool are_finite(const struct Graph *graph, const Node *nodes, size_t coun
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics) {
   size_t wrong = 0;
-  if (are_finite(model->graph, equations->residual, equations->count)) return;
+  if (are_finite(model->graph, equations->residual, row_count(equations))) return;
   while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;
+  if (wrong >= equations->count) {
+    const struct Variable *constraint = &model->constraints.items[wrong - equations->count];
+    report_error(diagnostics, constraint->line,
+                 "the second time derivative of the constraint '%s' has a coefficient that is not finite; expected "
+                 "numbers below 1e308",
+                 constraint->name);
+    return;
+  }
   report_error(diagnostics, model->velocities.items[wrong].line,
                "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
                "point at a pole",
@@ -223,6 +236,7 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
 void equations_free(struct Equations *equations) {
   if (equations == NULL) return;
   inertia_free(equations->inertia);
+  constraints_free(equations->constraints);
   free(equations->right_side);
   free(equations->residual);
   free(equations->acceleration);
@@ -231,8 +245,12 @@ void equations_free(struct Equations *equations) {
   free(equations);
 }
 
-bool is_looped(const struct Equations *equations, size_t coordinate) {
-  return !inertia_block_of(equations->inertia, coordinate)->is_unrolled;
+bool is_looped(const struct Equations *equations, size_t row) {
+  return !inertia_block_of(equations->inertia, row)->is_unrolled;
+}
+
+size_t row_count(const struct Equations *equations) {
+  return equations->count + equations->constraints->count;
 }
 
 bool has_loops(const struct Equations *equations) {

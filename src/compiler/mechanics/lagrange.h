@@ -19,10 +19,13 @@ struct Placement {
 /* What follows from a model. Its stages make new ones; they do not change the model. */
 struct Equations {
   size_t count; /* coordinates */
+  struct Constraints *constraints;
   struct Inertia *inertia;
-  Node *right_side;   /* M a = right_side */
-  Node *residual;     /* M a - right_side with the acceleration symbols for a */
-  Node *acceleration; /* expressions in unrolled blocks, the acceleration symbols in others */
+  /*
+   * Of each row of inertia.h, coordinates and then constraints; a: accelerations and forces of constraints. residual is
+   * K a - right_side with symbols for a; acceleration has expressions in unrolled blocks, and the symbols in others.
+   */
+  Node *right_side, *residual, *acceleration;
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
   bool has_work;                  /* the work of the non-conservative forces is a state */
@@ -43,8 +46,11 @@ void equations_free(struct Equations *equations);
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
 
-/* Whether the coordinate belongs to a block of M that is solved at run time, by ldlt.h. */
-bool is_looped(const struct Equations *equations, size_t coordinate);
+/* Whether the row belongs to a block that is solved at run time, by ldlt.h. */
+bool is_looped(const struct Equations *equations, size_t row);
+
+/* How many rows there are. */
+size_t row_count(const struct Equations *equations);
 
 /* Whether there is such a block. */
 bool has_loops(const struct Equations *equations);

@@ -137,7 +137,7 @@ static void find_values(struct Expansion *expansion, const struct Model *model, 
     solve_block(expansion->graph, block, 1, right, right);
     for (size_t i = 0; i < block->count; i++) value[block->coordinates[i]] = right[i];
   }
-  for (size_t i = 0; i < inertia->count; i++) set_value(expansion, model->accelerations[i], value[i]);
+  for (size_t i = 0; i < inertia->count; i++) set_value(expansion, unknown_of_row(model, i), value[i]);
   free(right);
 }
 
@@ -201,7 +201,7 @@ static bool can_be_linearized(const struct Model *model, const struct Equations 
 
 static bool is_singular(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
   bool singular = false;
-  for (size_t i = 0; i < inertia->count; i++) {
+  for (size_t i = 0; i < inertia->coordinate_count; i++) {
     if (inertia_element(inertia, i, i) != ZERO) continue;
     report_error(diagnostics, 0,
                  "the mass matrix is singular in coordinate '%s' at this point; expected a point where it is not",
@@ -209,6 +209,42 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
     singular = true;
   }
   return singular;
+}
+
+/* The expression with the linearised forces of constraints in place of their symbols. */
+static Node without_forces(const struct Model *model, const struct Equations *linear, Node node) {
+  struct Graph *graph = model->graph;
+  Node *replacements = allocate(graph->symbol_count, sizeof *replacements), result;
+  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  for (size_t j = 0; j < model->constraints.count; j++)
+    replacements[graph->vertices[model->constraint_forces[j]].left] = linear->acceleration[linear->count + j];
+  substitute(graph, &node, 1, replacements, &result);
+  free(replacements);
+  return result;
+}
+
+/* Whether the point fulfils the constraints, and K can be solved there. */
+static bool fulfils_constraints(const struct Expansion *expansion, const struct Model *model,
+                                const struct Equations *equations, struct Diagnostics *diagnostics) {
+  const struct Constraints *constraints = equations->constraints;
+  Node *levels = allocate(2 * constraints->count, sizeof *levels);
+  for (size_t j = 0; j < constraints->count; j++) {
+    levels[2 * j] = at_point(expansion, constraints->position[j]);
+    levels[2 * j + 1] = at_point(expansion, constraints->velocity[j]);
+  }
+  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  size_t wrong = 0;
+  while (wrong < 2 * constraints->count && fabs(values[levels[wrong]]) < 1e-9) wrong++;
+  if (wrong < 2 * constraints->count)
+    report_error(
+        diagnostics, 0,
+        "the point does not fulfil the constraint '%s': %s is %g there at the parameters' start values; expected "
+        "a point where it is 0",
+        model->constraints.items[wrong / 2].name, wrong % 2 == 0 ? "it" : "its time derivative", values[levels[wrong]]);
+  free(values);
+  free(symbols);
+  free(levels);
+  return wrong == 2 * constraints->count;
 }
 
 /* What is affine in states and inputs, and the energies, of the second degree. */
@@ -221,7 +257,8 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->right_side[i] = linear->acceleration[i];
     linear->residual[i] = subtract(graph, model->accelerations[i], linear->acceleration[i]);
   }
-  for (size_t i = 0; i < model->outputs.count; i++) linear->outputs[i] = expand(expansion, equations->outputs[i]);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    linear->outputs[i] = without_forces(model, linear, expand(expansion, equations->outputs[i]));
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Placement *from = &equations->placements[i];
     for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
@@ -240,11 +277,13 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
   struct Equations *linear = equations_create(model);
   linear->explicit_form = true;
   linear->inertia = inertia_substitute(model->graph, equations->inertia, expansion.values);
-  bool singular = is_singular(model, linear->inertia, diagnostics);
+  bool singular = is_singular(model, linear->inertia, diagnostics) ||
+                  !fulfils_constraints(&expansion, model, equations, diagnostics);
   if (!singular) {
     find_values(&expansion, model, equations, linear->inertia, linear->acceleration);
     warn_without_equilibrium(model, linear->acceleration, diagnostics);
     expand_all(&expansion, model, equations, linear);
+    linear->constraints->count = 0; /* the linear equations obey them by themselves */
   }
   expansion_free(&expansion);
   if (!singular) return linear;

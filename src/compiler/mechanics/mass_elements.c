@@ -12,7 +12,7 @@ static struct Elements elements_create(size_t capacity) {
                            .capacity = capacity};
 }
 
-static void append(struct Elements *elements, size_t row, size_t column, Node node) {
+void elements_append(struct Elements *elements, size_t row, size_t column, Node node) {
   if (elements->count == elements->capacity) {
     elements->capacity = 2 * elements->capacity + 1;
     elements->positions = reallocate(elements->positions, elements->capacity, sizeof *elements->positions);
@@ -34,7 +34,7 @@ static struct Elements differentiate_momenta(struct Graph *graph, const Node *mo
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (j <= i) append(&elements, i, j, row.values[k]);
+      if (j <= i) elements_append(&elements, i, j, row.values[k]);
     }
     gradient_free(&row);
   }
@@ -71,7 +71,8 @@ size_t *sort_by_components(struct Elements *elements, const struct Components *c
   }
   for (size_t component = 0; component < components->count; component++) {
     for (size_t k = first[component]; k > 0; k = next[k - 1])
-      append(&sorted, elements->positions[k - 1].row, elements->positions[k - 1].column, elements->nodes[k - 1]);
+      elements_append(&sorted, elements->positions[k - 1].row, elements->positions[k - 1].column,
+                      elements->nodes[k - 1]);
     start[component + 1] = sorted.count;
   }
   free(first);

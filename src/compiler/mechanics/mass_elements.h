@@ -16,6 +16,9 @@ struct Elements {
 struct Elements elements_of(const struct Model *model, const Node *momentum);
 void elements_free(struct Elements *elements);
 
+/* Appends an element; none at its position may be there. */
+void elements_append(struct Elements *elements, size_t row, size_t column, Node node);
+
 /* Coordinates that are coupled, directly or by way of others, are of one component, numbered by their first ones. */
 struct Components {
   size_t *of; /* each coordinate */

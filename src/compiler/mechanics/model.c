@@ -25,9 +25,11 @@ void model_free(struct Model *model) {
   free_variables(&model->outputs);
   free_variables(&model->calculated);
   free_variables(&model->definitions);
+  free_variables(&model->constraints);
   for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
   free(model->bodies);
   free(model->accelerations);
+  free(model->constraint_forces);
   free(model->forces);
   free(model->point.values);
   free(model->point.given);
@@ -50,6 +52,17 @@ double *start_values(const struct Model *model) {
     for (size_t i = 0; i < lists[list]->count; i++)
       values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
   return values;
+}
+
+bool has_fixed_coordinates(const struct Model *model) {
+  bool has = false;
+  for (size_t i = 0; i < model->coordinates.count; i++) has |= model->coordinates.items[i].is_fixed;
+  return has;
+}
+
+Node unknown_of_row(const struct Model *model, size_t row) {
+  size_t n = model->coordinates.count;
+  return row < n ? model->accelerations[row] : model->constraint_forces[row - n];
 }
 
 char *variable_unit(const struct Variable *variable) {

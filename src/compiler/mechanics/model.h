@@ -15,6 +15,7 @@ struct Variable {
   double start, minimum, maximum, nominal; /* NAN where none was given */
   Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
+  bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
   long line;
 };
 
@@ -47,6 +48,10 @@ struct Model {
   struct Body *bodies;
   size_t body_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
+  /* Each is 0 at all times: of coordinates and time, or also linear in the velocities. */
+  struct VariableList constraints;
+  const struct Variable *moving_constraint; /* one that moves in a given way, so that it does work; NULL for none */
+  Node *constraint_forces; /* the symbol of each force, of the kind ACCELERATION, numbered after the coordinates */
   Node time;
   struct Quantity kinetic;                /* J: K of L = K - U, of the bodies and of the <kinetic> terms */
   struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
@@ -76,6 +81,12 @@ bool start_follows(const struct Model *model, const struct Variable *variable);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);
+
+/* Whether some coordinate is. */
+bool has_fixed_coordinates(const struct Model *model);
+
+/* The symbol of what a row of inertia.h is solved for: an acceleration, or the force of a constraint. */
+Node unknown_of_row(const struct Model *model, size_t row);
 
 /* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. Free with free(). */
 char *variable_unit(const struct Variable *variable);

@@ -190,6 +190,7 @@ void pivots_factor(struct Graph *graph, struct Inertia *inertia) {
     factor_block(graph, block);
     for (size_t i = 0; i < block->count; i++) {
       size_t diagonal = block->start[i + 1] - 1;
+      if (block->coordinates[i] >= inertia->coordinate_count) continue;
       inertia->pivots[inertia->pivot_count++] = (struct Pivot){.value = block->factor[diagonal],
                                                                .diagonal = block->mass[diagonal],
                                                                .scale = pivot_scale(graph, block->mass[diagonal]),

@@ -42,7 +42,7 @@ static Node readable(struct Graph *graph, const struct NodeNames *names, Node no
   return shorter ? expanded : node;
 }
 
-/* Row i of M a, or the acceleration itself. */
+/* Row i of M a and the forces of constraints, or the acceleration itself. */
 static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
                           size_t i) {
   struct Graph *graph = model->graph;
@@ -51,7 +51,7 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
   Node sum = ZERO;
   for (size_t k = 0; k < block->count; k++) {
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
-    sum = add(graph, sum, multiply(graph, mass, model->accelerations[block->coordinates[k]]));
+    sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
   }
   return readable(graph, names, sum);
 }

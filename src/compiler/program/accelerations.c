@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "saddle.h"
 
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
   struct LoopedBlocks blocks = {0};
@@ -13,8 +14,9 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
     const struct InertiaBlock *block = &inertia->blocks[i];
     if (block->is_unrolled) continue;
     blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count};
-    blocks.mass_count += block->start[block->count];
-    blocks.side_count += block->count;
+    bool is_saddle = block->constraint_count > 0;
+    blocks.mass_count += is_saddle ? SADDLE_MASS(block->start[block->count]) : block->start[block->count];
+    blocks.side_count += is_saddle ? SADDLE_SIDE(block->count) : block->count;
   }
   return blocks;
 }
@@ -25,7 +27,8 @@ bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
 
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations) {
   struct NodeList targets = {0};
-  for (size_t i = 0; i < equations->count; i++)
+  size_t rows = equations->explicit_form ? equations->count : row_count(equations);
+  for (size_t i = 0; i < rows; i++)
     append_node(&targets, is_looped(equations, i) ? equations->right_side[i] : equations->acceleration[i]);
   const struct Inertia *inertia = equations->inertia;
   for (size_t i = 0; !equations->explicit_form && i < inertia->block_count; i++) {
@@ -68,40 +71,45 @@ static size_t factor_operations(const struct InertiaBlock *block) {
   return operations;
 }
 
-/* Factors a large block, whose elements of M are computed. */
-static void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
-  const struct LoopedBlock *looped = &blocks->items[number];
+void append_masses(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
     values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+}
+
+void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
   routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
-  values->routine->operation_count += factor_operations(block);
+  values->routine->operation_count += factor_operations(blocks->items[number].block);
 }
 
 void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct InertiaBlock *block = blocks->items[b].block;
     values_compute(values, block->mass, block->start[block->count], false);
+    append_masses(values, &blocks->items[b]);
     append_factor(values, blocks, b);
   }
 }
 
 /* Factors a large block and solves it for its accelerations. */
 static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                         size_t number) {
+                         size_t number, bool with_forces) {
   const struct LoopedBlock *looped = &blocks->items[number];
   const struct InertiaBlock *block = looped->block;
   Node *right_side = allocate(block->count, sizeof *right_side);
   for (size_t i = 0; i < block->count; i++) right_side[i] = equations->right_side[block->coordinates[i]];
+  append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, right_side);
   for (size_t i = 0; i < block->count; i++)
-    routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
-                   place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+    if (with_forces || block->coordinates[i] < equations->count)
+      routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
   free(right_side);
 }
 
-void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks) {
+void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                          bool with_forces) {
   const struct Inertia *inertia = equations->inertia;
   struct NodeList targets = accelerations_targets(values->graph, equations);
   values_compute(values, targets.nodes, targets.count, false);
@@ -110,5 +118,5 @@ void append_accelerations(struct Values *values, const struct Equations *equatio
     if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
   for (size_t i = 0; i < equations->count; i++)
     if (!is_looped(equations, i)) values_copy(values, place_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
-  for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block);
+  for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block, with_forces);
 }

@@ -29,8 +29,18 @@ bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
 /* Returns from the routine where the pivot, which is computed, has vanished. */
 void append_pivot_check(struct Values *values, const struct Pivot *pivot);
 
-/* Computes the accelerations and copies them to their space; the factors of large blocks stay in theirs. */
-void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks);
+/*
+ * Computes the accelerations and copies them to their space, and the forces of constraints with them where asked for;
+ * the factors of large blocks stay in theirs.
+ */
+void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                          bool with_forces);
+
+/* The elements of a large block, which are computed, to their space. */
+void append_masses(struct Values *values, const struct LoopedBlock *looped);
+
+/* Factors a large block, whose elements are in their space. */
+void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t block);
 
 /* Leaves the factors of large blocks in their space, where the accelerations themselves are not needed. */
 void append_factors(struct Values *values, const struct LoopedBlocks *blocks);

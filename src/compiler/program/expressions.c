@@ -33,7 +33,7 @@ static Node *create_seeds(struct Graph *graph) {
  */
 static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
                                 Node *result) {
-  size_t n = equations->count;
+  size_t n = equations->explicit_form ? equations->count : row_count(equations);
   derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds, result);
   if (equations->explicit_form) return;
   Node *right = allocate(n, sizeof *right);
@@ -42,6 +42,31 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
   for (size_t i = 0; i < n; i++)
     if (is_looped(equations, i)) result[i] = right[i];
   free(right);
+}
+
+/*
+ * K (change; forces) = (-M moved; -constraint): with the total of the changes in moved, the limit has the constraints
+ * fulfilled and M moved + J^T forces = 0, the least way in the metric of M.
+ */
+static void create_corrections(struct Expressions *expressions, const Node *seeds) {
+  const struct Model *model = expressions->model;
+  const struct Equations *equations = expressions->equations;
+  struct Graph *graph = model->graph;
+  size_t n = equations->count, rows = row_count(equations);
+  const struct Constraints *constraints = equations->constraints;
+  struct Corrections *corrections = &expressions->corrections;
+  corrections->position = allocate(rows, sizeof(Node));
+  corrections->velocity = allocate(rows, sizeof(Node));
+  corrections->slope = constraint_slopes(graph, constraints);
+  Node *moved = allocate(rows, sizeof *moved);
+  for (size_t i = 0; i < n; i++) moved[i] = seeds[graph->vertices[model->coordinates.items[i].node].left];
+  inertia_add_product(graph, equations->inertia, moved, corrections->position);
+  for (size_t i = 0; i < n; i++) corrections->position[i] = negate(graph, corrections->position[i]);
+  for (size_t j = 0; j < constraints->count; j++) {
+    corrections->position[n + j] = negate(graph, constraints->position[j]);
+    corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
+  }
+  free(moved);
 }
 
 static void without_accelerations(const struct Graph *graph, Node *seeds) {
@@ -86,8 +111,9 @@ static void create_directional(struct Expressions *expressions) {
   Node *seeds = create_seeds(graph);
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
+  if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
   without_accelerations(graph, seeds);
-  expressions->along = allocate(expressions->equations->count, sizeof(Node));
+  expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
   derivative_along(graph, &expressions->equations->power, 1, seeds, &expressions->power_along);
   free(seeds);
@@ -99,6 +125,9 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
     report_error(diagnostics, model->solver_line,
                  "the method 'exact' takes a communication step as a whole; expected no maxStep%s",
                  isnan(model->max_step) ? "s" : "");
+  if (expressions->equations->constraints->count > 0)
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
     report_error(diagnostics, model->solver_line,
@@ -122,7 +151,7 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
 static void create_series(struct Expressions *expressions, struct Diagnostics *diagnostics) {
   const struct Model *model = expressions->model;
   const struct Equations *equations = expressions->equations;
-  const char *kink = kink_without_series_of(model->graph, equations->residual, equations->count);
+  const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
   bool is_taylor = expressions->interface->method->series == ALL_TERMS;
   if (kink == NULL || !is_taylor)
     expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
@@ -159,10 +188,19 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
 struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct Equations *equations = expressions->equations;
   struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
-  append_nodes(&targets, expressions->along, equations->count);
+  append_nodes(&targets, expressions->along, row_count(equations));
+  if (equations->constraints->count > 0) {
+    append_nodes(&targets, expressions->corrections.position, row_count(equations));
+    append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
+    append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
+  }
   if (expressions->equations->has_work)
     append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
-  if (expressions->jacobian != NULL) append_nodes(&targets, expressions->jacobian->value, expressions->jacobian->count);
+  if (expressions->jacobian != NULL) {
+    const struct JacobianExpressions *jacobian = expressions->jacobian;
+    append_nodes(&targets, jacobian->value, jacobian->count);
+    for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+  }
   if (expressions->linear != NULL) {
     const struct LinearSystem *linear = expressions->linear;
     append_nodes(&targets, linear->a, linear->states * linear->states);
@@ -186,6 +224,9 @@ void expressions_free(struct Expressions *expressions) {
   free(expressions->along);
   free(expressions->initial);
   free(expressions->initial_along);
+  free(expressions->corrections.position);
+  free(expressions->corrections.velocity);
+  free(expressions->corrections.slope);
   free(expressions->result);
   free(expressions->result_along);
   free(expressions);

@@ -12,13 +12,30 @@
 /*
  * d derivatives / d state by columns: column j has elements start[j] .. start[j + 1] - 1, their rows ascending. In
  * blocks of M that are factored at run time, the values are right sides: each column has all rows of such a block, or
- * none.
+ * none. Right sides of constraints are no elements, but apart.
  */
 struct JacobianExpressions {
   size_t *start, *row;
   Node *value;
   size_t count;
+  struct ConstraintSide *sides; /* by columns */
+  size_t side_count;
   struct Elimination *factors; /* of a method that factors; NULL for none, and where full matrices are cheaper */
+};
+
+/* The right side of a constraint in a column of the Jacobian. */
+struct ConstraintSide {
+  size_t column, constraint;
+  Node value;
+};
+
+/*
+ * Right sides of K for what brings the state back to the constraints, one for each row: that of the positions rests on
+ * the seed of the state, which holds by how much they have been moved.
+ */
+struct Corrections {
+  Node *position, *velocity;
+  Node *slope; /* of each constraint, see constraint_slopes() */
 };
 
 struct Expressions {
@@ -28,7 +45,8 @@ struct Expressions {
   struct LinearSystem *linear;          /* NULL unless the solver is exact */
   struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
   struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
-  Node *along;                          /* derivative of the accelerations, or right sides for it, as above */
+  Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
+  struct Corrections corrections;       /* NULL without constraints */
   Node power_along;                     /* of the power of the forces */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
   Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */

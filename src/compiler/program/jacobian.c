@@ -47,9 +47,11 @@ static void append_gradient(struct ElementList *list, struct Graph *graph, size_
 static void append_column(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                           const struct InertiaBlock *block, size_t column, Node *right) {
   if (block->is_unrolled) block_solve(graph, block, right);
-  for (size_t i = 0; i < block->count; i++)
-    if (!block->is_unrolled || right[i] != ZERO)
-      append(list, equations->count + block->coordinates[i], column, right[i]);
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row >= equations->count) row += equations->has_work; /* behind all states */
+    if (!block->is_unrolled || right[i] != ZERO) append(list, equations->count + row, column, right[i]);
+  }
 }
 
 static void append_block(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
@@ -70,17 +72,24 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
   free(residual.items);
 }
 
+/* Rows beyond the states are those of constraints. */
 static struct JacobianExpressions *by_columns(struct ElementList *list, size_t columns) {
   struct JacobianExpressions *jacobian = allocate(1, sizeof *jacobian);
   if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare);
-  jacobian->count = list->count;
   jacobian->start = allocate(columns + 1, sizeof *jacobian->start);
   jacobian->row = allocate(list->count, sizeof *jacobian->row);
   jacobian->value = allocate(list->count, sizeof *jacobian->value);
+  jacobian->sides = allocate(list->count, sizeof *jacobian->sides);
   for (size_t i = 0; i < list->count; i++) {
-    jacobian->start[list->items[i].column + 1]++;
-    jacobian->row[i] = list->items[i].row;
-    jacobian->value[i] = list->items[i].value;
+    const struct Element *element = &list->items[i];
+    if (element->row >= columns) {
+      struct ConstraintSide side = {element->column, element->row - columns, element->value};
+      jacobian->sides[jacobian->side_count++] = side;
+      continue;
+    }
+    jacobian->start[element->column + 1]++;
+    jacobian->row[jacobian->count] = element->row;
+    jacobian->value[jacobian->count++] = element->value;
   }
   for (size_t j = 0; j < columns; j++) jacobian->start[j + 1] += jacobian->start[j];
   return jacobian;
@@ -106,6 +115,7 @@ void jacobian_free(struct JacobianExpressions *jacobian) {
   free(jacobian->start);
   free(jacobian->row);
   free(jacobian->value);
+  free(jacobian->sides);
   lu_pattern_free(jacobian->factors);
   free(jacobian);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "program/corrections.h"
 
 /*
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
@@ -40,7 +41,7 @@ static struct Routine *prepare_routine(struct Values *values, const struct Equat
 static struct Routine *derivatives_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
   size_t n = program->equations->count;
-  append_accelerations(values, program->equations, &program->blocks);
+  append_accelerations(values, program->equations, &program->blocks, false);
   if (program->equations->has_work) values_compute(values, &program->equations->power, 1, false);
   for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_STATE, n + i));
   if (program->equations->has_work) values_copy(values, target(2 * n), program->equations->power);
@@ -52,43 +53,19 @@ static void append_needed_accelerations(const struct Program *program, struct Va
                                         size_t count) {
   bool needed = false;
   for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(values->graph, nodes[i], ACCELERATION);
-  if (needed) append_accelerations(values, program->equations, &program->blocks);
+  if (needed) append_accelerations(values, program->equations, &program->blocks, true);
   else append_factors(values, &program->blocks);
 }
 
-static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
-  const struct Expressions *expressions = program->expressions;
-  const Node *along = expressions->along;
-  size_t n = program->equations->count;
-  append_needed_accelerations(program, values, along, n);
-  values_compute(values, along, n, false);
-  if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
-  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
-  for (size_t i = 0; i < n; i++)
-    if (!is_looped(program->equations, i)) values_copy(values, target(n + i), along[i]);
-  for (size_t b = 0; b < program->blocks.count; b++) {
-    const struct LoopedBlock *looped = &program->blocks.items[b];
-    Node *right_side = allocate(looped->block->count, sizeof *right_side);
-    for (size_t i = 0; i < looped->block->count; i++) right_side[i] = along[looped->block->coordinates[i]];
-    append_solution(values, &program->blocks, b, right_side);
-    for (size_t i = 0; i < looped->block->count; i++)
-      copy_place(values, target(n + looped->block->coordinates[i]), place_in(SPACE_SIDE, looped->first_side + i));
-    free(right_side);
-  }
-  if (expressions->equations->has_work) values_copy(values, target(2 * n), expressions->power_along);
-  return routine;
-}
-
-/* Where the coordinates stand in large blocks: 1 + the block's number, 0 for none, and the place of the right side. */
+/* Where the rows of K stand in large blocks: 1 + the block's number, 0 for none, and the place of the right side. */
 struct BlockRows {
   size_t *number;
   Place *side;
   size_t *solved; /* of each block: 1 + the column of the Jacobian that its right side holds the solution for */
 };
 
-static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t coordinates) {
-  struct BlockRows rows = {allocate(coordinates, sizeof(size_t)), allocate(coordinates, sizeof(Place)),
+static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t count) {
+  struct BlockRows rows = {allocate(count, sizeof(size_t)), allocate(count, sizeof(Place)),
                            allocate(blocks->count, sizeof(size_t))};
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
@@ -104,6 +81,40 @@ static void block_rows_free(struct BlockRows *rows) {
   free(rows->number);
   free(rows->side);
   free(rows->solved);
+}
+
+/*
+ * The accelerations along the direction of the seed, and of the forces of constraints as many as count reaches, to the
+ * targets from first on.
+ */
+static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count) {
+  const struct Equations *equations = program->equations;
+  const Node *along = program->expressions->along;
+  size_t row_total = equations->explicit_form ? equations->count : row_count(equations);
+  append_needed_accelerations(program, values, along, row_total);
+  values_compute(values, along, row_total, false);
+  struct BlockRows rows = block_rows_create(&program->blocks, row_total);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct InertiaBlock *block = program->blocks.items[b].block;
+    Node *right_side = allocate(block->count, sizeof *right_side);
+    for (size_t i = 0; i < block->count; i++) right_side[i] = along[block->coordinates[i]];
+    append_solution(values, &program->blocks, b, right_side);
+    free(right_side);
+  }
+  for (size_t i = 0; i < count; i++)
+    copy_place(values, target(first + i), rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
+  block_rows_free(&rows);
+}
+
+static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  const struct Expressions *expressions = program->expressions;
+  size_t n = program->equations->count;
+  append_along(program, values, n, n);
+  if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
+  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
+  if (expressions->equations->has_work) values_copy(values, target(2 * n), expressions->power_along);
+  return routine;
 }
 
 /* First the right sides of large blocks, of which a column has all rows or none; then their solutions. */
@@ -125,14 +136,31 @@ static void append_jacobian_column(const struct Program *program, struct Values 
   }
 }
 
+/* The right sides of constraints stand by columns. */
+static void append_constraint_sides(const struct Program *program, struct Values *values, size_t column,
+                                    const struct BlockRows *rows, size_t *next) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  for (; *next < jacobian->side_count && jacobian->sides[*next].column == column; (*next)++) {
+    const struct ConstraintSide *side = &jacobian->sides[*next];
+    values_copy(values, rows->side[program->equations->count + side->constraint], side->value);
+  }
+}
+
 static struct Routine *jacobian_routine(const struct Program *program, struct Values *values) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   struct Routine *routine = values_begin(values);
-  struct BlockRows rows = block_rows_create(&program->blocks, program->equations->count);
-  append_needed_accelerations(program, values, jacobian->value, jacobian->count);
-  values_compute(values, jacobian->value, jacobian->count, false);
-  for (size_t column = 0; column < program->interface->state_count; column++)
+  struct BlockRows rows = block_rows_create(&program->blocks, row_count(program->equations));
+  struct NodeList targets = {0};
+  size_t next_side = 0;
+  append_nodes(&targets, jacobian->value, jacobian->count);
+  for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+  append_needed_accelerations(program, values, targets.nodes, targets.count);
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+  for (size_t column = 0; column < program->interface->state_count; column++) {
+    append_constraint_sides(program, values, column, &rows, &next_side);
     append_jacobian_column(program, values, column, &rows);
+  }
   block_rows_free(&rows);
   return routine;
 }
@@ -169,6 +197,20 @@ static void create_initial(struct Program *program, struct Values *values) {
   if (!any) return;
   program->initial = initial_routine(program, values, expressions->initial);
   program->initial_along = initial_routine(program, values, expressions->initial_along);
+}
+
+static struct Routine *accelerations_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  append_accelerations(values, program->equations, &program->blocks, true);
+  for (size_t i = 0; i < row_count(program->equations); i++)
+    copy_place(values, target(i), place_in(SPACE_ACCELERATION, i));
+  return routine;
+}
+
+static struct Routine *accelerations_along_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  append_along(program, values, 0, row_count(program->equations));
+  return routine;
 }
 
 static struct Routine *result_routine(struct Values *values, Node node) {
@@ -208,7 +250,11 @@ static size_t count_of(const struct Routine *routine) {
 
 size_t instruction_count(const struct Program *program) {
   size_t count = count_of(program->prepare) + count_of(program->derivatives) + count_of(program->directional) +
-                 count_of(program->jacobian) + count_of(program->initial) + count_of(program->initial_along);
+                 count_of(program->jacobian) + count_of(program->accelerations) +
+                 count_of(program->accelerations_along) + count_of(program->correct_positions) +
+                 count_of(program->correct_velocities) + count_of(program->start_positions) +
+                 count_of(program->start_velocities) + count_of(program->initial) +
+                 count_of(program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -241,6 +287,16 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
     program->directional = directional_routine(program, values);
   }
   if (expressions->jacobian != NULL) program->jacobian = jacobian_routine(program, values);
+  if (expressions->equations->constraints->count > 0) {
+    program->accelerations = accelerations_routine(program, values);
+    program->accelerations_along = accelerations_along_routine(program, values);
+    program->correct_positions = correct_positions_routine(program, values, false);
+    program->correct_velocities = correct_velocities_routine(program, values, false);
+  }
+  if (expressions->equations->constraints->count > 0 && has_fixed_coordinates(program->model)) {
+    program->start_positions = correct_positions_routine(program, values, true);
+    program->start_velocities = correct_velocities_routine(program, values, true);
+  }
   if (expressions->linear != NULL) program->linear = linear_routine(expressions->linear, values);
   create_initial(program, values);
   create_results(program, values);
@@ -259,6 +315,12 @@ void program_free(struct Program *program) {
   routine_free(program->linear);
   routine_free(program->initial);
   routine_free(program->initial_along);
+  routine_free(program->accelerations);
+  routine_free(program->accelerations_along);
+  routine_free(program->correct_positions);
+  routine_free(program->correct_velocities);
+  routine_free(program->start_positions);
+  routine_free(program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     routine_free(program->result[i]);
     routine_free(program->result_along[i]);

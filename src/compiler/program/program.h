@@ -17,10 +17,13 @@ struct Program {
   struct Prepared *prepared;
   struct LoopedBlocks blocks;
   struct Routine *prepare;
-  struct Routine *derivatives, *directional; /* NULL without coordinates */
-  struct Routine *initial, *initial_along;   /* NULL where no start value follows from parameters */
-  struct Routine *jacobian, *linear;         /* NULL unless the solver asks */
-  struct Routine **result, **result_along;   /* of each result; along is NULL unless it is an output */
+  struct Routine *derivatives, *directional;              /* NULL without coordinates */
+  struct Routine *initial, *initial_along;                /* NULL where no start value follows from parameters */
+  struct Routine *jacobian, *linear;                      /* NULL unless the solver asks */
+  struct Routine *accelerations, *accelerations_along;    /* of all rows of K; NULL without constraints, as are */
+  struct Routine *correct_positions, *correct_velocities; /* corrections.h */
+  struct Routine *start_positions, *start_velocities;     /* where some coordinates are fixed at the start */
+  struct Routine **result, **result_along;                /* of each result; along is NULL unless it is an output */
   struct SeriesProgram *series, *output_series;
   bool is_table;        /* as a whole too large for statements, which a C compiler takes long for */
   bool series_is_table; /* so is the series of the motion, where a simulation spends its time */

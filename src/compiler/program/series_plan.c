@@ -12,7 +12,7 @@ static Node auxiliary_of(struct Graph *graph, Node node) {
 }
 
 static void append_equations(struct SeriesPlan *plan, const struct Equations *equations) {
-  size_t n = equations->count;
+  size_t n = equations->explicit_form ? equations->count : row_count(equations);
   for (size_t i = 0; i < n; i++) {
     if (!is_looped(equations, i)) {
       append_node(&plan->targets, equations->acceleration[i]);

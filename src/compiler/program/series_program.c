@@ -298,18 +298,20 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   append_nodes_of_order(builder);
   for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
   append_states(builder, equations, expressions->equations->has_work);
-  struct Rows rows = rows_create(builder, blocks->count > 0 ? n : 0, blocks->mass_count, program);
+  struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
   complete(program, &rows);
 
   program->start = values_begin(values);
   compute_first(builder, values, &equations->power, expressions->equations->has_work);
-  append_accelerations(values, equations, blocks);
+  append_accelerations(values, equations, blocks, false);
   copy_first(&rows, values);
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++)
     routine_append(program->start, COPY, place_in(SPACE_TARGET, i), place_in(SPACE_STATE, n + i), 0, 0);
-    if (is_looped(equations, i))
-      routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
-                     place_in(SPACE_ACCELERATION, i), 0, 0);
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct LoopedBlock *looped = &blocks->items[b];
+    for (size_t i = 0; i < looped->block->count; i++)
+      routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
   }
   if (expressions->equations->has_work) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
   rows_free(&rows);

@@ -31,6 +31,7 @@ struct Reader {
   bool has_solver, has_experiment;
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
+  size_t constraints_read;
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place. */

@@ -15,6 +15,11 @@ static void check_content(const struct Reader *reader) {
                  "a system without coordinates has nothing to solve; expected no <solver>");
   if (model->work_line > 0 && !model->has_forces)
     report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
+  if (model->work_line > 0 && model->moving_constraint != NULL)
+    report_error(reader->diagnostics, model->work_line,
+                 "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
+                 "<work/>, or a coordinate that is moved so in place of the constraint",
+                 model->moving_constraint->name);
 }
 
 /* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */

@@ -129,6 +129,20 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
   }
 }
 
+/* Symbols for the forces of the constraints, which are numbered after the accelerations. */
+static void declare_constraint_forces(struct Model *model, struct Scope *scope) {
+  model->constraint_forces = allocate(model->constraints.count, sizeof *model->constraint_forces);
+  for (size_t i = 0; i < model->constraints.count; i++) {
+    const struct Variable *constraint = &model->constraints.items[i];
+    char *name = format_text("%s.force", constraint->name);
+    struct Dimension dimension = dimension_multiply(unit_of("J"), constraint->dimension, -1.0);
+    int index = (int)(model->coordinates.count + i);
+    Node node = model->constraint_forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
+    scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
+    free(name);
+  }
+}
+
 static void check_definitions_used(struct Reader *reader) {
   for (size_t i = 0; i < reader->options->definition_count; i++)
     if (!reader->definition_used[i])
@@ -169,6 +183,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   check_definitions_used(reader);
   check_given(reader);
   relate_to_time(reader->model, reader->scope);
+  declare_constraint_forces(reader->model, reader->scope);
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);

@@ -27,6 +27,8 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (lu != NULL) fprintf(file, "#include \"%s.c\"\n", lu);
   if (program->is_table) include_source(file, "instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");
+  if (program->accelerations != NULL) include_source(file, "saddle.c");
+  if (program->accelerations != NULL) include_source(file, "projection.c");
   fputs("#endif\n", file);
 }
 
@@ -41,24 +43,32 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
+  if (program->accelerations != NULL) fputs("#include \"projection.h\"\n#include \"saddle.h\"\n", file);
   fputs("\n", file);
 }
 
-/* The pattern of each large block's factors, and the numbers of its coordinates, from 1 on. */
+/* The numbers of a block's coordinates, from 1 on, and negative ones of its constraints, from -1 on. */
+static void write_numbers(FILE *file, const char *name, const struct InertiaBlock *block, size_t coordinates) {
+  fprintf(file, "static const int %s[] = {", name);
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row < coordinates) fprintf(file, "%zu, ", row + 1);
+    else fprintf(file, "-%zu, ", row - coordinates + 1);
+  }
+  fputs("};\n\n", file);
+}
+
+/* The pattern of each large block's factors, and what its rows are. */
 static void write_blocks(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < program->blocks.count; i++) {
     const struct InertiaBlock *block = program->blocks.items[i].block;
     char *start = format_text("start%zu", i), *column = format_text("column%zu", i);
     char *coordinate = format_text("coordinate%zu", i);
-    size_t *numbers = allocate(block->count, sizeof *numbers);
-    for (size_t j = 0; j < block->count; j++) numbers[j] = block->coordinates[j] + 1;
     if (!block_is_full(block)) {
       write_sizes(file, "size_t", start, block->start, block->count + 1);
       write_sizes(file, "size_t", column, block->column, block->start[block->count]);
     }
-    write_sizes(file, "int", coordinate, numbers, block->count);
-    fputs("\n", file);
-    free(numbers);
+    write_numbers(file, coordinate, block, program->equations->count);
     free(start);
     free(column);
     free(coordinate);
@@ -76,7 +86,13 @@ static void write_routines(FILE *file, const struct Program *program, const stru
                    {&derivatives_text, program->derivatives},
                    {&directional_text, program->directional},
                    {&jacobian_text, program->jacobian},
-                   {&linear_text, program->linear}};
+                   {&linear_text, program->linear},
+                   {&accelerations_text, program->accelerations},
+                   {&accelerations_along_text, program->accelerations_along},
+                   {&correct_positions_text, program->correct_positions},
+                   {&correct_velocities_text, program->correct_velocities},
+                   {&start_positions_text, program->start_positions},
+                   {&start_velocities_text, program->start_velocities}};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
     if (functions[i].routine == NULL) continue;
     if (tables != NULL) tables_function(file, tables, functions[i].text, functions[i].routine);

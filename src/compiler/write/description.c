@@ -88,6 +88,39 @@ const char *description_lu(const struct Program *program) {
   return program->expressions->jacobian->factors != NULL ? "lu_sparse" : "lu_dense";
 }
 
+static void write_fixed(FILE *file, const struct Program *program) {
+  const struct VariableList *coordinates = &program->model->coordinates;
+  fputs("static const bool coordinate_is_fixed[] = {", file);
+  for (size_t i = 0; i < coordinates->count; i++)
+    fprintf(file, "%s%s", i > 0 ? ", " : "", coordinates->items[i].is_fixed ? "true" : "false");
+  fputs("};\n\n", file);
+}
+
+static void write_constraint_names(FILE *file, const struct Program *program) {
+  const struct VariableList *constraints = &program->model->constraints;
+  if (constraints->count == 0) return;
+  if (program->start_positions != NULL) write_fixed(file, program);
+  fputs("static const char *const constraint_names[] = {", file);
+  for (size_t i = 0; i < constraints->count; i++) {
+    if (i > 0) fputs(", ", file);
+    write_c_string(file, constraints->items[i].name);
+  }
+  fputs("};\n\n", file);
+}
+
+static void write_constraints(FILE *file, const struct Program *program) {
+  if (program->accelerations == NULL) return;
+  fprintf(file,
+          "    .constraint_count = %zu,\n    .constraints = constraint_names,\n    .projection = &projection,\n"
+          "    .accelerations = accelerations,\n    .accelerations_along = accelerations_along,\n"
+          "    .correct_positions = correct_positions,\n    .correct_velocities = correct_velocities,\n",
+          program->model->constraints.count);
+  if (program->start_positions == NULL) return;
+  fputs("    .coordinate_is_fixed = coordinate_is_fixed,\n    .start_positions = start_positions,\n"
+        "    .start_velocities = start_velocities,\n",
+        file);
+}
+
 static void write_counts(FILE *file, const struct Program *program, size_t work_count) {
   const struct Interface *interface = program->interface;
   size_t scratch = program->is_table ? program->prepare->local_count : 0;
@@ -118,6 +151,7 @@ static void write_functions(FILE *file, const struct Program *program) {
     fprintf(file, "    .jacobian = jacobian,\n    .jacobian_pattern = {%zu, jacobian_start, jacobian_row},\n",
             program->expressions->jacobian->count);
   if (program->linear != NULL) fputs("    .linear = linear,\n", file);
+  write_constraints(file, program);
 }
 
 static double operations_of(const struct Routine *routine) {
@@ -187,6 +221,7 @@ void description_write(FILE *file, const struct Program *program, size_t work_co
   write_variables(file, program->interface);
   write_results(file, program);
   inertia_names_write(file, program);
+  write_constraint_names(file, program);
   write_nominals(file, program->interface);
   write_pattern(file, program);
   write_lagrangian(file, program, work_count);

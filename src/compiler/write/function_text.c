@@ -39,6 +39,42 @@ const struct FunctionText start_text = {"d state / dt, and the first coefficient
                                         "derivative",
                                         RETURNS_STATUS,
                                         IN_TARGET};
+const struct FunctionText accelerations_text = {"Accelerations and the forces of constraints",
+                                                "accelerations",
+                                                "const struct Point *point, double *acceleration",
+                                                "acceleration",
+                                                RETURNS_STATUS,
+                                                IN_WORKSPACE};
+const struct FunctionText accelerations_along_text = {
+    "The same along a direction",
+    "accelerations_along",
+    "const struct Point *point, const struct Seed *seed, double *acceleration",
+    "acceleration",
+    RETURNS_STATUS,
+    IN_WORKSPACE};
+const struct FunctionText correct_positions_text = {
+    "What brings the coordinates back to the constraints",
+    "correct_positions",
+    "const struct Point *point, const struct Seed *seed, double *correction",
+    "correction",
+    RETURNS_STATUS,
+    IN_WORKSPACE};
+const struct FunctionText correct_velocities_text = {"The same of the velocities",
+                                                     "correct_velocities",
+                                                     "const struct Point *point, double *correction",
+                                                     "correction",
+                                                     RETURNS_STATUS,
+                                                     IN_WORKSPACE};
+const struct FunctionText start_positions_text = {
+    "The same where fixed coordinates stay",
+    "start_positions",
+    "const struct Point *point, const struct Seed *seed, double *correction",
+    "correction",
+    RETURNS_STATUS,
+    IN_WORKSPACE};
+const struct FunctionText start_velocities_text = {
+    "And of the velocities", "start_velocities", "const struct Point *point, double *correction", "correction",
+    RETURNS_STATUS,          IN_WORKSPACE};
 const struct FunctionText result_text = {
     "A computed variable", "result", "const struct Point *point, const double *a", NULL, RETURNS_VALUE, IN_ARGUMENT};
 const struct FunctionText result_along_text = {

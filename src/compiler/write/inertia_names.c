@@ -6,9 +6,10 @@
 #include "memory.h"
 
 /* The elimination of a row rests on the rows of the block up to it. */
-static void name_block(const struct Graph *graph, const struct InertiaBlock *block, char **texts) {
+static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates, char **texts) {
   struct SymbolNames names = {0};
   for (size_t i = 0; i < block->count; i++) {
+    if (block->coordinates[i] >= coordinates) continue;
     symbol_names_add(&names, graph, block->mass + block->start[i], block->start[i + 1] - block->start[i]);
     texts[block->coordinates[i]] = symbol_names_text(&names, graph);
   }
@@ -20,7 +21,7 @@ void inertia_names_write(FILE *file, const struct Program *program) {
   size_t n = program->equations->count;
   if (n == 0) return;
   char **texts = allocate(n, sizeof *texts);
-  for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], texts);
+  for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], n, texts);
   fputs("static const char *const inertia_depends_on[] = {\n", file);
   for (size_t i = 0; i < n; i++) {
     fprintf(file, "    \"%s\",\n", texts[i]);

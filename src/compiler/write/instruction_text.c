@@ -1,5 +1,7 @@
 #include "write/instruction_text.h"
 
+#include <string.h>
+
 #include "algebra/functions.h"
 #include "write/c_text.h"
 
@@ -54,23 +56,25 @@ static void write_expression(FILE *file, const struct Program *program, const st
   }
 }
 
-/* ldlt_...(size, pattern of the block, its elements */
+/* function(size, pattern of the block, its elements */
 static void write_block_call(FILE *file, const struct Program *program, const char *function, size_t number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
-  fprintf(file, "ldlt_%s(%zu, ", function, looped->block->count);
+  fprintf(file, "%s(%zu, ", function, looped->block->count);
   if (block_is_full(looped->block)) fputs("NULL, NULL", file);
   else fprintf(file, "start%zu, column%zu", number, number);
+  if (strcmp(function, "saddle_factor") == 0) fprintf(file, ", coordinate%zu", number);
   fprintf(file, ", mass + %zu", looped->first_mass);
 }
 
 static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {
   unsigned number = instruction->result;
+  bool has_constraints = program->blocks.items[number].block->constraint_count > 0;
   if (instruction->opcode == FACTOR) {
     fprintf(file, "const size_t singular%u = ", number);
-    write_block_call(file, program, "factor", number);
+    write_block_call(file, program, has_constraints ? "saddle_factor" : "ldlt_factor", number);
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
-    write_block_call(file, program, "solve", number);
+    write_block_call(file, program, has_constraints ? "saddle_solve" : "ldlt_solve", number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
   }
 }

@@ -54,7 +54,7 @@ void statements_function(FILE *file, const struct Program *program, const struct
   declare_block_spaces(file, program, routine);
   if (text->accelerations == IN_TARGET) fprintf(file, "  double *a = %s + %zu;\n", text->target, n);
   else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))
-    fprintf(file, "  double a[%zu];\n", n);
+    fprintf(file, "  double a[%zu];\n", row_count(program->equations));
   write_statements(file, program, routine, text->target);
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
 }

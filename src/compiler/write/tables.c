@@ -1,6 +1,7 @@
 #include "write/tables.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "algebra/functions.h"
 #include "memory.h"
@@ -47,6 +48,12 @@ struct TableContext *table_context_create(const struct Program *program) {
   note(context, program->directional);
   note(context, program->jacobian);
   note(context, program->linear);
+  note(context, program->accelerations);
+  note(context, program->accelerations_along);
+  note(context, program->correct_positions);
+  note(context, program->correct_velocities);
+  note(context, program->start_positions);
+  note(context, program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     note(context, program->result[i]);
     note(context, program->result_along[i]);
@@ -82,6 +89,9 @@ static size_t longest(size_t length, const struct Routine *routine) {
 static size_t local_count(const struct Program *program) {
   size_t count = longest(longest(longest(0, program->derivatives), program->directional), program->jacobian);
   count = longest(longest(count, program->initial), program->initial_along);
+  count = longest(longest(count, program->accelerations), program->accelerations_along);
+  count = longest(longest(count, program->correct_positions), program->correct_velocities);
+  count = longest(longest(count, program->start_positions), program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count = longest(longest(count, program->result[i]), program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -92,7 +102,8 @@ static size_t local_count(const struct Program *program) {
 
 size_t tables_work_count(const struct TableContext *context) {
   const struct Program *program = context->program;
-  return local_count(program) + program->blocks.mass_count + program->blocks.side_count + program->equations->count;
+  size_t rows = row_count(program->equations);
+  return local_count(program) + program->blocks.mass_count + program->blocks.side_count + rows;
 }
 
 static void write_blocks(FILE *file, const struct Program *program) {
@@ -102,7 +113,8 @@ static void write_blocks(FILE *file, const struct Program *program) {
     fprintf(file, "    {%zu, %zu, %zu, ", looped->block->count, looped->first_mass, looped->first_side);
     if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
     else fprintf(file, "start%zu, column%zu, ", i, i);
-    fprintf(file, "coordinate%zu},\n", i);
+    fprintf(file, "coordinate%zu, %s},\n", i,
+            looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve" : "NULL, NULL");
   }
   fputs(program->blocks.count == 0 ? "    {0}};\n" : "};\n", file);
 }
@@ -203,7 +215,7 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
     fputs("  const struct Point values = {.parameter = p, .prepared = c};\n  const struct Point *point = &values;\n",
           file);
   }
-  begin_frame(file, text == &directional_text || text == &initial_state_along_text);
+  begin_frame(file, strstr(text->arguments, "*seed") != NULL);
   set_base(file, "TARGET", text->target);
   if (text == &prepare_text) fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)

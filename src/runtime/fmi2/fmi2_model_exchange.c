@@ -1,10 +1,14 @@
-/* FMI for Model Exchange (section 3.2): the importer integrates; there are no events. */
+/*
+ * FMI for Model Exchange (section 3.2): the importer integrates. The only events are those in which a state that drifted
+ * from the constraints is brought back.
+ */
 #include <math.h>
 #include <string.h>
 
 #include "check.h"
 #include "evaluate.h"
 #include "fmi2_life_cycle.h"
+#include "projection.h"
 
 static fmi2Status change_mode(fmi2Component c, enum Function function, const char *name, enum Mode mode) {
   struct Instance *instance = enter(c, function, name);
@@ -21,11 +25,28 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
   return change_mode(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__, MODE_CONTINUOUS_TIME);
 }
 
+/* Brings the state back to the constraints. */
+static enum Status keep_constraints(struct Instance *instance, fmi2EventInfo *event) {
+  enum Status status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);
+  if (!isfinite(moved))
+    return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
+  event->valuesOfContinuousStatesChanged = moved > 0.0;
+  return STATUS_DONE;
+}
+
+/* Whether the state has drifted from the constraints by more than the tolerance. */
+static bool has_drifted(struct Instance *instance) {
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
+}
+
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
   struct Instance *instance = enter(c, FUNCTION_NEW_DISCRETE_STATES, __func__);
   if (instance == NULL || !check_array(instance, eventInfo, 1, __func__, "eventInfo")) return fmi2Error;
   *eventInfo = (fmi2EventInfo){0};
-  return fmi2OK;
+  return lagrangian.projection == NULL ? fmi2OK : fmi2_status(keep_constraints(instance, eventInfo));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
@@ -35,7 +56,8 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
   if (instance == NULL || !check_array(instance, enterEventMode, 1, __func__, "enterEventMode") ||
       !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation"))
     return fmi2Error;
-  *enterEventMode = *terminateSimulation = fmi2False;
+  *enterEventMode = lagrangian.projection != NULL && has_drifted(instance);
+  *terminateSimulation = fmi2False;
   return fmi2OK;
 }
 

@@ -28,6 +28,25 @@ static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatri
   return 0;
 }
 
+/* The change that brings a state back to the constraints. */
+static int correction_to_constraints(realtype time, N_Vector state, N_Vector correction, realtype tolerance,
+                                     N_Vector error, void *data) {
+  struct Instance *instance = data;
+  (void)tolerance;
+  (void)error;
+  N_VScale(1.0, state, correction);
+  if (solver_project(instance, time, N_VGetArrayPointer(correction)) != NULL) return 1;
+  N_VLinearSum(1.0, correction, -1.0, state, correction);
+  return 0;
+}
+
+/* The estimate of the error is left as it is: an error that the projection takes away is still one of the step. */
+static bool keep_constraints(struct Instance *instance, const struct Bdf *bdf) {
+  return lagrangian.projection == NULL ||
+         (sundials_succeeded(instance, CVodeSetProjFn(bdf->cvode, correction_to_constraints), "CVodeSetProjFn") &&
+          sundials_succeeded(instance, CVodeSetProjErrEst(bdf->cvode, 0), "CVodeSetProjErrEst"));
+}
+
 static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
   return sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->sundials.relative, bdf->sundials.tolerance),
                             "CVodeSVtolerances");
@@ -48,6 +67,7 @@ bool bdf_configure(struct Instance *instance) {
          set_tolerances(instance, bdf) &&
          sundials_succeeded(instance, CVodeSetUserData(bdf->cvode, instance), "CVodeSetUserData") &&
          sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, lagrangian.max_steps), "CVodeSetMaxNumSteps") &&
+         keep_constraints(instance, bdf) &&
          sundials_succeeded(instance, CVodeSetMaxHnilWarns(bdf->cvode, -1), "CVodeSetMaxHnilWarns") &&
          sundials_succeeded(instance, CVodeSetLinearSolver(bdf->cvode, bdf->linear_solver, bdf->matrix),
                             "CVodeSetLinearSolver") &&

@@ -20,6 +20,11 @@ struct Erk {
   void *arkode;
 };
 
+/* Brings the end of a step back to the constraints. */
+static int keep_constraints(realtype time, N_Vector state, void *data) {
+  return solver_project(data, time, N_VGetArrayPointer(state)) == NULL ? 0 : -1;
+}
+
 static bool configure(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
   SUNContext context = erk->sundials.context;
@@ -35,6 +40,9 @@ static bool configure(struct Instance *instance) {
          sundials_succeeded(instance, ERKStepSetMaxNumSteps(erk->arkode, lagrangian.max_steps),
                             "ERKStepSetMaxNumSteps") &&
          sundials_succeeded(instance, ERKStepSetMaxStep(erk->arkode, lagrangian.max_step), "ERKStepSetMaxStep") &&
+         (lagrangian.projection == NULL ||
+          sundials_succeeded(instance, ERKStepSetPostprocessStepFn(erk->arkode, keep_constraints),
+                             "ERKStepSetPostprocessStepFn")) &&
          sundials_succeeded(instance, ERKStepSetMaxHnilWarns(erk->arkode, -1), "ERKStepSetMaxHnilWarns") &&
          sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, 3), "ERKStepSetInterpolantDegree");
 }

@@ -37,14 +37,17 @@ static inline double *at(double *const *base, Place place) {
 static int factor(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
   double *mass = frame->base[SPACE_MASS] + block->first_mass;
-  size_t singular = ldlt_factor(block->count, block->start, block->column, mass);
+  size_t singular = block->factor != NULL
+                        ? block->factor(block->count, block->start, block->column, block->coordinate, mass)
+                        : ldlt_factor(block->count, block->start, block->column, mass);
   return singular == 0 ? 0 : block->coordinate[singular - 1];
 }
 
 static void solve(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
-  ldlt_solve(block->count, block->start, block->column, frame->base[SPACE_MASS] + block->first_mass,
-             frame->base[SPACE_SIDE] + block->first_side);
+  double *mass = frame->base[SPACE_MASS] + block->first_mass, *side = frame->base[SPACE_SIDE] + block->first_side;
+  if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, side);
+  else ldlt_solve(block->count, block->start, block->column, mass, side);
 }
 
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };

@@ -24,8 +24,7 @@ static size_t factor_full(size_t n, double *m) {
   return 0;
 }
 
-/* The sum of L_ik D_k L_jk over the columns k < j that rows i and j share; place: where row i has column j. */
-static double product_of_rows(const size_t *start, const size_t *column, const double *m, size_t i, size_t place) {
+double ldlt_product_of_rows(const size_t *start, const size_t *column, const double *m, size_t i, size_t place) {
   size_t j = column[place], a = place, b = start[j + 1] - 1;
   double sum = 0.0;
   while (a > start[i] && b > start[j]) {
@@ -41,7 +40,7 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     double diagonal = m[last], pivot = diagonal;
-    for (size_t k = start[i]; k < last; k++) m[k] -= product_of_rows(start, column, m, i, k);
+    for (size_t k = start[i]; k < last; k++) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
     for (size_t k = start[i]; k < last; k++) {
       double l = m[k] / m[start[column[k] + 1] - 1];
       pivot -= l * m[k];

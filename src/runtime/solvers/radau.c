@@ -309,14 +309,20 @@ static double first_step(const struct Instance *instance, const struct Radau *ra
   return rate * length > 1.0 ? 1e-3 / rate : 1e-3 * length;
 }
 
-/* Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. */
-static bool begin(struct Instance *instance, struct Radau *radau, double time) {
+/*
+ * Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. NULL, or why
+ * that cannot be.
+ */
+static const char *begin(struct Instance *instance, struct Radau *radau, double time) {
   double relative = radau_tolerance(instance);
   radau_interpolate(instance, time, radau->state);
+  const char *problem = solver_project(instance, time, radau->state);
+  if (problem != NULL) return problem;
   for (size_t k = 0; k < lagrangian.state_count; k++)
     radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.nominal[k]);
-  return solver_derivatives(instance, time, radau->state, radau->first) &&
-         radau_systems_evaluate(instance, &radau->systems, time, radau->state);
+  bool is_solvable = solver_derivatives(instance, time, radau->state, radau->first) &&
+                     radau_systems_evaluate(instance, &radau->systems, time, radau->state);
+  return is_solvable ? NULL : "the equations have no solution there";
 }
 
 /* The step to try: what the control says, at first no more than the communication step. */
@@ -356,7 +362,8 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
   struct Radau *radau = instance->solver_memory;
   struct RadauSaved *saved = radau->saved;
   double time = instance->situation->last_step.end;
-  if (!begin(instance, radau, time)) return "the equations have no solution there";
+  const char *problem = begin(instance, radau, time);
+  if (problem != NULL) return problem;
   const struct RadauMethod *method = &methods[saved->next_method];
   bool failed = false;
   double step = trial_step(instance, radau, time, communication->end - time);

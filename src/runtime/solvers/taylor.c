@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "evaluate.h"
+#include "projection.h"
 #include "snapshot.h"
 #include "solver.h"
 #include "taylor.h"
@@ -102,6 +103,16 @@ int64_t taylor_order(const struct Instance *instance) {
   return (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
 }
 
+/* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
+static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
+  if (lagrangian.projection == NULL) return NULL;
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
+  const char *problem = solver_project(instance, taylor->span->start, taylor->term);
+  for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];
+  taylor->is_measured = false;
+  return problem;
+}
+
 static bool taylor_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   (void)step;
@@ -164,6 +175,7 @@ static const char *taylor_advance(struct Instance *instance, const struct Commun
   if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
   double moved = taylor->saved->reach > 0.0 ? move_origin(taylor) : 0.0;
   const char *problem = reason_to_stop(instance, taylor, moved);
+  if (problem == NULL) problem = keep_constraints(instance, taylor);
   if (problem == NULL && !expand(instance, taylor, step->length))
     problem = "the motion has a singularity there, or grows beyond all numbers";
   if (problem != NULL) cut_series(taylor);

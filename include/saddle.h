@@ -1,0 +1,30 @@
+/*
+ * K = L D L^T of a matrix (M J^T; J 0) with a positive definite M, stored as ldlt.h has it, in an order of rows in which
+ * each constraint comes after its coordinates: then no pivoting is needed, and the pivots of the constraints, those of
+ * -J M^-1 J^T, are negative. For blocks of the mass matrix with constraints.
+ *
+ * m holds the e elements of K's pattern, SADDLE_MASS(e) numbers in all: the factors, K itself, and the share that is left of
+ * the weakest constraint's row. Right sides are arrays of SADDLE_SIDE(n) numbers.
+ */
+#ifndef SADDLE_H
+#define SADDLE_H
+
+#include <stddef.h>
+
+#define SADDLE_MASS(elements) (2 * (elements) + 1)
+#define SADDLE_SIDE(n) (3 * (n))
+
+/*
+ * Replaces K by L (below the diagonal) and D (on it); coordinate: positive numbers of the rows of M, negative ones of
+ * constraints. A constraint that follows from those before it gets an infinite pivot, so that 0 is found for its force.
+ * Returns 0, or 1 + the row in which M is not definite.
+ */
+size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
+
+/*
+ * Solves K x = b in place. Where a constraint has little hold, the solution is refined: -J M^-1 J^T has lost twice the
+ * digits that K has lost.
+ */
+void saddle_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
+
+#endif

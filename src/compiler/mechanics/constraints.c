@@ -1,0 +1,83 @@
+#include "mechanics/constraints.h"
+
+#include <stdlib.h>
+
+#include "algebra/cone.h"
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "mechanics/time_derivative.h"
+#include "memory.h"
+
+static void append_row(struct Constraints *constraints, struct Graph *graph, size_t row, Node target,
+                       enum SymbolKind kind) {
+  struct Gradient gradient = gradient_by_kinds(graph, target, 1u << kind);
+  for (size_t i = 0; i < gradient.count; i++) {
+    size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
+    elements_append(&constraints->jacobian, row, coordinate, gradient.values[i]);
+  }
+  gradient_free(&gradient);
+}
+
+struct Constraints *constraints_derive(const struct Model *model) {
+  struct Graph *graph = model->graph;
+  size_t count = model->constraints.count;
+  struct Constraints *constraints = allocate(1, sizeof *constraints);
+  *constraints = (struct Constraints){.count = count,
+                                      .position = allocate(count, sizeof(Node)),
+                                      .velocity = allocate(count, sizeof(Node)),
+                                      .acceleration = allocate(count, sizeof(Node)),
+                                      .acceleration_rest = allocate(count, sizeof(Node))};
+  Node *seeds = time_seeds(model, true), *seeds_of_rest = time_seeds(model, false);
+  for (size_t j = 0; j < count; j++) {
+    Node node = model->constraints.items[j].node;
+    bool is_holonomic = !graph_depends_on(graph, node, VELOCITY);
+    if (is_holonomic) constraints->position[j] = node;
+    append_row(constraints, graph, j, node, is_holonomic ? COORDINATE : VELOCITY);
+    if (is_holonomic) derivative_along(graph, &node, 1, seeds, &constraints->velocity[j]);
+    else constraints->velocity[j] = node;
+    derivative_along(graph, &constraints->velocity[j], 1, seeds, &constraints->acceleration[j]);
+    derivative_along(graph, &constraints->velocity[j], 1, seeds_of_rest, &constraints->acceleration_rest[j]);
+  }
+  free(seeds);
+  free(seeds_of_rest);
+  return constraints;
+}
+
+void constraints_free(struct Constraints *constraints) {
+  if (constraints == NULL) return;
+  elements_free(&constraints->jacobian);
+  free(constraints->position);
+  free(constraints->velocity);
+  free(constraints->acceleration);
+  free(constraints->acceleration_rest);
+  free(constraints);
+}
+
+void constraints_add_forces(struct Graph *graph, const struct Constraints *constraints, const Node *forces, Node *sum) {
+  const struct Elements *jacobian = &constraints->jacobian;
+  for (size_t k = 0; k < jacobian->count; k++) {
+    Node *target = &sum[jacobian->positions[k].column];
+    *target = add(graph, *target, multiply(graph, jacobian->nodes[k], forces[jacobian->positions[k].row]));
+  }
+}
+
+Node *constraint_slopes(struct Graph *graph, const struct Constraints *constraints) {
+  const struct Elements *jacobian = &constraints->jacobian;
+  Node *slopes = allocate(constraints->count, sizeof *slopes);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    Node *slope = &slopes[jacobian->positions[k].row];
+    *slope = add(graph, *slope, power_number(graph, jacobian->nodes[k], 2.0));
+  }
+  for (size_t j = 0; j < constraints->count; j++) slopes[j] = power_number(graph, slopes[j], 0.5);
+  return slopes;
+}
+
+bool depend_on_constraint_force(const struct Model *model, const Node *nodes, size_t count) {
+  const struct Graph *graph = model->graph;
+  bool depends = false;
+  if (model->constraints.count == 0) return false;
+  cone_collect(graph->cone, graph, nodes, count, NULL);
+  for (size_t j = 0; j < model->constraints.count && !depends; j++)
+    depends = cone_has(graph->cone, model->constraint_forces[j]);
+  return depends;
+}

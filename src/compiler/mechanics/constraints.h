@@ -1,0 +1,35 @@
+/*
+ * Constraints on the levels of position, velocity and acceleration. Their forces F are defined by
+ *
+ *   M a + J^T F = Q + ...,   J a + (d2 constraint / dt2 without accelerations) = 0,
+ *
+ * where J has the derivatives of the constraints by the coordinates, or of nonholonomic ones by the velocities: F is a
+ * tension where the constraint is a distance less a length.
+ */
+#ifndef CONSTRAINTS_H
+#define CONSTRAINTS_H
+
+#include "mechanics/mass_elements.h"
+
+struct Constraints {
+  size_t count;
+  Node *position;           /* ZERO of nonholonomic ones */
+  Node *velocity;           /* its time derivative, or a nonholonomic constraint itself */
+  Node *acceleration;       /* the time derivative of velocity */
+  Node *acceleration_rest;  /* the same with 0 for the accelerations */
+  struct Elements jacobian; /* J: constraints and coordinates */
+};
+
+struct Constraints *constraints_derive(const struct Model *model);
+void constraints_free(struct Constraints *constraints);
+
+/* sum += J^T forces */
+void constraints_add_forces(struct Graph *graph, const struct Constraints *constraints, const Node *forces, Node *sum);
+
+/* For each constraint the length of its row of J. Free with free(). */
+Node *constraint_slopes(struct Graph *graph, const struct Constraints *constraints);
+
+/* Whether a constraint force is among the symbols of one of the nodes. */
+bool depend_on_constraint_force(const struct Model *model, const Node *nodes, size_t count);
+
+#endif

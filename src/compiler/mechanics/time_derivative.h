@@ -1,0 +1,13 @@
+/* Time derivatives along the motion. */
+#ifndef TIME_DERIVATIVE_H
+#define TIME_DERIVATIVE_H
+
+#include "mechanics/model.h"
+
+/*
+ * The direction of d/dt in the space of all symbols, for derivative_along(): with the accelerations, or with 0 for them.
+ * Free with free().
+ */
+Node *time_seeds(const struct Model *model, bool with_accelerations);
+
+#endif

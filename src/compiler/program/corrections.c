@@ -1,0 +1,80 @@
+#include "program/corrections.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+static Place target(size_t index) {
+  return place_in(SPACE_TARGET, index);
+}
+
+/* What the masses of fixed coordinates are multiplied by, so that others move. */
+static const double weight_of_fixed = 1e12;
+
+static void weigh_fixed(const struct Program *program, struct Values *values, const struct LoopedBlock *looped) {
+  const struct Model *model = program->model;
+  const struct InertiaBlock *block = looped->block;
+  Place weight = place_in(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row >= model->coordinates.count || !model->coordinates.items[row].is_fixed) continue;
+    Place mass = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    routine_append(values->routine, PRODUCT, mass, mass, weight, 0);
+  }
+}
+
+/* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */
+static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *side,
+                         bool starting) {
+  const struct LoopedBlock *looped = &program->blocks.items[number];
+  const struct InertiaBlock *block = looped->block;
+  size_t n = program->equations->count, constraints = program->equations->constraints->count;
+  Node *right_side = allocate(block->count, sizeof *right_side);
+  for (size_t i = 0; i < block->count; i++) right_side[i] = side[block->coordinates[i]];
+  append_masses(values, looped);
+  if (starting) weigh_fixed(program, values, looped);
+  append_factor(values, &program->blocks, number);
+  append_solution(values, &program->blocks, number, right_side);
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    Place pivot = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    if (row < n) routine_append(values->routine, COPY, target(row), place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+    else routine_append(values->routine, COPY, target(row + constraints), pivot, 0, 0);
+  }
+  free(right_side);
+}
+
+/* side: a right side for each row. */
+static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *side,
+                                          bool starting) {
+  struct Routine *routine = values_begin(values);
+  const struct Equations *equations = program->equations;
+  const Node *slope = program->expressions->corrections.slope;
+  size_t n = equations->count, constraints = equations->constraints->count;
+  struct NodeList targets = {0};
+  append_nodes(&targets, slope, constraints);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct InertiaBlock *block = program->blocks.items[b].block;
+    if (block->constraint_count == 0) continue;
+    append_nodes(&targets, block->mass, block->start[block->count]);
+    for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
+  }
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
+  for (size_t j = 0; j < constraints; j++) {
+    values_copy(values, target(n + j), side[n + j]);
+    values_copy(values, target(n + 2 * constraints + j), slope[j]);
+  }
+  for (size_t b = 0; b < program->blocks.count; b++)
+    if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, side, starting);
+  return routine;
+}
+
+struct Routine *correct_positions_routine(const struct Program *program, struct Values *values, bool starting) {
+  return correction_routine(program, values, program->expressions->corrections.position, starting);
+}
+
+struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values, bool starting) {
+  return correction_routine(program, values, program->expressions->corrections.velocity, starting);
+}

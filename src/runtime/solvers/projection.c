@@ -1,0 +1,235 @@
+/*
+ * Projection onto the constraints by Newton's method with the matrix K of the equations of motion: from q,
+ *
+ *   M dq + J^T mu = -M (what q has been moved so far),   J dq = -constraint,
+ *
+ * whose limit is the point on the constraints that is nearest in the metric of M; then the velocities, in one step.
+ */
+#include "projection.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "evaluate.h"
+#include "solver.h"
+
+enum { STEP_LIMIT = 10, START_LIMIT = 100 };
+
+static const double converged = 1e-9;   /* a change whose square is below rounding */
+static const double largest_move = 0.5; /* of start values in one iteration, in units of their scales */
+static const double fulfilled = 1e-10;  /* what a constraint may lack, as a share of the scale of the state */
+
+/* The parts of the workspace. */
+struct Work {
+  double *change;               /* of the coordinates, or the velocities */
+  double *lack, *pivot, *slope; /* of each constraint */
+  double *moved;                /* state_count: the coordinates so far */
+  double *before;               /* state_count */
+};
+
+static struct Work work_of(const struct Instance *instance) {
+  struct Work work = {.change = instance->projection_work};
+  work.lack = work.change + lagrangian.coordinate_count;
+  work.pivot = work.lack + lagrangian.constraint_count;
+  work.slope = work.pivot + lagrangian.constraint_count;
+  work.moved = work.slope + lagrangian.constraint_count;
+  work.before = work.moved + lagrangian.state_count;
+  return work;
+}
+
+static double scale_of(const double *state, size_t i) {
+  return fmax(fabs(state[i]), lagrangian.nominal[i]);
+}
+
+/* The largest of the n values from first on, in units of the scales of the state. */
+static double size_of(const double *value, const double *state, size_t first) {
+  double largest = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
+    double size = fabs(value[i]) / scale_of(state, first + i);
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
+}
+
+/* What is to fulfil the constraints: coordinates or velocities, those of a step or of the start. */
+enum Target { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
+
+/* Evaluates what the target lacks. False where M is singular, or something is not finite. */
+static bool evaluate(struct Instance *instance, double time, const double *state, enum Target target) {
+  struct Work work = work_of(instance);
+  struct Point point = solver_point(instance, time, state);
+  struct Seed seed = {.state = work.moved};
+  switch (target) {
+  case POSITIONS: instance->singular = lagrangian.correct_positions(&point, &seed, work.change); break;
+  case VELOCITIES: instance->singular = lagrangian.correct_velocities(&point, work.change); break;
+  case START_POSITIONS: instance->singular = lagrangian.start_positions(&point, &seed, work.change); break;
+  case START_VELOCITIES: instance->singular = lagrangian.start_velocities(&point, work.change); break;
+  }
+  return instance->singular == 0 && are_finite(work.change, lagrangian.coordinate_count) &&
+         are_finite(work.lack, lagrangian.constraint_count);
+}
+
+static void move(const struct Work *work, double *state, double share) {
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
+    state[i] += share * work->change[i];
+    work->moved[i] += share * work->change[i];
+  }
+}
+
+static double move_velocities(struct Instance *instance, double time, double *state, enum Target target) {
+  size_t n = lagrangian.coordinate_count;
+  if (!evaluate(instance, time, state, target)) return INFINITY;
+  struct Work work = work_of(instance);
+  double size = size_of(work.change, state, n);
+  for (size_t i = 0; i < n; i++) state[n + i] += work.change[i];
+  return size;
+}
+
+static double project(struct Instance *instance, double time, double *state) {
+  struct Work work = work_of(instance);
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
+    if (!evaluate(instance, time, state, POSITIONS)) return INFINITY;
+    double size = size_of(work.change, state, 0);
+    move(&work, state, 1.0);
+    if (size > converged) continue;
+    double velocities = move_velocities(instance, time, state, VELOCITIES);
+    return fmax(size_of(work.moved, state, 0), velocities);
+  }
+  return INFINITY;
+}
+
+static double drift(struct Instance *instance, double time) {
+  struct Work work = work_of(instance);
+  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
+  return project(instance, time, work.before);
+}
+
+/* The constraint that lacks most, as a way in units of the state's scale; constraint_count where none lacks anything. */
+static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
+  size_t worst = lagrangian.constraint_count;
+  double scale = 0.0, most = fulfilled;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
+    double way = work->lack[j] == 0.0 ? 0.0 : fabs(work->lack[j]) / (work->slope[j] * scale);
+    if (way > most) {
+      most = way;
+      worst = j;
+    }
+  }
+  return worst;
+}
+
+/* Moves the coordinates onto the constraints from afar; the one that cannot be fulfilled, constraint_count for none. */
+static size_t approach(struct Instance *instance, double time, double *state, enum Target target) {
+  struct Work work = work_of(instance);
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  double size = INFINITY;
+  for (int iteration = 0; iteration < START_LIMIT && size > converged; iteration++) {
+    if (!evaluate(instance, time, state, target)) return 0;
+    size = size_of(work.change, state, 0);
+    move(&work, state, size > largest_move ? largest_move / size : 1.0);
+  }
+  if (!evaluate(instance, time, state, target)) return 0;
+  return find_lacking(&work, state, 0);
+}
+
+static size_t approach_velocities(struct Instance *instance, double time, double *state, enum Target target) {
+  struct Work work = work_of(instance);
+  if (!isfinite(move_velocities(instance, time, state, target))) return 0;
+  if (!evaluate(instance, time, state, target)) return 0;
+  return find_lacking(&work, state, lagrangian.coordinate_count);
+}
+
+static const char *name_of_state(size_t index) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++)
+    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == index)
+      return lagrangian.variables[i].name;
+  return "";
+}
+
+static void log_moves(const struct Instance *instance, const double *before) {
+  char text[600] = "";
+  int length = 0;
+  for (size_t i = 0; i < 2 * lagrangian.coordinate_count && length < 500; i++) {
+    double after = instance->state[i];
+    if (fabs(after - before[i]) <= instance->situation->tolerance * scale_of(before, i)) continue;
+    length += snprintf(text + length, sizeof text - (size_t)length, "%s%.60s from %.9g to %.9g", length > 0 ? ", " : "",
+                       name_of_state(i), before[i], after);
+  }
+  if (length > 0)
+    log_message(instance, STATUS_DONE, "time %g: moved to fulfil the constraints: %s%s", instance->situation->time,
+                text, length >= 500 ? ", ..." : "");
+}
+
+static void log_redundant(const struct Instance *instance, const struct Work *work) {
+  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+    if (isinf(work->pivot[j]))
+      log_message(instance, STATUS_DONE,
+                  "time %g: the constraint '%s' follows from the others; they carry its load, and its force is 0",
+                  instance->situation->time, lagrangian.constraints[j]);
+}
+
+static bool refuse(struct Instance *instance, size_t constraint, const char *what, const char *function) {
+  struct Work work = work_of(instance);
+  if (instance->singular != 0) {
+    log_singularity(instance, STATUS_ERROR, instance->situation->time);
+    return false;
+  }
+  log_error(instance,
+            "%s: no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
+            "expected start values nearer to a solution, or parameters for which there is one",
+            function, what, lagrangian.constraints[constraint], -work.lack[constraint]);
+  return false;
+}
+
+/* Fixed ones that had to move all the same are refused; what rounding has moved is put back. */
+static bool keep_fixed(struct Instance *instance, const double *before, const char *function) {
+  size_t n = lagrangian.coordinate_count;
+  for (size_t i = 0; i < 2 * n; i++) {
+    if (!lagrangian.coordinate_is_fixed[i % n]) continue;
+    if (fabs(instance->state[i] - before[i]) > 1e-9 * scale_of(before, i)) {
+      log_error(instance,
+                "%s: the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
+                "start value there, or fewer fixed coordinates",
+                function, name_of_state(i), instance->state[i], before[i]);
+      return false;
+    }
+    instance->state[i] = before[i];
+  }
+  return true;
+}
+
+static bool make_consistent(struct Instance *instance, bool is_start, const char *function) {
+  struct Work work = work_of(instance);
+  double time = instance->situation->time;
+  bool keeps_fixed = is_start && lagrangian.coordinate_is_fixed != NULL;
+  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
+  size_t lacking = approach(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
+  if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "coordinates", function);
+  if (is_start) log_redundant(instance, &work);
+  lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
+  if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "velocities", function);
+  if (keeps_fixed && !keep_fixed(instance, work.before, function)) return false;
+  log_moves(instance, work.before);
+  return true;
+}
+
+static const char *weakest(struct Instance *instance, double time, const double *state) {
+  struct Work work = work_of(instance);
+  size_t found = 0;
+  double least = INFINITY;
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  if (!evaluate(instance, time, state, POSITIONS)) return NULL;
+  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
+    double hold = fabs(work.pivot[j]) / (work.slope[j] * work.slope[j]);
+    if (!(hold < least)) continue;
+    least = hold;
+    found = j;
+  }
+  return lagrangian.constraints[found];
+}
+
+const struct Projection projection = {
+    .project = project, .drift = drift, .make_consistent = make_consistent, .weakest = weakest};

@@ -1,0 +1,413 @@
+"""Constraints: an independent derivation with multipliers, closed forms, published values, and what cannot be fulfilled."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from fmpy.fmi2 import FMU2Model
+
+import fmu
+from closed_forms import pendulum_angle
+from fmu import DISCARD, ERROR, WARNING, build_systems
+from mechanics import time, velocity
+
+TWO_RODS = """
+<system name="{name}">
+  <parameter name="l" start="1" unit="m" min="0"/>
+  <parameter name="m" start="1.5" unit="kg" min="0"/>
+  <parameter name="g" start="9.81" unit="m/s2"/>
+  <coordinate name="x" velocity="vx" unit="m" start="0.8"/>
+  <coordinate name="y" velocity="vy" unit="m" start="-0.6"/>
+  <particle name="bob" mass="m" x="x" y="y"/>
+  <potential>m*g*y</potential>
+  <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint>
+  <constraint name="other" unit="m2">x^2 + y^2 - {square}</constraint>
+  <experiment stopTime="2" stepSize="0.01"/>
+</system>
+"""
+ARM = """
+<system name="PulledArm">
+  <coordinate name="p" velocity="vp" start="0.3"/>
+  <coordinate name="q" velocity="vq" start="1.5"/>
+  <particle name="tip" mass="1" x="cos(p) + cos(p + q)" y="sin(p) + sin(p + q)"/>
+  <body name="upper" mass="1" inertia="0.1" x="cos(p)/2" y="sin(p)/2" angle="p"/>
+  <constraint name="pull">tip.x - 1 - 0.2*time</constraint>
+  <constraint name="line">tip.y - 0.3</constraint>
+  <experiment stopTime="10" stepSize="0.01"/>
+</system>
+"""
+TABLE = """
+<system name="Table" description="table on three equal cranks, of which one is too many">
+  <parameter name="g" start="9.81"/>
+  <coordinate name="p" velocity="vp" start="0.3" velocityStart="2" fixed="true"/>
+  <coordinate name="x" velocity="vx" start="1.4"/>
+  <coordinate name="y" velocity="vy" start="0.4"/>
+  <coordinate name="f" velocity="vf"/>
+  <body name="crank" mass="1" inertia="0.1" x="cos(p)/2" y="sin(p)/2" angle="p"/>
+  <body name="top" mass="2" inertia="0.3" x="x" y="y" angle="f"/>
+  <potential>g*(crank.y + 2*top.y)</potential>
+  <constraint name="pinX">x - 0.5*cos(f) - cos(p)</constraint>
+  <constraint name="pinY">y - 0.5*sin(f) - sin(p)</constraint>
+  <constraint name="second">(x + 0.5*cos(f) - 1)^2 + (y + 0.5*sin(f))^2 - 1</constraint>
+  <constraint name="third">(x - 0.5)^2 + y^2 - 1</constraint>
+  <experiment stopTime="5" stepSize="0.01"/>
+</system>
+"""
+SLIDER = """
+<system name="Slider" description="bead on a wire that moves, and a wheel that rolls with it at a rate of its own">
+  <parameter name="g" start="9.81"/>
+  <parameter name="R" start="0.3"/>
+  <coordinate name="x" velocity="vx" start="0.2" velocityStart="0.5"/>
+  <coordinate name="y" velocity="vy"/>
+  <coordinate name="s" velocity="vs"/>
+  <particle name="bead" mass="0.7" x="x" y="y"/>
+  <kinetic>0.2*vs^2*(1 + 0.3*sin(s))</kinetic>
+  <potential>0.7*g*y + x^4/3</potential>
+  <dissipation>0.1*vx^2/2</dissipation>
+  <constraint name="wire">y - 0.5*x^2 - 0.1*sin(3*time)</constraint>
+  <constraint name="wheel">R*vs*cos(s) - vx + 0.1*time</constraint>
+  <output name="pressure">wire.force + der(vx)</output>
+  <experiment stopTime="3" stepSize="0.01"/>
+</system>
+"""
+RODS = """
+<system name="Rods{count}" description="chain of rods without mass, by positions">
+  <constant name="N" value="{count}"/>
+  <parameter name="g" start="9.81"/>
+  <for index="i" from="1" to="N">
+    <coordinate name="x[i]" velocity="vx[i]" start="i/N*cos(0.5)"/>
+    <coordinate name="y[i]" velocity="vy[i]" start="-i/N*sin(0.5)"/>
+    <particle name="bob[i]" mass="1" x="x[i]" y="y[i]"/>
+    <potential>g*y[i]</potential>
+  </for>
+  <constraint name="rod[1]">sqrt(x[1]^2 + y[1]^2) - 1/N</constraint>
+  <for index="i" from="2" to="N"><constraint name="rod[i]">sqrt((x[i] - x[i-1])^2 + (y[i] - y[i-1])^2) - 1/N</constraint></for>
+  <experiment stopTime="1" stepSize="0.01"/>
+</system>
+"""
+ANGLES = """
+<system name="Angles{count}" description="the same chain by angles">
+  <constant name="N" value="{count}"/>
+  <parameter name="g" start="9.81"/>
+  <for index="i" from="1" to="N">
+    <coordinate name="t[i]" velocity="w[i]" start="pi/2 - 0.5"/>
+    <particle name="bob[i]" mass="1" x="sum(k, 1, i, sin(t[k]))/N" y="-sum(k, 1, i, cos(t[k]))/N"/>
+    <potential>g*bob[i].y</potential>
+  </for>
+  <experiment stopTime="1" stepSize="0.01"/>
+</system>
+"""
+SYSTEMS = {
+    "Twice": TWO_RODS.format(name="Twice", square="l^2"),
+    "Contrary": TWO_RODS.format(name="Contrary", square="1.1*l^2"),
+    "PulledArm": ARM,
+    "Table": TABLE,
+    "Slider": SLIDER,
+    "Rods8": RODS.format(count=8),
+    "Angles8": ANGLES.format(count=8),
+}
+METHODS = ["taylor", "radau", "auto", "bdf", "erk"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    others = {f"Slider{method}": SLIDER.replace("Slider", f"Slider{method}").replace("<experiment", f'<solver method="{method}" tolerance="1e-10"/><experiment') for method in METHODS}  # fmt: skip
+    build_systems("constrained", SYSTEMS | others)
+
+
+class Constrained:
+    """M a + J^T F = right side, J a + (what is left of the second derivatives) = 0, by SymPy."""
+
+    def __init__(self, q, v, T, U, Q, constraints, parameters):
+        L = T - U
+        momenta = [sp.diff(L, vi) for vi in v]
+        mass = sp.Matrix(len(q), len(q), lambda i, j: sp.diff(momenta[i], v[j]))
+        right = [Qi + sp.diff(L, qi) - velocity(p, q, v) for Qi, qi, p in zip(Q, q, momenta)]
+        rates = [c if c.has(*v) else velocity(c, q, v) for c in constraints]
+        jacobian = sp.Matrix(len(constraints), len(q), lambda i, j: sp.diff(rates[i], v[j]))
+        rest = [-velocity(rate, q, v) for rate in rates]
+        self.arguments = [time, *q, *v, *parameters]
+        matrix = sp.Matrix(sp.BlockMatrix([[mass, jacobian.T], [jacobian, sp.zeros(len(rest))]]))
+        self.system = sp.lambdify(self.arguments, [matrix, sp.Matrix([*right, *rest])], modules="numpy", cse=True)
+
+    def solve(self, values):
+        matrix, right = self.system(*values)
+        return np.linalg.solve(np.array(matrix, float), np.array(right, float).ravel())
+
+
+def slider():
+    x, y, s, vx, vy, vs, g, R = sp.symbols("x y s vx vy vs g R")
+    T = sp.Rational(7, 20) * (vx**2 + vy**2) + vs**2 * (1 + sp.Rational(3, 10) * sp.sin(s)) / 5
+    U = sp.Rational(7, 10) * g * y + x**4 / 3
+    constraints = [y - x**2 / 2 - sp.sin(3 * time) / 10, R * vs * sp.cos(s) - vx + time / 10]
+    return Constrained([x, y, s], [vx, vy, vs], T, U, [-vx / 10, 0, 0], constraints, [g, R]), ["wire", "wheel"]
+
+
+def four_bar():
+    theta, phi, psi, w, wc, wr, a, b, c, d, rho, g = sp.symbols("theta phi psi omega omegaCoupler omegaRocker a b c d rho g")
+    q, v = [theta, phi, psi], [w, wc, wr]
+    def e(angle): return sp.Matrix([sp.cos(angle), sp.sin(angle)])  # noqa: E704
+    centres = [e(theta) * a / 2, e(theta) * a + e(phi) * b / 2, sp.Matrix([d, 0]) + e(psi) * c / 2]
+    T = sum(rho * l / 2 * (velocity(r[0], q, v) ** 2 + velocity(r[1], q, v) ** 2 + l**2 / 12 * rate**2)
+            for l, r, rate in zip([a, b, c], centres, v))  # fmt: skip
+    U = sum(rho * l * g * r[1] for l, r in zip([a, b, c], centres))
+    loop = e(theta) * a + e(phi) * b - sp.Matrix([d, 0]) - e(psi) * c
+    return Constrained(q, v, T, U, [0, 0, 0], list(loop), [a, b, c, d, rho, g]), ["loopX", "loopY"]
+
+
+def knife_edge():
+    x, y, phi, vx, vy, w, m, J, alpha, g = sp.symbols("x y phi vx vy omega m J alpha g")
+    T, U = (m * (vx**2 + vy**2) + J * w**2) / 2, -m * g * x * sp.sin(alpha)
+    edge = vx * sp.sin(phi) - vy * sp.cos(phi)
+    return Constrained([x, y, phi], [vx, vy, w], T, U, [0, 0, 0], [edge], [m, J, alpha, g]), ["edge"]
+
+
+@pytest.mark.parametrize("name, define", [("Slider", slider), ("FourBar", four_bar), ("KnifeEdge", knife_edge)])
+def test_accelerations_and_forces(name, define, open_fmu):
+    """At random states, which need not fulfil the constraints; the forces with their signs."""
+    definition, constraints = define()
+    random = np.random.default_rng(3)
+    instance = open_fmu(name)
+    symbols = [symbol.name for symbol in definition.arguments]
+    states = fmu.states_of(name)
+    for _ in range(50):
+        values = random.uniform(0.3, 1.5, len(symbols))
+        instance.reset()
+        instance.fmu.setupExperiment(startTime=values[0])
+        instance.set(dict(zip(symbols[1:], values[1:])))
+        instance.fmu.enterInitializationMode()
+        velocities = states[len(states) // 2 :]
+        ours = instance.get(*[f"der({v})" for v in velocities], *[f"{c}.force" for c in constraints])
+        np.testing.assert_allclose(ours, definition.solve(values), rtol=1e-9, atol=1e-9)
+
+
+def test_pendulum_and_its_tension(open_fmu):
+    """Jacobi's elliptic function, and m (g cos(theta) + l omega^2) along the rod, positive in tension."""
+    instance = open_fmu("PendulumCartesian").initialize({"x": np.sin(1.2), "y": -np.cos(1.2)}, tolerance=1e-10)
+    for _ in range(50):
+        instance.step(0.1)
+        x, y, vx, vy, tension = instance.get("x", "y", "vx", "vy", "rod.force")
+        assert np.arctan2(x, -y) == pytest.approx(pendulum_angle(1.2, np.sqrt(9.81), instance.time), abs=1e-8)
+        assert tension == pytest.approx(-9.81 * y + vx**2 + vy**2, abs=1e-11)
+        assert abs(np.hypot(x, y) - 1) < 1e-14 and abs(x * vx + y * vy) < 1e-14
+
+
+def test_knife_edge(open_fmu):
+    """From rest with a spin, the plate runs along a cycloid and does not slide down for good (Neimark and Fufaev)."""
+    instance = open_fmu("KnifeEdge").initialize(tolerance=1e-10)
+    scale = 9.81 * np.sin(0.2) / 2
+    for _ in range(20):
+        instance.step(0.5)
+        t = instance.time
+        assert instance.get("x") == pytest.approx(scale * np.sin(t) ** 2, abs=1e-8)
+        assert instance.get("y") == pytest.approx(scale * (t - np.sin(2 * t) / 2), abs=1e-8)
+
+
+ANDREWS = dict(
+    beta=15.81077119629904, theta=-15.75637105984298, gamma=0.04082224013073101, phi=-0.5347301163226948,
+    delta=0.5244099658805304, omega=0.5347301163226948, epsilon=1.048080741042263,
+)  # fmt: skip
+
+
+def test_andrews_mechanism(open_fmu):
+    """The values of the test set for initial value problems: accelerations and forces at the start, positions at 0.03 s."""
+    instance = open_fmu("AndrewsSqueezer").initialize(tolerance=1e-10)
+    start = instance.get("der(vbeta)", "der(vtheta)", "der(vgamma)", "loop3X.force", "loop3Y.force")
+    np.testing.assert_allclose(
+        start, [14222.44391995414, -10666.83293996559, 0, 98.5668703962411, -6.12268834425567], rtol=1e-12, atol=1e-7
+    )
+    for _ in range(30):
+        instance.step(1e-3)
+    for name, expected in ANDREWS.items():
+        assert instance.get(name) == pytest.approx(expected, rel=1e-9)
+
+
+def test_flat_positions_are_passed(open_fmu):
+    """All rods lie flat now and then, where the row is free for an instant; energy is the measure (IFToMM: 0.1 J)."""
+    instance = open_fmu("NFourBar").initialize()
+    energy = instance.get("totalEnergy")
+    for _ in range(1000):
+        instance.step(0.01)
+    assert instance.get("theta[0]") > 4 * np.pi  # it has turned
+    assert abs(instance.get("totalEnergy") - energy) < 1e-6
+    assert abs(instance.get("theta[0]") - instance.get("theta[40]")) < 1e-9 and abs(instance.get("phi[20]")) < 1e-9
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method(method, open_fmu):
+    """Against SciPy with SymPy's equations; constraints at all levels, of which one moves and one is nonholonomic."""
+    from scipy.integrate import solve_ivp
+
+    definition, _ = slider()
+    instance = open_fmu(f"Slider{method}").initialize()
+    start = instance.get(*fmu.states_of("Slider"))
+
+    def derivative(t, state):
+        return [*state[3:], *definition.solve([t, *state, 9.81, 0.3])[:3]]
+
+    expected = solve_ivp(derivative, (0, 3), start, method="DOP853", rtol=1e-12, atol=1e-12, t_eval=np.linspace(0.1, 3, 30))
+    for k in range(30):
+        instance.step(0.1)
+        x, y, s, vx, vy, vs = instance.get(*fmu.states_of("Slider"))
+        np.testing.assert_allclose([x, y, s, vx, vy, vs], expected.y[:, k], atol=2e-6 if method == "bdf" else 1e-7)
+        t = instance.time
+        assert abs(y - 0.5 * x**2 - 0.1 * np.sin(3 * t)) < 1e-13
+        assert abs(vy - x * vx - 0.3 * np.cos(3 * t)) < 1e-13
+        assert abs(0.3 * vs * np.cos(s) - vx + 0.1 * t) < 1e-13
+
+
+def test_directional_derivatives(open_fmu):
+    """Of accelerations, forces and an output of both, against central differences."""
+    instance = open_fmu("Slider")
+    instance.fmu.setupExperiment()
+    instance.fmu.enterInitializationMode()
+    known = ["x", "y", "s", "vx", "vy", "vs", "g", "R"]
+    unknown = ["der(vx)", "der(vs)", "pressure"]
+    for name in known:
+        value, values = instance.get(name), []
+        ours = instance.fmu.getDirectionalDerivative(instance.vr(*unknown), instance.vr(name), [1.0])
+        for sign in (1, -1):
+            instance.set({name: value + sign * 1e-6})
+            values.append(np.array(instance.get(*unknown)))
+        instance.set({name: value})
+        np.testing.assert_allclose(ours, (values[0] - values[1]) / 2e-6, rtol=1e-6, atol=1e-6)
+
+
+def test_model_exchange_asks_for_projection(open_fmu):
+    """A state that drifted by more than the tolerance is brought back in an event; one that did not is left alone."""
+    instance = open_fmu("PendulumCartesian", kind=FMU2Model)
+    instance.initialize(tolerance=1e-6)
+    model = instance.fmu
+    assert model.newDiscreteStates()[3] in (0, False)
+    model.enterContinuousTimeMode()
+    model.setContinuousStates(np.array([-1.0, 1e-9, 0.0, 0.0]).ctypes.data_as(model_pointer()), 4)
+    assert model.completedIntegratorStep()[0] in (0, False)
+    model.setContinuousStates(np.array([-1.01, 0.0, 0.5, 1.0]).ctypes.data_as(model_pointer()), 4)
+    assert model.completedIntegratorStep()[0]
+    model.enterEventMode()
+    assert model.newDiscreteStates()[3]
+    np.testing.assert_allclose(instance.get("x", "y", "vx", "vy"), [-1, 0, 0, 1], atol=1e-14)
+
+
+def model_pointer():
+    from ctypes import POINTER, c_double
+
+    return POINTER(c_double)
+
+
+def test_start_values_are_moved_least(open_fmu):
+    """The nearest point on the circle lies on the ray; velocities lose their radial part alone. The log tells."""
+    instance = open_fmu("PendulumCartesian").initialize({"x": -0.9, "y": 0.1, "vx": 0.3, "vy": 0.2})
+    length = np.hypot(0.9, 0.1)
+    direction = np.array([-0.9, 0.1]) / length
+    rest = np.array([0.3, 0.2]) - direction * (direction @ [0.3, 0.2])
+    np.testing.assert_allclose(instance.get("x", "y", "vx", "vy"), [*direction, *rest], atol=1e-13)
+    told = [text for _, _, text in instance.messages if "moved to fulfil" in text]
+    assert len(told) == 1 and "x from -0.9 to -0.99388" in told[0]
+
+
+def test_fixed_start_values_stay(open_fmu):
+    instance = open_fmu("FourBar").initialize()
+    assert instance.get("theta", "omega") == [1.0, 8.0]
+    assert any("phi from 0.4" in text and "theta" not in text for _, _, text in instance.messages)
+
+
+def test_fixed_start_values_that_leave_no_solution(open_fmu):
+    instance = open_fmu("FourBar")
+    with instance.fails(ERROR, "constraint 'loop.*expected start values|its start is fixed"):
+        instance.initialize({"theta": np.pi, "d": 1.2})
+
+
+def test_redundant_constraints_are_told_from_contrary_ones(open_fmu):
+    instance = open_fmu("Twice").initialize()
+    assert any("'other' follows from the others" in text for _, _, text in instance.messages)
+    energy = instance.get("totalEnergy")
+    for _ in range(200):
+        instance.step(0.01)
+    x, y, vx, vy, tension, other = instance.get("x", "y", "vx", "vy", "rod.force", "other.force")
+    assert (tension, other) == (pytest.approx(1.5 * (-9.81 * y + vx**2 + vy**2), abs=1e-9), 0)
+    assert abs(instance.get("totalEnergy") - energy) < 1e-8
+    contrary = open_fmu("Contrary")
+    with contrary.fails(ERROR, "'other' with the others: it is -0.1 where 0 is expected"):
+        contrary.initialize()
+
+
+def test_overconstrained_table(open_fmu):
+    """A table on three cranks stays level; one crank is too many."""
+    instance = open_fmu("Table").initialize()
+    assert any("'third' follows from the others" in text for _, _, text in instance.messages)
+    energy = instance.get("totalEnergy")
+    for _ in range(500):
+        instance.step(0.01)
+        assert abs(instance.get("f")) < 1e-12 and abs(instance.get("x") - 0.5 - np.cos(instance.get("p"))) < 1e-12
+    assert abs(instance.get("totalEnergy") - energy) < 1e-7
+
+
+def test_limit_of_a_mechanism(open_fmu):
+    """The tip comes to the end of the arm's reach: sqrt(4 - 0.3^2) = 1 + 0.2 t at t = 4.887."""
+    instance = open_fmu("PulledArm").initialize()
+    while instance.time < 4.87:
+        instance.step(0.01)
+    with instance.fails(DISCARD, "stopped at time 4.88"):
+        instance.step(0.1)
+    told = " ".join(text for status, _, text in instance.messages if status == 2)
+    assert ("'pull'" in told or "'line'" in told) and "limit of its reach" in told
+    assert all(np.isfinite(instance.get("p", "q", "vp", "vq")))
+
+
+def test_chain_of_rods(open_fmu):
+    """By positions with constraints and by angles without: the same motion, tensions and energies."""
+    rods, angles = open_fmu("Rods8").initialize(tolerance=1e-11), open_fmu("Angles8").initialize(tolerance=1e-11)
+    for _ in range(10):
+        rods.step(0.1)
+        angles.step(0.1)
+        for i in range(1, 9):
+            ours = rods.get(f"x[{i}]", f"y[{i}]", "totalEnergy")
+            np.testing.assert_allclose(ours, angles.get(f"bob[{i}].x", f"bob[{i}].y", "totalEnergy"), atol=1e-7)
+
+
+def test_long_run_keeps_constraints(open_fmu):
+    """Nothing adds up: 20,000 s, some 300,000 steps of the solver. LONG_RUNS=1 takes the million."""
+    import os
+
+    instance = open_fmu("PendulumCartesian").initialize()
+    for _ in range(60 if "LONG_RUNS" in os.environ else 5):
+        instance.step(1000.0)
+        x, y, vx, vy = instance.get("x", "y", "vx", "vy")
+        assert abs(np.hypot(x, y) - 1) < 1e-12 and abs(x * vx + y * vy) < 1e-12
+    assert instance.fmu.getInteger(instance.vr("solverSteps"))[0] > 50000
+
+
+def test_a_parameter_that_is_tuned(open_fmu):
+    """The rod becomes longer between two steps: the bob is moved onto it, and the log says so."""
+    instance = open_fmu("PendulumCartesian").initialize()
+    instance.step(0.5)
+    instance.set(l=1.1)
+    instance.step(0.5)
+    assert np.hypot(*instance.get("x", "y")) == pytest.approx(1.1, abs=1e-14)
+    assert any("moved to fulfil" in text for _, _, text in instance.messages)
+    assert all(status <= WARNING for status, _, _ in instance.messages)
+
+
+MISTAKES = [
+    ('<constraint name="c">l - 1</constraint>', "the constraint 'c' holds no coordinate"),
+    ('<constraint name="c">vx*vy</constraint>', "the constraint 'c' is not linear in the velocities"),
+    ('<constraint name="c" unit="m">x*y</constraint>', "unit mismatch: the constraint"),
+    ('<constraint name="rod">x</constraint>', "rod"),
+    ('<constraint name="c">x - c.force</constraint>', "constraint"),
+    ('<constraint>x</constraint>', "name"),
+]
+
+
+@pytest.mark.parametrize("line, message", MISTAKES)
+def test_mistakes(line, message, tmp_path):
+    text = SYSTEMS["Twice"].replace("<experiment", line + "<experiment")
+    (tmp_path / "system.xml").write_text(text)
+    result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
+def test_nothing_of_it_is_in_other_fmus():
+    members = (fmu.BUILD / "systems" / "DoublePendulum" / "link.map").read_text()
+    for part in ("saddle", "projection.c"):
+        assert f"({part}" not in members
+    assert "saddle.c.o" in (fmu.BUILD / "systems" / "FourBar" / "link.map").read_text()
