@@ -253,8 +253,7 @@ size_t instruction_count(const struct Program *program) {
                  count_of(program->jacobian) + count_of(program->accelerations) +
                  count_of(program->accelerations_along) + count_of(program->correct_positions) +
                  count_of(program->correct_velocities) + count_of(program->start_positions) +
-                 count_of(program->start_velocities) + count_of(program->initial) +
-                 count_of(program->initial_along);
+                 count_of(program->start_velocities) + count_of(program->initial) + count_of(program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
