@@ -91,6 +91,17 @@ def build_systems(folder, texts, *words):
         built_by_tests[name] = build / "fmu" / f"{name}.fmu"
 
 
+def build_apart(folder, name, text):
+    """Builds the FMU of one system in a folder of the test, with the tools of the build, for this test alone; returns the archive."""
+    bring_up_to_date(ROOT / "build")
+    system = folder / "systems" / name / "system.xml"
+    system.parent.mkdir(parents=True)
+    system.write_text(text)
+    words = [f"-DSYSTEMS={folder / 'systems'}", f"-DTOOLS={ROOT / 'build'}"]
+    subprocess.run([ROOT / "scripts" / "build", folder / "build", *words], check=True)
+    return folder / "build" / "fmu" / f"{name}.fmu"
+
+
 @functools.cache
 def description(name):
     return fmpy.read_model_description(unpacked(name))

@@ -33,20 +33,22 @@ EXPRESSIONS = [
 ]  # fmt: skip
 
 
-def compiles(folder):
+def compile_all(*folders):
     for compiler in ("gcc", "clang"):
-        result = subprocess.run([compiler, *FLAGS, folder / "out" / "system.c"], capture_output=True, text=True)
+        result = subprocess.run([compiler, *FLAGS, *(folder / "system.c" for folder in folders)], capture_output=True, text=True)
         assert result.returncode == 0, result.stderr
 
 
 @pytest.mark.parametrize("expression", EXPRESSIONS)
 @pytest.mark.parametrize("place", PLACES)
 def test_powers(place, expression, tmp_path):
-    for method in ("taylor", "erk", "bdf", "radau", "auto"):
+    """With a series, without, with a Jacobian, which bdf gets as radau does, and with both."""
+    methods = ("taylor", "erk", "radau", "auto")
+    for method in methods:
         (tmp_path / "system.xml").write_text(SYSTEM.format(PLACES[place].format(expression), method))
-        result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+        result = lagc("system.xml", "-o", method, cwd=tmp_path)
         assert (result.returncode, result.stderr) == (0, "")
-        compiles(tmp_path)
+    compile_all(*(tmp_path / method for method in methods))
 
 
 def test_inertia_of_many_long_names(tmp_path):
@@ -58,7 +60,7 @@ def test_inertia_of_many_long_names(tmp_path):
     )
     (tmp_path / "system.xml").write_text(SYSTEM.format(elements, "erk"))
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
-    compiles(tmp_path)
+    compile_all(tmp_path / "out")
     text = (tmp_path / "out" / "system.c").read_text()
     table = text[text.index("inertia_depends_on[] = {") :].split("};")[0]
     assert f'"a, x, {name}[1], ' not in table and f"{name}[1], {name}[2]" in table and ', ..."' in table
@@ -71,4 +73,4 @@ def test_coupled_masses(method, form, tmp_path):
     elements = '<for index="i" from="1" to="3"><coordinate name="q[i]" velocity="w[i]"/><particle mass="a" x="q[i]"/></for>'
     (tmp_path / "system.xml").write_text(SYSTEM.format(elements + "<kinetic>(w[1] + w[2] + w[3])^2</kinetic>", method))
     assert lagc("system.xml", "-o", "out", "--form", form, cwd=tmp_path).returncode == 0
-    compiles(tmp_path)
+    compile_all(tmp_path / "out")

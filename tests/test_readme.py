@@ -9,7 +9,7 @@ import fmpy
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from fmu import BUILD, ROOT, all_names, lagc
+from fmu import BUILD, ROOT, all_names, build_apart, lagc
 
 README = (ROOT / "README.md").read_text()
 
@@ -17,11 +17,7 @@ README = (ROOT / "README.md").read_text()
 def test_own_system(tmp_path):
     system = re.search(r"```xml\n(<system .*?</system>\n)```", README, re.S).group(1)
     assert len(system.splitlines()) <= 15
-    folder = tmp_path / "systems" / "BeadOnHoop"
-    folder.mkdir(parents=True)
-    (folder / "system.xml").write_text(system)
-    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", f"-DSYSTEMS={folder.parent}"], check=True)
-    archive = tmp_path / "build" / "fmu" / "BeadOnHoop.fmu"
+    archive = build_apart(tmp_path, "BeadOnHoop", system)
     documentation = zipfile.ZipFile(archive).read("documentation/index.html").decode()
     equation = re.search(r"equations, here `(.*?)`", README, re.S).group(1)
     assert equation in documentation

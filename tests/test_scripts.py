@@ -237,6 +237,20 @@ def test_a_build_of_sundials_that_was_stopped(source):
     assert (source.folder / "build" / "sundials" / "version").exists() and not unfinished.exists()
 
 
+@pytest.mark.parametrize("pip, made, message", [(0, "well", ""), (1, "well", ""), (0, "badly", "cannot be built"), (1, "badly", "cannot be built")])
+def test_sundials_is_built_while_pip_works(pip, made, message, source):
+    """Where one of them fails, the other's work is done and its words are said all the same."""
+    source.environment["MADE"] = made
+    # pip ends when SUNDIALS has come to its compiler.
+    script(source.folder / "bin" / "cmake", CMAKE.replace("*--build*)", '*--build*) echo built >"$SIGNAL";'))
+    script(source.folder / "bin" / "python3", PYTHON.replace('echo made >"$SIGNAL"\n  read <"$SIGNAL"', "")
+           + f'case "$*" in *"pip install"*) read <"$SIGNAL"; echo "words of pip" >&2; exit {pip} ;; esac\n')
+    status, text = source.run("setup", "test")
+    assert (status != 0) == (pip != 0) and "words of pip" in text and message in text
+    assert (source.folder / "build" / "sundials" / "version").exists() == (made == "well")
+    assert (source.folder / "build" / "venv" / "installed-test").exists() == (pip == 0)
+
+
 @pytest.mark.parametrize("solver, is_built", [("<solver method='bdf'/>", True), ('<solver method = "erk" />', True), ("", False)])
 def test_who_waits_for_sundials(solver, is_built, source, ready):
     """Only who simulates a system that needs it."""

@@ -2,7 +2,6 @@
 
 import re
 import struct
-import subprocess
 
 import fmpy
 import numpy as np
@@ -12,7 +11,7 @@ from fmpy.fmi2 import FMU2Slave
 
 import fmu
 from closed_forms import kepler, pendulum_angle, pericentre_velocity
-from fmu import ROOT, archive
+from fmu import archive, build_apart
 from mechanics import System, time
 from references import Motion
 from systems_in_sympy import DEFINITIONS, system
@@ -87,14 +86,11 @@ def test_every_operation(tmp_path):
         f'<force coordinate="q{i}">{own(expression, i)}</force>'
         for i, expression in enumerate(OPERATIONS)
     ]
-    folder = tmp_path / "systems" / "Operations"
-    folder.mkdir(parents=True)
-    (folder / "system.xml").write_text(
+    text = (
         '<system name="Operations"><parameter name="p" start="1.7"/><input name="u" start="0.6"/>'
         + "".join(parts) + '<solver method="taylor" tolerance="1e-12"/></system>'
     )
-    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", f"-DSYSTEMS={folder.parent}"], check=True)
-    unzipped = fmpy.extract(tmp_path / "build" / "fmu" / "Operations.fmu", tmp_path / "unzipped")
+    unzipped = fmpy.extract(build_apart(tmp_path, "Operations", text), tmp_path / "unzipped")
     description = fmpy.read_model_description(unzipped)
     slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier="Operations", instanceName="i")
     slave.instantiate()

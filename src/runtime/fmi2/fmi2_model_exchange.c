@@ -26,7 +26,7 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 }
 
 /* Brings the state back to the constraints. */
-static enum Status keep_constraints(struct Instance *instance, fmi2EventInfo *event) {
+static enum Status project_in_event(struct Instance *instance, fmi2EventInfo *event) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);
@@ -46,7 +46,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
   struct Instance *instance = enter(c, FUNCTION_NEW_DISCRETE_STATES, __func__);
   if (instance == NULL || !check_array(instance, eventInfo, 1, __func__, "eventInfo")) return fmi2Error;
   *eventInfo = (fmi2EventInfo){0};
-  return lagrangian.projection == NULL ? fmi2OK : fmi2_status(keep_constraints(instance, eventInfo));
+  return lagrangian.projection == NULL ? fmi2OK : fmi2_status(project_in_event(instance, eventInfo));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,

@@ -56,7 +56,7 @@ static double size_of(const double *value, const double *state, size_t first) {
 enum Target { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
 
 /* Evaluates what the target lacks. False where M is singular, or something is not finite. */
-static bool evaluate(struct Instance *instance, double time, const double *state, enum Target target) {
+static bool evaluate_lack(struct Instance *instance, double time, const double *state, enum Target target) {
   struct Work work = work_of(instance);
   struct Point point = solver_point(instance, time, state);
   struct Seed seed = {.state = work.moved};
@@ -70,7 +70,7 @@ static bool evaluate(struct Instance *instance, double time, const double *state
          are_finite(work.lack, lagrangian.constraint_count);
 }
 
-static void move(const struct Work *work, double *state, double share) {
+static void move_positions(const struct Work *work, double *state, double share) {
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     state[i] += share * work->change[i];
     work->moved[i] += share * work->change[i];
@@ -79,7 +79,7 @@ static void move(const struct Work *work, double *state, double share) {
 
 static double move_velocities(struct Instance *instance, double time, double *state, enum Target target) {
   size_t n = lagrangian.coordinate_count;
-  if (!evaluate(instance, time, state, target)) return INFINITY;
+  if (!evaluate_lack(instance, time, state, target)) return INFINITY;
   struct Work work = work_of(instance);
   double size = size_of(work.change, state, n);
   for (size_t i = 0; i < n; i++) state[n + i] += work.change[i];
@@ -90,9 +90,9 @@ static double project(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
-    if (!evaluate(instance, time, state, POSITIONS)) return INFINITY;
+    if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;
     double size = size_of(work.change, state, 0);
-    move(&work, state, 1.0);
+    move_positions(&work, state, 1.0);
     if (size > converged) continue;
     double velocities = move_velocities(instance, time, state, VELOCITIES);
     return fmax(size_of(work.moved, state, 0), velocities);
@@ -122,23 +122,23 @@ static size_t find_lacking(const struct Work *work, const double *state, size_t 
 }
 
 /* Moves the coordinates onto the constraints from afar; the one that cannot be fulfilled, constraint_count for none. */
-static size_t approach(struct Instance *instance, double time, double *state, enum Target target) {
+static size_t approach_positions(struct Instance *instance, double time, double *state, enum Target target) {
   struct Work work = work_of(instance);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   double size = INFINITY;
   for (int iteration = 0; iteration < START_LIMIT && size > converged; iteration++) {
-    if (!evaluate(instance, time, state, target)) return 0;
+    if (!evaluate_lack(instance, time, state, target)) return 0;
     size = size_of(work.change, state, 0);
-    move(&work, state, size > largest_move ? largest_move / size : 1.0);
+    move_positions(&work, state, size > largest_move ? largest_move / size : 1.0);
   }
-  if (!evaluate(instance, time, state, target)) return 0;
+  if (!evaluate_lack(instance, time, state, target)) return 0;
   return find_lacking(&work, state, 0);
 }
 
 static size_t approach_velocities(struct Instance *instance, double time, double *state, enum Target target) {
   struct Work work = work_of(instance);
   if (!isfinite(move_velocities(instance, time, state, target))) return 0;
-  if (!evaluate(instance, time, state, target)) return 0;
+  if (!evaluate_lack(instance, time, state, target)) return 0;
   return find_lacking(&work, state, lagrangian.coordinate_count);
 }
 
@@ -206,7 +206,7 @@ static bool make_consistent(struct Instance *instance, bool is_start, const char
   double time = instance->situation->time;
   bool keeps_fixed = is_start && lagrangian.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
-  size_t lacking = approach(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
+  size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "coordinates", function);
   if (is_start) log_redundant(instance, &work);
   lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
@@ -221,7 +221,7 @@ static const char *weakest(struct Instance *instance, double time, const double 
   size_t found = 0;
   double least = INFINITY;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (!evaluate(instance, time, state, POSITIONS)) return NULL;
+  if (!evaluate_lack(instance, time, state, POSITIONS)) return NULL;
   for (size_t j = 0; j < lagrangian.constraint_count; j++) {
     double hold = fabs(work.pivot[j]) / (work.slope[j] * work.slope[j]);
     if (!(hold < least)) continue;

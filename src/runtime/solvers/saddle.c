@@ -7,7 +7,7 @@
 #include "ldlt.h"
 
 /* A pivot of M below this share of its diagonal element has lost all its digits. */
-static const double smallest_pivot = 1e-14;
+static const double smallest_share_of_mass = 1e-14;
 
 /*
  * A constraint with less of its row left than this share, squared, follows from the others: what rounding leaves of one
@@ -37,7 +37,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       m[k] = l;
     }
     bool is_constraint = coordinate[i]<0, has_hold = -pivot> smallest_share * mobility;
-    if (!is_constraint && !(pivot > smallest_pivot * diagonal)) return i + 1;
+    if (!is_constraint && !(pivot > smallest_share_of_mass * diagonal)) return i + 1;
     m[last] = is_constraint && !has_hold ? -INFINITY : pivot;
     if (is_constraint && has_hold) *weakest = fmin(*weakest, -pivot / mobility);
   }
