@@ -90,7 +90,7 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
     const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL, function);
     if (variable == NULL || check_unknown(instance, variable, function) != STATUS_DONE) return STATUS_ERROR;
   }
-  initial_state_along(instance, direction.parameter, direction.state, direction.derivative);
+  initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
   enum Status status = evaluate_prepare(instance);
   struct Point point = evaluate_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);

@@ -23,7 +23,7 @@ void initial_state_follow(struct Instance *instance) {
   }
 }
 
-void initial_state_along(struct Instance *instance, const double *parameter, double *state, double *scratch) {
+void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch) {
   if (lagrangian.initial_state == NULL || !is_before_start(instance)) return;
   struct Point point = evaluate_point(instance);
   lagrangian.initial_state_along(&point, &(struct Seed){.parameter = parameter}, scratch);

@@ -19,7 +19,7 @@ void initial_state_set(struct Instance *instance, size_t state);
 void initial_state_follow(struct Instance *instance);
 
 /* Adds to state[state_count] what those that were not set change by along parameters; scratch[state_count]. */
-void initial_state_along(struct Instance *instance, const double *parameter, double *state, double *scratch);
+void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch);
 
 /* An error that names a state without a finite start value. */
 enum Status initial_state_check(struct Instance *instance, const char *function);
