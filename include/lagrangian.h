@@ -14,6 +14,7 @@
 #include "arithmetic.h"
 #include "series.h"
 #include "series_limit.h"
+#include "variable_type.h"
 
 /* Where the equations are evaluated. */
 struct Point {
@@ -40,7 +41,7 @@ enum VariableKind {
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
   VARIABLE_RESULT,   /* computed when read */
-  VARIABLE_STATISTIC /* Integer; the index is an enum Statistic */
+  VARIABLE_STATISTIC /* the index is an enum Statistic */
 };
 
 enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_HANDOVERS, STATISTIC_COUNT };
@@ -49,12 +50,25 @@ enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, ST
 struct ScalarVariable {
   const char *name;
   enum VariableKind kind;
+  enum VariableType type;
   size_t index;   /* among the variables of its kind */
   bool is_output; /* causality is output */
   double start, minimum, maximum;
-  /* Of a result that is a calculated parameter: the parameters that it follows from, for messages; NULL of all others. */
+  /*
+   * Of a result that is a calculated parameter, and of a state whose start value is an expression: the parameters that
+   * they follow from, for messages; NULL of all others.
+   */
   const char *follows_from;
 };
+
+static inline bool is_calculated_parameter(const struct ScalarVariable *variable) {
+  return variable->kind == VARIABLE_RESULT && variable->follows_from != NULL;
+}
+
+/* A state that starts with what the parameters say unless it is set itself. */
+static inline bool has_following_start(const struct ScalarVariable *variable) {
+  return variable->kind == VARIABLE_STATE && variable->follows_from != NULL;
+}
 
 /* One that may be read in initialization mode, and be differentiated along the knowns. */
 static inline bool is_unknown(const struct ScalarVariable *variable) {
@@ -122,6 +136,12 @@ struct Lagrangian {
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
   int (*prepare)(const double *parameter, double *prepared);
+  /*
+   * Those of state[state_count] whose start values follow from the point's parameters, and their derivatives along the
+   * seed's; other elements are left as they are. NULL where there are none. Without prepared values.
+   */
+  void (*initial_state)(const struct Point *point, double *state);
+  void (*initial_state_along)(const struct Point *point, const struct Seed *seed, double *state);
   /* derivative[state_count] = d state / dt */
   int (*derivatives)(const struct Point *point, double *derivative);
   /* The derivative of derivatives() along seed. */

@@ -138,6 +138,20 @@ static void write_reactions(const struct Page *page) {
       "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
 }
 
+/* Start values that follow from parameters. */
+static void write_starts(const struct Page *page) {
+  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities};
+  size_t count = 0;
+  for (size_t list = 0; list < 2; list++)
+    for (size_t i = 0; i < lists[list]->count; i++) {
+      const struct Variable *state = &lists[list]->items[i];
+      if (!start_follows(page->model, state)) continue;
+      if (count++ == 0) element(page->writer, "h2", "Start values, of what is not set before the simulation");
+      if (count <= SHOWN_LIMIT) write_equation(page, state->name, state->start_expression);
+    }
+  write_rest(page->writer, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
+}
+
 static void write_constraints(const struct Page *page) {
   const struct VariableList *constraints = &page->model->constraints;
   size_t shown = constraints->count < SHOWN_LIMIT ? constraints->count : SHOWN_LIMIT;
@@ -191,8 +205,9 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   };
   const struct ScalarVariable *entry = &variable->entry;
   char start[NUMBER_LENGTH] = "";
-  if (!isnan(entry->start)) number_text(entry->start, start);
-  const char *kind = entry->follows_from != NULL                          ? "calculated parameter"
+  if (entry->type == TYPE_BOOLEAN) snprintf(start, sizeof start, "%s", entry->start == 0.0 ? "false" : "true");
+  else if (!isnan(entry->start)) number_text(entry->start, start);
+  const char *kind = is_calculated_parameter(entry)                       ? "calculated parameter"
                      : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
                                                                           : kinds[entry->kind];
   xmlTextWriterStartElement(writer, BAD_CAST "tr");
@@ -269,6 +284,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
   const struct Page page = {writer, model, equations, interface, summary};
   write_calculated(&page);
   write_definitions(&page);
+  write_starts(&page);
   if (equations->count > 0) write_mechanics(&page);
   write_outputs(&page);
   write_solver(&page);

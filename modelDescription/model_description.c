@@ -118,7 +118,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
       [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
       [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
   };
-  bool is_calculated = entry->follows_from != NULL;
+  bool is_calculated = is_calculated_parameter(entry);
   write_attribute(writer, "causality",
                   entry->is_output ? "output"
                   : is_calculated  ? "calculatedParameter"
@@ -128,7 +128,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
                   : entry->kind == VARIABLE_STATISTIC                ? "discrete"
                                                                      : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
-    write_attribute(writer, "initial", initials[entry->kind]);
+    write_attribute(writer, "initial", has_following_start(entry) ? "approx" : initials[entry->kind]);
 }
 
 static void write_real(xmlTextWriterPtr writer, const struct Interface *interface,
@@ -147,6 +147,21 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   xmlTextWriterEndElement(writer);
 }
 
+/* A statistic has no start value. */
+static void write_integer(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
+  xmlTextWriterStartElement(writer, BAD_CAST "Integer");
+  if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);
+  if (!isnan(entry->maximum)) write_number(writer, "max", entry->maximum);
+  if (!isnan(entry->start)) write_number(writer, "start", entry->start);
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_boolean(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
+  xmlTextWriterStartElement(writer, BAD_CAST "Boolean");
+  write_attribute(writer, "start", entry->start == 0.0 ? "false" : "true");
+  xmlTextWriterEndElement(writer);
+}
+
 static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
   xmlTextWriterStartElement(writer, BAD_CAST "ModelVariables");
   for (size_t i = 0; i < interface->count; i++) {
@@ -156,7 +171,8 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", i);
     if (variable->description != NULL) write_attribute(writer, "description", variable->description);
     write_classification(writer, &variable->entry);
-    if (variable->entry.kind == VARIABLE_STATISTIC) xmlTextWriterWriteElement(writer, BAD_CAST "Integer", NULL);
+    if (variable->entry.type == TYPE_INTEGER) write_integer(writer, &variable->entry);
+    else if (variable->entry.type == TYPE_BOOLEAN) write_boolean(writer, &variable->entry);
     else write_real(writer, interface, variable);
     xmlTextWriterEndElement(writer);
   }

@@ -17,11 +17,14 @@ struct Structure {
 
 /* Symbols that an unknown may depend on. Among initial unknowns, parameters are knowns too. */
 static bool is_known(const struct ScalarVariable *entry, bool initial) {
-  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT ||
+  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_INPUT ||
+         (entry->kind == VARIABLE_STATE && !(initial && has_following_start(entry))) ||
          (initial && entry->kind == VARIABLE_PARAMETER);
 }
 
-static const char *kind_name(enum Dependency dependency, bool initial) {
+/* Factors are of Real variables alone. */
+static const char *kind_name(enum Dependency dependency, enum VariableType type, bool initial) {
+  if (type != TYPE_REAL) return "dependent";
   if (dependency == CONSTANT_FACTOR) return "constant";
   return dependency == TUNABLE_FACTOR && !initial ? "tunable" : "dependent";
 }
@@ -35,7 +38,7 @@ static int compare(const void *first, const void *second) {
 static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
   size_t count = 0;
-  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node);
+  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node, initial);
   for (size_t i = 0; i < dependencies->count; i++) {
     size_t place = structure->place_of[dependencies->symbols[i]];
     if (place > 0 && is_known(&structure->interface->variables[place - 1].entry, initial))
@@ -51,9 +54,10 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
   qsort(structure->places, count, sizeof *structure->places, compare);
   FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
   for (size_t i = 0; i < count; i++) {
-    size_t symbol = graph->vertices[structure->interface->variables[structure->places[i]].node].left;
+    const struct InterfaceVariable *known = &structure->interface->variables[structure->places[i]];
+    enum Dependency dependency = structure->dependencies->of[graph->vertices[known->node].left];
     fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
-    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->dependencies->of[symbol], initial));
+    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(dependency, known->entry.type, initial));
   }
   fclose(places_file);
   fclose(kinds_file);
@@ -88,9 +92,9 @@ static bool is_derivative(const struct ScalarVariable *entry) {
   return entry->kind == VARIABLE_DERIVATIVE;
 }
 
-/* What initialisation computes; states have the initial value that was set. */
+/* What initialisation computes; other states have the initial value that was set. */
 static bool is_computed_initially(const struct ScalarVariable *entry) {
-  return is_unknown(entry) && entry->kind != VARIABLE_STATE;
+  return is_unknown(entry) && (entry->kind != VARIABLE_STATE || has_following_start(entry));
 }
 
 static void write_unknowns(const struct Structure *structure, const char *element,
@@ -109,12 +113,13 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, c
                            const struct Interface *interface) {
   const struct Graph *graph = model->graph;
   struct Structure structure = {.writer = writer, .interface = interface};
-  structure.dependencies = dependencies_create(graph, equations);
+  structure.dependencies = dependencies_create(model, equations);
   structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
   structure.places = allocate(interface->count, sizeof *structure.places);
   for (size_t i = 0; i < interface->count; i++) {
     const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
-    if (vertex->operation == SYMBOL && is_known(&interface->variables[i].entry, true))
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (vertex->operation == SYMBOL && (is_known(entry, false) || is_known(entry, true)))
       structure.place_of[vertex->left] = i + 1;
   }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");

@@ -239,7 +239,33 @@ def inerter_tree():
     return System(x, v, T, sum(k * xi**2 / 2 for xi in x), None, [], [m, b, a, k])
 
 
+def motor():
+    """By Kirchhoff's law of the armature and Newton's of the rotor, without a potential for the magnets."""
+    charge, theta, current, omega, voltage, load = symbols("charge theta current omega voltage load")
+    R, L, k, J, b = symbols("R L k J b")
+    forces = [voltage - R * current - k * omega, k * current - b * omega - load]
+    T = L * current**2 / 2 + J * omega**2 / 2
+    return System([charge, theta], [current, omega], T, sp.Integer(0), forces, [voltage, load], [R, L, k, J, b])
+
+
+def motor_pendulum():
+    theta, omega, voltage, m, l, g, n, c, d = symbols("theta omega voltage m l g n c d")
+    charge, phi, current, nu, R, L, k, J, b = symbols(" ".join(f"motor.{s}" for s in "charge theta current omega R L k J b".split()))
+    shaft = c * (phi / n - theta) + d * (nu / n - omega)
+    T = m * l**2 * omega**2 / 2 + L * current**2 / 2 + J * nu**2 / 2
+    U = m * g * l * (1 - cos(theta)) + c * (phi / n - theta) ** 2 / 2
+    damper = d * (nu / n - omega)
+    assert sp.simplify(shaft - damper + sp.diff(U, theta) - m * g * l * sin(theta)) == 0
+    forces = [damper, voltage - R * current - k * nu, k * current - b * nu - damper / n]
+    return System(
+        [theta, charge, phi], [omega, current, nu], T, U, forces, [voltage], [m, l, g, n, c, d, R, L, k, J, b],
+        {"bob": (l * sin(theta), -l * cos(theta))},
+    )
+
+
 DEFINITIONS = {
+    "Motor": motor,
+    "MotorPendulum": motor_pendulum,
     "ParticleCartesian": particle_cartesian,
     "ParticlePolar": particle_polar,
     "ParticleCylindrical": particle_cylindrical,

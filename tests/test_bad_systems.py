@@ -212,7 +212,7 @@ CASES = [
     ("element of another language", 8, "<lagrangian>-m*g*bob.y</lagrangian>", 8, "<lagrangian> is no element of <system>; write .*<kinetic> and <potential>"),
     ("element that is unknown", 8, "<rope/>", 8, "<rope> is no element of <system>; expected constant, parameter, .* work, solver or experiment"),
     ("element that stands elsewhere", 12, '<for index="i" from="1" to="2"><experiment/></for>', 12,
-     "<experiment> cannot stand in <for>; expected constant, .*, output or for$"),
+     "<experiment> cannot stand in <for>; expected constant, .*, output, for or include$"),
     ("element in an element without content", 7, '<particle name="bob" mass="m" y="l*cos(theta)"><potential>m*g*bob.y</potential></particle>', 7,
      "<potential> stands inside of <particle>; expected the end of <particle> before it"),
     ("element in an expression", 8, "<potential>\n m*g*<b>bob.y</b></potential>", 9, "<b> stands inside of <potential>"),

@@ -153,7 +153,7 @@ def test_input_derivative_orders(order, open_fmu):
 def test_output_derivatives(name, open_fmu):
     """At the end of a step: those of coordinates and velocities are what der(...) says."""
     instance = open_fmu(name).initialize()
-    instance.step(0.1)
+    instance.step(0.01 if name == "Motor" else 0.1)  # later its voltages cancel each other
     states = [state for state in fmu.states_of(name) if state in fmu.names_of(name, "output")]
     derivatives = instance.fmu.getRealOutputDerivatives(instance.vr(*states), [1] * len(states))
     expected = instance.fmu.getReal(instance.vr(*[f"der({state})" for state in states]))

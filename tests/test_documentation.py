@@ -42,7 +42,7 @@ def plain(text):
     """The text in the names that infix() gives."""
     text = re.sub(r"\b([A-Za-z_]+?)\[?(\d+)\]?(?![\w.(\[]|\.\d)", lambda m: m[0] if re.fullmatch("e|E", m[1]) else f"{m[1]}_{m[2]}", text)
     for _ in range(2):  # der(der(zb))
-        text = re.sub(r"der\((\w+)\)", r"der_\1", text)
+        text = re.sub(r"der\(([\w.]+)\)", r"der_\1", text)
     return text.replace("^", "**")
 
 

@@ -43,6 +43,11 @@ def chain(t):
     return {f"x[{i}]": 0.1 * np.sin(np.pi * i / 3) * np.cos(w * t) for i in range(1, 6)}
 
 
+def coupled(t):
+    mean, half = 0.1 * np.cos(np.sqrt(25 / 2) * t), 0.2 * np.cos(np.sqrt(49 / 2) * t)
+    return {"left.x": mean + half, "right.x": mean - half, "distance": -2 * half, "left.m": 2.0}
+
+
 def rocket(t):
     m, u, gain = 100 - 4 * t, 500, np.log(100 / (100 - 4 * t))
     return {"v": u * gain - 9.81 * t, "z": u * t - u * m / 4 * gain - 9.81 * t**2 / 2}
@@ -96,6 +101,9 @@ def block(t):
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
     "Rod": (lambda t: {"theta": pendulum_angle(1, np.sqrt(1.5 * 9.81 / 0.5), t), "J": 0.25 / 3, "w": np.sqrt(1.5 * 9.81 / 0.5)}, 1e-6),
+    "ReleasedPendulum": (lambda t: {"theta": pendulum_angle(np.arccos(0.6), np.sqrt(9.81 / 0.5), t)}, 1e-6),
+    "Scale": (lambda t: {"theta": 5 * 0.02 * t**2 / (2 * (0.09 + 0.08 + 0.04)), "a[2]": 0.2}, 1e-12),
+    "Catapult": (lambda t: {"x": 1 - np.cos(2 * t) if t < np.pi / 4 else 1 + 2 * (t - np.pi / 4)}, 1e-7),
     "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
     "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
@@ -114,6 +122,7 @@ MOTIONS = {
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),
     "MassChain": (chain, 1e-6),
+    "CoupledMasses": (coupled, 1e-6),
     "LimitedGain": (lambda t: {"F": -4.0}, 0.0),
     "StiffDamper": (stiff, 1e-5),
     "LinearPendulum": (lambda t: {"theta": np.pi + (1 - np.pi) * np.cosh(np.sqrt(9.81 / 0.5) * t)}, 1e-8),

@@ -8,9 +8,9 @@ import pytest
 import fmu
 from fmu import BUILD
 
-EXACT = ["ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
+EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["DampedPendulum", "ElasticPendulum", "FourBar", "Rope", "SeatSuspension"]
+AUTO = ["DampedPendulum", "ElasticPendulum", "FourBar", "MotorPendulum", "Rope", "SeatSuspension"]
 LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
 LONG = ["NFourBar", "Rope"]  # systems of many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems

@@ -168,6 +168,27 @@ def test_spherical_pendulum_reference(open_fmu):
     assert phi == pytest.approx(31.622515398049685580, abs=1e-10)
 
 
+def test_motor_starts(open_fmu):
+    """
+    From rest at a constant voltage: L i' = V - R i - k w and J w' = k i - b w - M, of which each is its final value plus two
+    exponentials, by the roots of L J s^2 + (L b + R J) s + R b + k^2.
+    """
+    R, L, k, J, b, V, M = 0.9, 2e-3, 0.04, 3e-5, 1e-4, 9.0, 0.05
+    s = np.roots([L * J, L * b + R * J, R * b + k * k])
+    end = np.array([b * V + k * M, k * V - R * M]) / (R * b + k * k)  # i and w, where nothing changes any more
+    slope = np.array([V / L, -M / J])  # at the start
+    first = (slope + s[1] * end) / (s[0] - s[1])
+    second = -end - first
+    instance = open_fmu("Motor")
+    instance.initialize(dict(R=R, L=L, k=k, J=J, b=b, voltage=V, load=M))
+    for time in (0.0005, 0.004, 0.03, 0.5):
+        instance.step(time - instance.time)
+        exact = np.real(end + first * np.exp(s[0] * time) + second * np.exp(s[1] * time))
+        angle = np.real(end * time + first * np.expm1(s[0] * time) / s[0] + second * np.expm1(s[1] * time) / s[1])
+        np.testing.assert_allclose(instance.get("current", "omega"), exact, rtol=1e-11)
+        np.testing.assert_allclose(instance.get("charge", "theta"), angle, rtol=1e-11)
+
+
 def test_stiff_spring_becomes_a_rod(open_fmu):
     """k -> infinity: the rigid pendulum, up to the stretch m (g cos + l omega^2) / k."""
     instance = open_fmu("ElasticPendulum")
@@ -188,6 +209,8 @@ REFERENCES = {
     "DoublePendulum": dict(theta1=0.8, theta2=-0.4, omega1=0, omega2=1, m1=0.7, m2=1.4, l1=1.2, l2=0.6, g=8),
     "ChainPendulum": {f"theta[{i}]": 0.1 * i for i in range(1, 11)} | dict(m=0.3, l=0.5, g=6),
     "ParticlePolar": dict(r=1.2, theta=0, vr=0.1, omega=0.7, m=0.8, mu=0.9, Fr=0.05, Ftheta=0.02),
+    "MotorPendulum": {"theta": 0.8, "motor.theta": 12.0, "voltage": 3.0, "m": 0.4, "l": 0.35, "g": 8, "n": 15, "c": 30, "d": 0.2,
+                      "motor.R": 0.7, "motor.L": 2e-3, "motor.k": 0.06, "motor.J": 5e-5, "motor.b": 1e-4},
     "BeadOnHoop": dict(theta=0.3, omega=0, m=0.4, R=0.7, W=5, g=9),
     "FurutaPendulum": dict(alpha=0, theta=0.4, tau=0.02),
     "TwoCarts": {"x[1]": 0.3, "theta[2]": 0.9, "u": 0.1, "M": 1.5, "k": 20},

@@ -6,7 +6,8 @@
 enum { ERROR_LIMIT = 100 };
 
 struct Diagnostics {
-  const char *file; /* the file being read, as named by the user */
+  const char *file;   /* the file being read, as named by the user */
+  const char *origin; /* how it comes to be read, for the end of messages; NULL for the user's own */
   int errors;
 };
 

@@ -7,15 +7,17 @@ bool check_array(struct Instance *instance, const void *array, size_t count, con
   return false;
 }
 
-const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, bool integer,
+const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, enum VariableType type,
                                              const char *function) {
+  static const char *const types[] = {
+      [TYPE_REAL] = "a Real", [TYPE_INTEGER] = "an Integer", [TYPE_BOOLEAN] = "a Boolean"};
   if (reference >= lagrangian.variable_count) {
     log_error(instance, "%s: the value reference %u is unknown; expected one below %zu", function, reference,
               lagrangian.variable_count);
     return NULL;
   }
   const struct ScalarVariable *variable = &lagrangian.variables[reference];
-  if ((variable->kind == VARIABLE_STATISTIC) == integer) return variable;
-  log_error(instance, "%s: '%s' is %s variable", function, variable->name, integer ? "a Real" : "an Integer");
+  if (variable->type == type) return variable;
+  log_error(instance, "%s: '%s' is %s variable", function, variable->name, types[variable->type]);
   return NULL;
 }

@@ -8,8 +8,8 @@
 bool check_array(struct Instance *instance, const void *array, size_t count, const char *function,
                  const char *argument);
 
-/* The variable of this value reference, of type Integer or Real; NULL after logging. */
-const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, bool integer,
+/* The variable of this value reference, of this type; NULL after logging. */
+const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, enum VariableType type,
                                              const char *function);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "initial_state.h"
 
 /* A direction and what follows from it; the arrays are parts of instance->work. */
 struct Direction {
@@ -81,14 +82,15 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
                                    const char *function) {
   struct Direction direction = direction_create(instance);
   for (size_t i = 0; i < known_count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, known[i], false, function);
+    const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL, function);
     if (variable == NULL || set_seed(instance, &direction, variable, seed[i], function) != STATUS_DONE)
       return STATUS_ERROR;
   }
   for (size_t i = 0; i < unknown_count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, unknown[i], false, function);
+    const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL, function);
     if (variable == NULL || check_unknown(instance, variable, function) != STATUS_DONE) return STATUS_ERROR;
   }
+  initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
   enum Status status = evaluate_prepare(instance);
   struct Point point = evaluate_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);

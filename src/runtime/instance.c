@@ -2,11 +2,16 @@
 
 #include <string.h>
 
+#include "initial_state.h"
 #include "projection.h"
 #include "solver.h"
 
+static size_t set_count(void) {
+  return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
+}
+
 static size_t value_count(void) {
-  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count;
+  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count + set_count();
 }
 
 size_t situation_size(void) {
@@ -33,6 +38,7 @@ void instance_reset(struct Instance *instance) {
     if (variable->kind == VARIABLE_INPUT) instance->input[variable->index] = variable->start;
     if (variable->kind == VARIABLE_PARAMETER) instance->parameter[variable->index] = variable->start;
   }
+  initial_state_follow(instance);
   instance->situation->changed = 1;
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_early_reading = false;
@@ -55,7 +61,8 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->input = instance->state + lagrangian.state_count;
   instance->parameter = instance->input + lagrangian.input_count;
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
-  instance->saved = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
+  instance->state_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
+  instance->saved = instance->state_was_set + set_count();
   instance->prepared = evaluation;
   instance->point_work = instance->prepared + lagrangian.prepared_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;

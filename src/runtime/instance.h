@@ -32,7 +32,8 @@ struct Span {
 
 /*
  * All that a saved state of the instance holds, in one block of memory without pointers. The values are state, input,
- * parameter, the input derivatives of order 1, then 2, then 3, and what the solver keeps.
+ * parameter, the input derivatives of order 1, then 2, then 3, where start values follow from parameters which states
+ * were set (1, else 0), and what the solver keeps.
  */
 struct Situation {
   int32_t mode; /* enum Mode */
@@ -58,8 +59,8 @@ struct Instance {
   struct Log log;
   enum Kind kind;
   struct Situation *situation;
-  double *state, *input, *parameter, *input_derivatives; /* inside situation->values */
-  void *saved;                                           /* what the solver keeps inside situation->values */
+  double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
+  void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
   bool solver_is_stale;      /* the situation was replaced: what the solver keeps outside of it no longer counts */

@@ -97,7 +97,7 @@ static enum Status read_from_series(struct Instance *instance, const unsigned *r
 
 static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order,
                                            const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
   if (variable == NULL) return STATUS_ERROR;
   if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", function, variable->name);
   if (order >= 1 && order <= lagrangian.output_derivative_order) return STATUS_DONE;

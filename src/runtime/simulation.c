@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "evaluate.h"
+#include "initial_state.h"
 #include "projection.h"
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
@@ -34,6 +35,7 @@ static bool has_accelerations(struct Instance *instance) {
 }
 
 enum Status simulation_start(struct Instance *instance, const char *function) {
+  if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
   bool is_ready = is_prepared(instance);
   if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, true, function))
     return STATUS_ERROR;

@@ -52,6 +52,35 @@ static bool are_counts(const int64_t *statistics) {
   return true;
 }
 
+/* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
+static bool may_lack_state(int32_t mode) {
+  return lagrangian.initial_state != NULL &&
+         (mode == MODE_INSTANTIATED || mode == MODE_INITIALIZATION || mode == MODE_ERROR);
+}
+
+/* Whether each of the numbers is 0 or 1. */
+static bool are_flags(const void *numbers, size_t count) {
+  const char *bytes = numbers;
+  for (size_t i = 0; i < count; i++) {
+    double number;
+    memcpy(&number, bytes + i * sizeof number, sizeof number);
+    if (number != 0.0 && number != 1.0) return false;
+  }
+  return true;
+}
+
+/* Whether the parameters are of their types. */
+static bool have_types(const char *parameters) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    if (variable->kind != VARIABLE_PARAMETER || variable->type == TYPE_REAL) continue;
+    double value;
+    memcpy(&value, parameters + variable->index * sizeof value, sizeof value);
+    if (value != floor(value) || fabs(value) > INT32_MAX + 1.0) return false;
+  }
+  return true;
+}
+
 /*
  * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
  * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
@@ -61,11 +90,13 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
                             fixed->suggested_step, fixed->last_step.start, fixed->last_step.end};
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
+  size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
   return has_mode(fixed->kind, fixed->mode) && are_counts(fixed->statistics) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
-         snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count) &&
-         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) &&
+         (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
+         are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
+         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
          (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
           lagrangian.solver->could_save(fixed, situation + saved));
 }

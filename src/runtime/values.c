@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "initial_state.h"
 
 /*
  * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
@@ -29,7 +30,7 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
                        const char *function) {
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], false, function);
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_REAL, function);
     if (variable == NULL) return STATUS_ERROR;
     tell_early_reading(instance, variable);
     status = worse(status, evaluate_variable(instance, variable, &value[i]));
@@ -37,12 +38,16 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
   return status;
 }
 
-enum Status values_get_statistics(struct Instance *instance, const unsigned *reference, size_t count, int *value,
-                                  const char *function) {
+enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
+                             enum VariableType type, const char *function) {
   for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], true, function);
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
     tell_early_reading(instance, variable);
+    if (variable->kind == VARIABLE_PARAMETER) {
+      value[i] = (int)instance->parameter[variable->index];
+      continue;
+    }
     int64_t statistic = instance->situation->statistics[variable->index];
     value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
   }
@@ -51,11 +56,10 @@ enum Status values_get_statistics(struct Instance *instance, const unsigned *ref
 
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
-  bool before = instance->situation->mode == MODE_INSTANTIATED || instance->situation->mode == MODE_INITIALIZATION;
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return instance->situation->mode != MODE_CONTINUOUS_TIME;
-  case VARIABLE_STATE: return before;
+  case VARIABLE_STATE: return is_before_start(instance);
   default: return false;
   }
 }
@@ -68,16 +72,20 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
                    function, variable->name, variable->follows_from);
 }
 
-static enum Status check_value(struct Instance *instance, unsigned reference, double value, const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
+static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type,
+                               const char *function) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, type, function);
   if (variable == NULL) return STATUS_ERROR;
-  if (variable->follows_from != NULL) return refuse_calculated(instance, variable, function);
+  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable, function);
   if (!is_settable(instance, variable))
     return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
                      instance_mode_name(instance));
   if (!isfinite(value))
     return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
                      value);
+  if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
+    return log_error(instance, "%s: the value for '%s' is %g; expected fmi2True or fmi2False, which are 1 and 0",
+                     function, variable->name, value);
   if (value < variable->minimum || value > variable->maximum)
     return log_error(instance, "%s: %g for '%s' is outside its range from %g to %g", function, value, variable->name,
                      variable->minimum, variable->maximum);
@@ -93,6 +101,7 @@ static void end_polynomial(struct Instance *instance, size_t input) {
 
 static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
+  if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
                                                       : &instance->parameter[variable->index];
@@ -105,14 +114,24 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,
                        const char *function) {
   for (size_t i = 0; i < count; i++)
-    if (check_value(instance, reference[i], value[i], function) != STATUS_DONE) return STATUS_ERROR;
+    if (check_value(instance, reference[i], value[i], TYPE_REAL, function) != STATUS_DONE) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  if (is_before_start(instance)) initial_state_follow(instance);
+  return STATUS_DONE;
+}
+
+enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
+                             enum VariableType type, const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_value(instance, reference[i], value[i], type, function) != STATUS_DONE) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
 }
 
 static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value,
                                           const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, false, function);
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
   if (variable == NULL) return STATUS_ERROR;
   if (variable->kind != VARIABLE_INPUT) return log_error(instance, "%s: '%s' is no input", function, variable->name);
   if (order < 1 || order > INPUT_ORDER)

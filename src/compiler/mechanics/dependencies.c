@@ -10,9 +10,10 @@ struct SymbolList {
   size_t count;
 };
 
-struct Dependencies *dependencies_create(const struct Graph *graph, const struct Equations *equations) {
+struct Dependencies *dependencies_create(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
   struct Dependencies *dependencies = allocate(1, sizeof *dependencies);
-  *dependencies = (struct Dependencies){.graph = graph, .equations = equations};
+  *dependencies = (struct Dependencies){.model = model, .graph = graph, .equations = equations};
   dependencies->of = allocate(graph->symbol_count, sizeof *dependencies->of);
   dependencies->symbols = allocate(graph->symbol_count, sizeof *dependencies->symbols);
   dependencies->symbols_of_block = allocate(equations->inertia->block_count, sizeof *dependencies->symbols_of_block);
@@ -101,7 +102,21 @@ static void follow_acceleration(struct Dependencies *dependencies, size_t coordi
   for (size_t i = 0; i < list->count; i++) note(dependencies, list->numbers[i], DEPENDENT);
 }
 
-void dependencies_find(struct Dependencies *dependencies, Node node) {
+/* What the start values of the states that were found follow from. */
+static void follow_starts(struct Dependencies *dependencies) {
+  const struct Model *model = dependencies->model;
+  size_t found = dependencies->count;
+  for (size_t i = 0; i < found; i++) {
+    size_t number = dependencies->symbols[i];
+    const struct Symbol *symbol = &dependencies->graph->symbols[number];
+    if (symbol->kind != COORDINATE && symbol->kind != VELOCITY) continue;
+    const struct VariableList *list = symbol->kind == COORDINATE ? &model->coordinates : &model->velocities;
+    const struct Variable *state = &list->items[symbol->index];
+    if (start_follows(model, state)) descend(dependencies, state->start_expression, dependencies->of[number]);
+  }
+}
+
+void dependencies_find(struct Dependencies *dependencies, Node node, bool initial) {
   const struct Graph *graph = dependencies->graph;
   clear(dependencies);
   descend(dependencies, node, CONSTANT_FACTOR);
@@ -111,4 +126,5 @@ void dependencies_find(struct Dependencies *dependencies, Node node) {
     if (symbol->kind != ACCELERATION) continue;
     follow_acceleration(dependencies, (size_t)symbol->index, dependencies->of[dependencies->symbols[i]]);
   }
+  if (initial) follow_starts(dependencies);
 }

@@ -9,6 +9,7 @@ enum Dependency { INDEPENDENT, CONSTANT_FACTOR, TUNABLE_FACTOR, DEPENDENT };
 
 /* A workspace that finds the dependencies of one node after the other, each at the cost of what is below it. */
 struct Dependencies {
+  const struct Model *model;
   const struct Graph *graph;
   const struct Equations *equations;
   enum Dependency *of; /* each symbol of the graph */
@@ -17,13 +18,13 @@ struct Dependencies {
   struct SymbolList *symbols_of_block; /* of blocks of M that are solved at run time, where these have been asked for */
 };
 
-struct Dependencies *dependencies_create(const struct Graph *graph, const struct Equations *equations);
+struct Dependencies *dependencies_create(const struct Model *model, const struct Equations *equations);
 void dependencies_free(struct Dependencies *dependencies);
 
 /*
  * Finds the dependencies of node. An acceleration that is solved for at run time depends on all that its block of
- * equations depends on.
+ * equations depends on. initial: also those of the start values that follow from parameters.
  */
-void dependencies_find(struct Dependencies *dependencies, Node node);
+void dependencies_find(struct Dependencies *dependencies, Node node, bool initial);
 
 #endif

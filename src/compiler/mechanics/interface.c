@@ -19,18 +19,31 @@ static struct InterfaceVariable *append(struct Interface *interface, enum Variab
   return variable;
 }
 
-static void append_list(struct Interface *interface, const struct VariableList *list, enum VariableKind kind,
-                        size_t first_index) {
+/* The names of what the node depends on. Free with free(). */
+static char *names_below(const struct Model *model, Node node) {
+  struct SymbolNames names = {0};
+  symbol_names_add(&names, model->graph, &node, 1);
+  char *text = symbol_names_text(&names, model->graph);
+  free(names.symbols);
+  return text;
+}
+
+static void append_list(struct Interface *interface, const struct Model *model, const struct VariableList *list,
+                        enum VariableKind kind, size_t first_index) {
   for (size_t i = 0; i < list->count; i++) {
     const struct Variable *source = &list->items[i];
     struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
     variable->entry.is_output = kind == VARIABLE_STATE || kind == VARIABLE_RESULT;
+    variable->entry.type = source->type;
     variable->entry.start = source->start;
     variable->entry.minimum = source->minimum;
     variable->entry.maximum = source->maximum;
     variable->unit = variable_unit(source);
     variable->nominal = source->nominal;
     variable->node = source->node;
+    if (!start_follows(model, source)) continue;
+    variable->start = source->start_expression;
+    variable->entry.follows_from = names_below(model, source->start_expression);
   }
 }
 
@@ -40,12 +53,9 @@ static void append_calculated(struct Interface *interface, const struct Model *m
     const struct Variable *source = &model->calculated.items[i];
     struct InterfaceVariable *variable =
         append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
-    struct SymbolNames names = {0};
-    symbol_names_add(&names, model->graph, &source->node, 1);
-    variable->entry.follows_from = symbol_names_text(&names, model->graph);
+    variable->entry.follows_from = names_below(model, source->node);
     variable->unit = variable_unit(source);
     variable->node = source->node;
-    free(names.symbols);
   }
 }
 
@@ -123,17 +133,19 @@ static void append_constraint_forces(struct Interface *interface, const struct M
   }
 }
 
+static void append_statistic(struct Interface *interface, enum Statistic statistic, const char *name,
+                             const char *description) {
+  append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
+}
+
 static void append_statistics(struct Interface *interface) {
-  append(interface, VARIABLE_STATISTIC, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
+  append_statistic(interface, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
   if (interface->method->evaluations != NULL)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_DERIVATIVES, "derivativeEvaluations",
-           interface->method->evaluations);
+    append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", interface->method->evaluations);
   if (interface->method->needs_jacobian)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_JACOBIANS, "jacobianEvaluations",
-           "evaluations of the Jacobian matrix");
+    append_statistic(interface, STATISTIC_JACOBIANS, "jacobianEvaluations", "evaluations of the Jacobian matrix");
   if (interface->method->hands_over)
-    append(interface, VARIABLE_STATISTIC, STATISTIC_HANDOVERS, "solverHandovers",
-           "handovers between the methods of the solver");
+    append_statistic(interface, STATISTIC_HANDOVERS, "solverHandovers", "handovers between the methods of the solver");
 }
 
 static bool uses_time(const struct Model *model, const struct Equations *equations) {
@@ -198,8 +210,8 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     time->unit = copy_text("s");
     time->node = model->time;
   }
-  append_list(interface, &model->coordinates, VARIABLE_STATE, 0);
-  append_list(interface, &model->velocities, VARIABLE_STATE, n);
+  append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
+  append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
   struct Variable work = {.name = (char *)"nonConservativeWork",
                           .line = 0,
                           .minimum = NAN,
@@ -209,7 +221,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   const char *problem;
   unit_parse("J", &work.dimension, &problem);
   if (equations->has_work) {
-    append_list(interface, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
+    append_list(interface, model, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
     interface->variables[interface->count - 1].entry.is_output = false;
   }
   for (size_t i = 0; i < n; i++)
@@ -217,9 +229,9 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
   if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
-  append_list(interface, &model->inputs, VARIABLE_INPUT, 0);
-  append_list(interface, &model->parameters, VARIABLE_PARAMETER, 0);
-  append_list(interface, &model->outputs, VARIABLE_RESULT, 0);
+  append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
+  append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_list(interface, model, &model->outputs, VARIABLE_RESULT, 0);
   for (size_t i = 0; i < model->outputs.count; i++)
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;

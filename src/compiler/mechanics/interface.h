@@ -13,6 +13,7 @@ struct InterfaceVariable {
   char *unit, *description;    /* NULL where unknown */
   double nominal;              /* NAN where none was given */
   Node node;                   /* the value; ZERO for statistics */
+  Node start;                  /* of a state whose start value follows from parameters; else ZERO */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */

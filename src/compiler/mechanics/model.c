@@ -5,12 +5,14 @@
 
 #include "memory.h"
 
+void variable_free(struct Variable *variable) {
+  free(variable->name);
+  free(variable->description);
+  free(variable->unit);
+}
+
 static void free_variables(struct VariableList *list) {
-  for (size_t i = 0; i < list->count; i++) {
-    free(list->items[i].name);
-    free(list->items[i].description);
-    free(list->items[i].unit);
-  }
+  for (size_t i = 0; i < list->count; i++) variable_free(&list->items[i]);
   free(list->items);
 }
 
@@ -44,6 +46,10 @@ void model_free(struct Model *model) {
 
 bool is_input_rate(const struct Model *model, size_t input) {
   return input > 0 && model->input_rates[input - 1] == model->inputs.items[input].node;
+}
+
+bool start_follows(const struct Model *model, const struct Variable *variable) {
+  return graph_depends_on(model->graph, variable->start_expression, PARAMETER);
 }
 
 double *start_values(const struct Model *model) {

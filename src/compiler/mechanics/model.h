@@ -5,12 +5,15 @@
 #include "algebra/quantity.h"
 #include "diagnostics.h"
 #include "mechanics/methods.h"
+#include "variable_type.h"
 
 struct Variable {
   char *name, *description;
   char *unit; /* as written, NULL where none was given */
+  enum VariableType type;
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN where none was given */
+  Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
   bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
   long line;
@@ -95,6 +98,12 @@ void model_free(struct Model *model);
 
 /* Whether the input is the time derivative of the one before it. */
 bool is_input_rate(const struct Model *model, size_t input);
+
+/* Frees what a variable that is in no list owns. */
+void variable_free(struct Variable *variable);
+
+/* Whether the start value is an expression of parameters. */
+bool start_follows(const struct Model *model, const struct Variable *variable);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
 double *start_values(const struct Model *model);

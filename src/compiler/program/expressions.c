@@ -97,10 +97,21 @@ static void create_results(struct Expressions *expressions, const Node *seeds) {
   free(outputs.nodes);
 }
 
+static void create_initial(struct Expressions *expressions, const Node *seeds) {
+  const struct Interface *interface = expressions->interface;
+  size_t count = 2 * expressions->equations->count;
+  expressions->initial = allocate(count, sizeof(Node));
+  expressions->initial_along = allocate(count, sizeof(Node));
+  for (size_t i = 0; i < count; i++)
+    expressions->initial[i] = interface->variables[interface_find(interface, VARIABLE_STATE, i)].start;
+  derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
+}
+
 static void create_directional(struct Expressions *expressions) {
   struct Graph *graph = expressions->model->graph;
   Node *seeds = create_seeds(graph);
   create_results(expressions, seeds);
+  create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
@@ -212,6 +223,8 @@ void expressions_free(struct Expressions *expressions) {
   series_plan_free(expressions->output_series);
   jacobian_free(expressions->jacobian);
   free(expressions->along);
+  free(expressions->initial);
+  free(expressions->initial_along);
   free(expressions->corrections.position);
   free(expressions->corrections.velocity);
   free(expressions->corrections.slope);

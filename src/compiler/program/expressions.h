@@ -49,7 +49,8 @@ struct Expressions {
   struct Corrections corrections;       /* NULL without constraints */
   Node power_along;                     /* of the power of the forces */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
-  Node *result, *result_along;          /* one for each result; along is ZERO unless it is an output */
+  Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
+  Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
 };
 
 /* Reports errors where the chosen solver does not fit the system; NULL then. Free with expressions_free(). */

@@ -178,6 +178,27 @@ static struct Routine *linear_routine(const struct LinearSystem *linear, struct 
   return routine;
 }
 
+/* Of the start values that follow, or of their derivatives. Without prepared values, which may not exist. */
+static struct Routine *initial_routine(const struct Program *program, struct Values *values, const Node *nodes) {
+  const struct Interface *interface = program->interface;
+  struct Routine *routine = values_begin(values);
+  size_t count = 2 * program->equations->count;
+  values_compute(values, nodes, count, true);
+  for (size_t i = 0; i < count; i++)
+    if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
+      values_copy(values, target(i), nodes[i]);
+  return routine;
+}
+
+static void create_initial(struct Program *program, struct Values *values) {
+  const struct Expressions *expressions = program->expressions;
+  bool any = false;
+  for (size_t i = 0; i < 2 * program->equations->count; i++) any |= expressions->initial[i] != ZERO;
+  if (!any) return;
+  program->initial = initial_routine(program, values, expressions->initial);
+  program->initial_along = initial_routine(program, values, expressions->initial_along);
+}
+
 static struct Routine *accelerations_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
   append_accelerations(values, program->equations, &program->blocks, true);
@@ -232,7 +253,7 @@ size_t instruction_count(const struct Program *program) {
                  count_of(program->jacobian) + count_of(program->accelerations) +
                  count_of(program->accelerations_along) + count_of(program->correct_positions) +
                  count_of(program->correct_velocities) + count_of(program->start_positions) +
-                 count_of(program->start_velocities);
+                 count_of(program->start_velocities) + count_of(program->initial) + count_of(program->initial_along);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -276,6 +297,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
     program->start_velocities = correct_velocities_routine(program, values, true);
   }
   if (expressions->linear != NULL) program->linear = linear_routine(expressions->linear, values);
+  create_initial(program, values);
   create_results(program, values);
   create_series(program, values);
   values_free(values);
@@ -290,6 +312,8 @@ void program_free(struct Program *program) {
   routine_free(program->directional);
   routine_free(program->jacobian);
   routine_free(program->linear);
+  routine_free(program->initial);
+  routine_free(program->initial_along);
   routine_free(program->accelerations);
   routine_free(program->accelerations_along);
   routine_free(program->correct_positions);

@@ -18,6 +18,7 @@ struct Program {
   struct LoopedBlocks blocks;
   struct Routine *prepare;
   struct Routine *derivatives, *directional;              /* NULL without coordinates */
+  struct Routine *initial, *initial_along;                /* NULL where no start value follows from parameters */
   struct Routine *jacobian, *linear;                      /* NULL unless the solver asks */
   struct Routine *accelerations, *accelerations_along;    /* of all rows of K; NULL without constraints, as are */
   struct Routine *correct_positions, *correct_velocities; /* corrections.h */

@@ -14,22 +14,35 @@ char *attribute(xmlNodePtr node, const char *name) {
   return copy;
 }
 
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  return *text != '\0' && parse_number(reader->scope, text, place, value);
+}
+
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
   char *text = attribute(node, name);
-  if (text == NULL) return false;
-  struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  bool right = *text != '\0' && parse_number(reader->scope, text, place, value);
+  bool right = text != NULL && number_in(reader, node, name, text, value);
   free(text);
   return right;
 }
 
-char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
   struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  char *expanded = parse_name(reader->scope, text, place);
+  char *expanded = parse_name(reader->scope, text, place, parts);
+  char *full_name = expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
+  free(expanded);
   free(text);
-  return expanded;
+  return full_name;
+}
+
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, false);
+}
+
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, true);
 }
 
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
@@ -86,10 +99,10 @@ struct Dimension unit_of(const char *text) {
   return dimension;
 }
 
-struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node) {
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Dimension dimension = dimension_unknown;
   const char *problem;
-  char *text = attribute(node, "unit");
+  char *text = attribute(node, name);
   if (text != NULL && !unit_parse(text, &dimension, &problem)) {
     char *remedy = unit_remedy(text);
     report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,

@@ -15,12 +15,16 @@ struct Dissipation {
   long line;
 };
 
+struct Source;
+
 struct Reader {
   struct Model *model;
   struct Scope *scope;
   struct Definitions *definitions;
-  size_t named_bodies;  /* bodies whose components are among the definitions */
-  struct Names *bodies; /* name -> size_t, its place among the model's */
+  size_t started_coordinates; /* those whose start values were read */
+  struct Names *bodies;       /* name -> struct NamedBody */
+  struct Source *source;      /* the file being read */
+  struct Includes *includes;  /* all files that are included */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;
@@ -52,8 +56,17 @@ char *attribute(xmlNodePtr node, const char *name);
 /* True and *value set where the attribute is present and right; reports an error where it is not right. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
 
-/* The name in an attribute, its index worked out; NULL where missing or after an error. Free with free(). */
+/* The same of a text from the node that the attribute's name stands for in messages. */
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value);
+
+/*
+ * The full name in an attribute, its index worked out, of what the element declares; NULL where missing or after an
+ * error. Free with free().
+ */
 char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* The same of what is declared elsewhere, perhaps in an included file. */
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* An expression in an attribute; true where present. kinds as in struct Place. */
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
@@ -68,8 +81,8 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);
 
-/* The element's unit; unknown where missing or after an error. */
-struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node);
+/* The unit in an attribute of the element; unknown where missing or after an error. */
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,

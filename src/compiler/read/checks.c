@@ -8,7 +8,7 @@
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
-  if (coordinates == 0 && model->outputs.count == 0)
+  if (coordinates == 0 && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
   if (coordinates == 0 &&
       (model->body_count > 0 || model->displacements.count > 0 || model->kinetic.node != ZERO || model->has_forces))
@@ -42,7 +42,8 @@ static void warn_without_unit(const struct Reader *reader) {
                                               &model->displacements};
   for (size_t list = 0; reader->scope->checks_units && list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
-      if (lists[list]->items[i].unit == NULL && !(lists[list] == &model->inputs && is_input_rate(model, i)))
+      if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL &&
+          !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that the units of what it stands in are not checked; expected one, or "
                        "unit=\"1\"",

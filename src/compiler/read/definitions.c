@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "memory.h"
-#include "read/named_expressions.h"
 
 /* The value of an index around a definition, and those further out. */
 struct Loop {
@@ -18,8 +17,7 @@ enum DefinitionState { UNREAD, ACTIVE, READ };
 
 struct Definition {
   char *name;
-  xmlNodePtr node;
-  const char *attribute;
+  struct NamedExpression expression;
   const struct Loop *loop;
   enum DefinitionState state;
 };
@@ -64,7 +62,7 @@ void definitions_leave(struct Definitions *definitions) {
   definitions->present = definitions->present->outer;
 }
 
-void definitions_add(struct Definitions *definitions, char *name, xmlNodePtr node, const char *attribute) {
+void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression) {
   definitions->items =
       make_room(definitions->items, definitions->count, &definitions->capacity, sizeof *definitions->items);
   if (names_find(definitions->numbers, name) == NULL) {
@@ -72,7 +70,7 @@ void definitions_add(struct Definitions *definitions, char *name, xmlNodePtr nod
     *number = definitions->count;
     names_set(definitions->numbers, name, number);
   }
-  definitions->items[definitions->count++] = (struct Definition){name, node, attribute, definitions->present, UNREAD};
+  definitions->items[definitions->count++] = (struct Definition){name, *expression, definitions->present, UNREAD};
 }
 
 static void push(struct Definitions *definitions, size_t number) {
@@ -118,9 +116,12 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
     if (inside && definition->state == ACTIVE) fprintf(file, "%s -> ", definition->name);
   }
   fclose(file);
-  report_error(reader->diagnostics, xmlGetLineNo(definitions->items[closing].node),
+  const struct NamedExpression *expression = &definitions->items[closing].expression;
+  struct Source *present = source_enter(reader, expression->source);
+  report_error(reader->diagnostics, xmlGetLineNo(expression->node),
                "definitions need each other in a circle: %s%s; expected one of them without the next", text,
                definitions->items[closing].name);
+  source_enter(reader, present);
   free(text);
 }
 
@@ -139,7 +140,7 @@ static void wait(struct Definitions *definitions, struct Reader *reader, size_t 
     struct Definition *definition = &definitions->items[stack[i]];
     struct Quantity nothing = {.node = ZERO};
     if (definition->state == ACTIVE)
-      scope_define(reader->scope, definition->name, nothing, xmlGetLineNo(definition->node));
+      scope_define(reader->scope, definition->name, nothing, xmlGetLineNo(definition->expression.node));
     if (definition->state == ACTIVE) definition->state = READ;
   }
 }
@@ -156,15 +157,18 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     size_t requirement_count = requirements->count;
     definitions->waiting = 0;
     bind(reader->scope, definition->loop, false);
-    struct Quantity value = read_named_expression(reader, definition->node, definition->attribute);
+    struct Quantity value = read_named_expression(reader, &definition->expression);
     bind(reader->scope, definition->loop, true);
     if (definitions->waiting > 0) {
       requirements->count = requirement_count;
       definitions->waiting = 0;
       wait(definitions, reader, top);
     } else {
-      bool is_new = scope_define(reader->scope, definition->name, value, xmlGetLineNo(definition->node));
-      if (is_new) keep_named_expression(reader, definition->node, definition->name, value);
+      xmlNodePtr node = definition->expression.node;
+      struct Source *present = source_enter(reader, definition->expression.source);
+      bool is_new = scope_define(reader->scope, definition->name, value, xmlGetLineNo(node));
+      if (is_new) keep_named_expression(reader, node, definition->name, value);
+      source_enter(reader, present);
       definition->state = READ;
     }
   }

@@ -5,7 +5,7 @@
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
-#include "read/attributes.h"
+#include "read/named_expressions.h"
 
 struct Definitions *definitions_create(void);
 void definitions_free(struct Definitions *definitions);
@@ -14,11 +14,8 @@ void definitions_free(struct Definitions *definitions);
 void definitions_enter(struct Definitions *definitions, const char *index, double value);
 void definitions_leave(struct Definitions *definitions);
 
-/*
- * Collects an expression under its name, which is taken over: that of the attribute, or the text of the node for NULL, as
- * it is for the present indices.
- */
-void definitions_add(struct Definitions *definitions, char *name, xmlNodePtr node, const char *attribute);
+/* Collects an expression under its name, which is taken over, as it is for the present indices. */
+void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression);
 
 /* Reads all expressions and makes their names known; names those that need each other in a circle. */
 void definitions_resolve(struct Definitions *definitions, struct Reader *reader);

@@ -8,9 +8,13 @@
 #include "algebra/rational.h"
 #include "mechanics/energies.h"
 #include "memory.h"
+#include "read/includes.h"
 #include "read/named_expressions.h"
 #include "algebra/simplify.h"
+#include "read/parameters.h"
 #include "read/similar.h"
+#include "read/start_expressions.h"
+#include "read/tables.h"
 
 static const char *const axes[3] = {"x", "y", "z"};
 
@@ -20,11 +24,11 @@ struct Variable *append_variable(struct VariableList *list, struct Variable vari
   return &list->items[list->count++];
 }
 
-static struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
+struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = {.name = name_attribute(reader, node, "name"),
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
-                              .dimension = unit_attribute(reader, node),
+                              .dimension = unit_attribute(reader, node, "unit"),
                               .start = NAN,
                               .minimum = NAN,
                               .maximum = NAN,
@@ -34,7 +38,7 @@ static struct Variable common_attributes(struct Reader *reader, xmlNodePtr node)
   return variable;
 }
 
-static void check_range(struct Reader *reader, const struct Variable *variable) {
+void check_range(struct Reader *reader, const struct Variable *variable) {
   if (variable->minimum > variable->maximum)
     report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
                  variable->minimum, variable->maximum);
@@ -44,9 +48,10 @@ static void check_range(struct Reader *reader, const struct Variable *variable) 
 }
 
 static void read_constant(struct Reader *reader, xmlNodePtr node) {
-  char *name = attribute(node, "name");
+  char *name = name_attribute(reader, node, "name");
   double value = 0;
-  bool right = name != NULL && number_attribute(reader, node, "value", &value);
+  const struct Given *given = given_for(reader, node, name);
+  bool right = name != NULL && given_number_attribute(reader, node, given, "value", &value);
   struct Place place = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
@@ -59,28 +64,6 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
       .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
   if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
   free(name);
-}
-
-static void check_calculated(const struct Reader *reader, xmlNodePtr node) {
-  static const char *const others[] = {"start", "min", "max"};
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "a <parameter> with a value and a %s; expected value=\"...\" alone for one that follows from "
-                   "others, or start=\"...\" for one that is set",
-                   others[i]);
-}
-
-static const struct Variable *read_quantity(struct Reader *reader, xmlNodePtr node, struct VariableList *list,
-                                            enum SymbolKind kind) {
-  struct Variable variable = common_attributes(reader, node);
-  variable.start = 0.0;
-  number_attribute(reader, node, "start", &variable.start);
-  number_attribute(reader, node, "min", &variable.minimum);
-  number_attribute(reader, node, "max", &variable.maximum);
-  check_range(reader, &variable);
-  variable.node = scope_symbol(reader->scope, kind, (int)list->count, variable.name, variable.dimension, variable.line);
-  return append_variable(list, variable);
 }
 
 static Node append_input_rate(struct Reader *reader) {
@@ -98,32 +81,6 @@ static Node append_input_rate(struct Reader *reader) {
   scope_set_time_derivative(reader->scope, of->node, rate.node);
   append_variable(inputs, rate);
   return rate.node;
-}
-
-/* An input, and those that are its time derivatives. */
-static void read_input(struct Reader *reader, xmlNodePtr node) {
-  struct Model *model = reader->model;
-  double derivatives = 0;
-  read_quantity(reader, node, &model->inputs, INPUT);
-  if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
-                 derivatives);
-  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
-  size_t index = model->inputs.count - 1;
-  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
-  if (derivatives >= 2) model->input_rates[index] = ZERO;
-}
-
-static void read_parameter(struct Reader *reader, xmlNodePtr node) {
-  if (is_calculated(node)) {
-    check_calculated(reader, node);
-    return;
-  }
-  read_quantity(reader, node, &reader->model->parameters, PARAMETER);
-  if (xmlHasProp(node, (const xmlChar *)"start") == NULL)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<parameter> needs the attribute 'start'; expected start=\"...\", or value=\"...\" for one that "
-                 "follows from others");
 }
 
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -145,10 +102,9 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
                               .maximum = NAN,
                               .line = position.line};
   if (velocity.name == NULL) velocity.name = copy_text("?");
+  given_for(reader, node, position.name); /* is there, and read with the start values */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
-  position.start = velocity.start = 0.0;
-  number_attribute(reader, node, "start", &position.start);
-  number_attribute(reader, node, "velocityStart", &velocity.start);
+  position.start = velocity.start = 0.0; /* see start_expressions.h */
   char *fixed = attribute(node, "fixed");
   position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
   free(fixed);
@@ -157,6 +113,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   int index = (int)model->coordinates.count;
   position.node = scope_symbol(reader->scope, COORDINATE, index, position.name, position.dimension, position.line);
   velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
+  position.line = velocity.line = scope_line(reader->scope, position.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
   model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
@@ -194,18 +151,26 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   model->driven |= graph_depends_on(graph, position, TIME);
 }
 
+/* Where the body of a name is: its place among the model's, and the line of its own file. */
+struct NamedBody {
+  size_t place;
+  long line;
+};
+
 static const struct Body *find_body(const struct Reader *reader, const char *name) {
-  const size_t *place = names_find(reader->bodies, name);
-  return place != NULL ? &reader->model->bodies[*place] : NULL;
+  const struct NamedBody *named = names_find(reader->bodies, name);
+  return named != NULL ? &reader->model->bodies[named->place] : NULL;
 }
 
 /* Of several bodies of one name, which is reported, the first keeps it. */
 static void append_body(struct Reader *reader, struct Body body) {
   struct Model *model = reader->model;
-  size_t *place = allocate(1, sizeof *place);
-  *place = model->body_count;
-  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, place);
-  else free(place);
+  struct NamedBody *named = allocate(1, sizeof *named);
+  *named = (struct NamedBody){model->body_count, body.line};
+  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
+  else free(named);
+  body.line = scope_line(reader->scope, body.line);
+  reader->source->body_count++;
   model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
@@ -270,12 +235,12 @@ static void require_accelerations(const struct Reader *reader, const struct Body
 static void read_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
-  if (body.name == NULL) body.name = format_text("body%zu", model->body_count + 1);
+  if (body.name == NULL) body.name = format_text("%sbody%zu", reader->source->prefix, reader->source->body_count + 1);
   const struct Body *other = find_body(reader, body.name);
   if (other != NULL)
     report_error(reader->diagnostics, body.line,
                  "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
-                 other->line);
+                 ((struct NamedBody *)names_find(reader->bodies, body.name))->line);
   expression_attribute(reader, node, "mass", IN_INERTIA, &body.mass);
   require_fixed(reader, body.line, "mass", body.mass, "m", "v");
   require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
@@ -436,7 +401,7 @@ static bool is_blank(xmlNodePtr node) {
 }
 
 static void read_force(struct Reader *reader, xmlNodePtr node) {
-  char *coordinate = name_attribute(reader, node, "coordinate"), *on = name_attribute(reader, node, "on");
+  char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
   reader->model->has_forces = true;
   bool has_components = false;
   for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
@@ -462,6 +427,7 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
   free(what);
+  output.line = scope_line(reader->scope, output.line);
   append_variable(&reader->model->outputs, output);
 }
 
@@ -500,6 +466,41 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
                  start);
 }
 
+/* Further inputs that are the time derivatives of the last one. */
+static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  double derivatives = 0;
+  if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
+                 derivatives);
+  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
+  size_t index = model->inputs.count - 1;
+  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
+  if (derivatives >= 2) model->input_rates[index] = ZERO;
+}
+
+static void read_input(struct Reader *reader, xmlNodePtr node) {
+  struct VariableList *list = &reader->model->inputs;
+  struct Variable variable = common_attributes(reader, node);
+  const struct Given *given = given_for(reader, node, variable.name);
+  if (is_given(given, "value")) { /* an expression like a definition */
+    check_calculated(reader, given, node);
+    variable_free(&variable);
+    return;
+  }
+  variable.start = 0.0;
+  given_number_attribute(reader, node, given, "start", &variable.start);
+  given_number_attribute(reader, node, given, "min", &variable.minimum);
+  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  check_range(reader, &variable);
+  variable.node =
+      scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
+  append_variable(list, variable);
+  read_input_rates(reader, node);
+}
+
+/* Solver, experiment and work are the system's own. */
 static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
   struct Model *model = reader->model;
   if (strcmp(element, "constant") == 0) read_constant(reader, node);
@@ -507,7 +508,9 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
+  else if (strcmp(element, "table") == 0) read_table(reader, node);
   else if (strcmp(element, "constraint") == 0) append_variable(&model->constraints, common_attributes(reader, node));
+  else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
   else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
@@ -522,7 +525,7 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
   size_t count = reader->dissipation_count++;
   reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
-  reader->dissipations[count] = (struct Dissipation){dissipation, xmlGetLineNo(node)};
+  reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
   model->has_forces = true;
 }
 
@@ -585,5 +588,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   if (pass == DECLARATIONS) read_declaration(reader, node, element);
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
   else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_start_expressions(reader, node);
   else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
 }

@@ -36,6 +36,10 @@ static const struct Hint of_text[] = {
 };
 
 static const struct Hint of_functions[] = {
+    {"interp", "; write <table name=\"f\"> and f(x)"},
+    {"interpolate", "; write <table name=\"f\"> and f(x)"},
+    {"lookup", "; write <table name=\"f\"> and f(x)"},
+    {"table", "; write <table name=\"f\"> and f(x)"},
     {"ln", "; write log for the natural logarithm"},
     {"log10", "; write log(x)/log(10)"},
     {"log2", "; write log(x)/log(2)"},
@@ -66,8 +70,8 @@ static const struct Hint of_names[] = {
     {"INF", "; a value must be a finite number, and a limit that is not there is left out"},
     {"infinity", "; a value must be a finite number, and a limit that is not there is left out"},
     {"Infinity", "; a value must be a finite number, and a limit that is not there is left out"},
-    {"true", "; write 1 or 0"},
-    {"false", "; write 1 or 0"},
+    {"true", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
+    {"false", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
 };
 
 static const struct Hint of_elements[] = {
@@ -83,6 +87,14 @@ static const struct Hint of_elements[] = {
     {"mass", "write <particle mass=\"m\" x=\"...\"/>, or <body> with an inertia and an angle"},
     {"torque", "write <force coordinate=\"...\">...</force>"},
     {"variable", "write <parameter>, <input>, <coordinate>, <define> or <output>"},
+    {"import", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"system", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"subsystem", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"component", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"lookup", "write <table name=\"...\">, whose name is a function in expressions"},
+    {"curve", "write <table name=\"...\">, whose name is a function in expressions"},
+    {"array", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
+    {"vector", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
     {"state", "write <coordinate>, whose velocity is a state too"},
 };
 

@@ -78,7 +78,7 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
     if (strcmp((const char *)node->name, "solver") == 0) read_solver(&reader, node);
     else if (strcmp((const char *)node->name, "experiment") == 0) read_experiment(&reader, node);
     else {
-      char *name = name_attribute(&reader, node, "name"), *value = attribute(node, "value");
+      char *name = reference_attribute(&reader, node, "name"), *value = attribute(node, "value");
       if (name != NULL && value != NULL) set_point(model, scope, name, value, xmlGetLineNo(node), diagnostics);
       free(name);
       free(value);

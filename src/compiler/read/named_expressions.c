@@ -7,14 +7,26 @@
 #include "read/definitions.h"
 #include "read/elements.h"
 
-bool is_calculated(xmlNodePtr node) {
-  return xmlStrEqual(node->name, (const xmlChar *)"parameter") && xmlHasProp(node, (const xmlChar *)"value") != NULL;
+static bool is_element(xmlNodePtr node, const char *name) {
+  return xmlStrEqual(node->name, (const xmlChar *)name);
 }
 
-/* The value of a definition or a calculated parameter, in its unit where it gives one. */
-static struct Quantity in_own_unit(struct Reader *reader, xmlNodePtr node, const char *what, struct Quantity value) {
-  struct Dimension unit = unit_attribute(reader, node);
-  require_unit(reader, xmlGetLineNo(node), what, value, unit);
+bool has_value(xmlNodePtr node, const struct Given *given) {
+  if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
+  return is_given(given, "value") || (!is_given(given, "start") && xmlHasProp(node, (const xmlChar *)"value") != NULL);
+}
+
+/* The value of a definition, parameter or input, in its unit where it gives one. */
+static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpression *expression,
+                                   struct Quantity value) {
+  xmlNodePtr node = expression->node, where = expression->given != NULL ? expression->given->node : node;
+  const char *what = expression->attribute == NULL   ? "the definition"
+                     : is_element(node, "parameter") ? "the value of the parameter"
+                                                     : "the value of the input";
+  struct Source *present = source_enter(reader, expression->source);
+  struct Dimension unit = unit_attribute(reader, node, "unit");
+  source_enter(reader, present);
+  require_unit(reader, xmlGetLineNo(where), what, value, unit);
   if (unit.known) value.dimension = unit;
   value.literal = value.literal && !unit.known;
   return value;
@@ -29,46 +41,63 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   return value;
 }
 
-struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *name) {
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression) {
   struct Quantity value = {.node = ZERO};
-  if (name == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
-  else if (is_calculated(node)) expression_attribute(reader, node, name, IN_MASS, &value);
-  else return read_component(reader, node, name);
-  if (definitions_are_waiting(reader->definitions)) return value;
-  return in_own_unit(reader, node, name == NULL ? "the definition" : "the value of the parameter", value);
+  xmlNodePtr node = expression->node;
+  const struct Given *given = expression->given;
+  bool is_parameter = is_element(node, "parameter"), is_input = is_element(node, "input");
+  struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
+  if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  else if (is_parameter || is_input)
+    expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
+                         is_parameter ? IN_MASS : IN_OUTPUT, &value);
+  else value = read_component(reader, node, expression->attribute);
+  if (!definitions_are_waiting(reader->definitions) && (expression->attribute == NULL || is_parameter || is_input))
+    value = in_own_unit(reader, expression, value);
+  source_enter(reader, present);
+  return value;
 }
 
 void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value) {
-  bool is_definition = xmlStrEqual(node->name, (const xmlChar *)"define");
-  if (!is_definition && !is_calculated(node)) return;
+  bool is_parameter = is_element(node, "parameter");
+  if (!is_parameter && !is_element(node, "define") && !is_element(node, "input")) return;
   struct Variable variable = {.name = copy_text(name),
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
                               .dimension = value.dimension,
                               .node = without_displacements(reader, xmlGetLineNo(node), "the definition", value.node)};
-  append_variable(is_definition ? &reader->model->definitions : &reader->model->calculated, variable);
+  append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);
 }
 
 /* Of several bodies of one name, which is reported later, the first one has the components. */
 static void collect_components(struct Reader *reader, xmlNodePtr node) {
   static const char *const components[] = {"x", "y", "z", "angle"};
   char *body = name_attribute(reader, node, "name");
-  reader->named_bodies++;
-  if (body == NULL) body = format_text("body%zu", reader->named_bodies);
+  size_t number = ++reader->source->named_bodies;
+  if (body == NULL) body = format_text("%sbody%zu", reader->source->prefix, number);
   for (size_t i = 0; i < sizeof components / sizeof *components; i++)
     if (xmlHasProp(node, (const xmlChar *)components[i]))
-      definitions_add(reader->definitions, format_text("%s.%s", body, components[i]), node, components[i]);
+      definitions_add(reader->definitions, format_text("%s.%s", body, components[i]),
+                      &(struct NamedExpression){node, components[i], reader->source, NULL});
   free(body);
 }
 
 void collect_named_expressions(struct Reader *reader, xmlNodePtr node) {
   const char *element = (const char *)node->name;
   if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) collect_components(reader, node);
-  if (strcmp(element, "define") != 0 && !is_calculated(node)) return;
+  bool is_definition = is_element(node, "define");
+  if (!is_definition && !is_element(node, "parameter") && !is_element(node, "input")) return;
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
+  const struct Given *given = is_definition ? NULL : given_for(reader, node, name);
+  if (!is_definition && !has_value(node, given)) {
+    free(name);
+    return;
+  }
   if (scope_find(reader->scope, name) == NULL) {
-    definitions_add(reader->definitions, name, node, is_calculated(node) ? "value" : NULL);
+    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source,
+                                         is_given(given, "value") ? given : NULL};
+    definitions_add(reader->definitions, name, &expression);
     return;
   }
   scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */

@@ -2,18 +2,28 @@
 #ifndef NAMED_EXPRESSIONS_H
 #define NAMED_EXPRESSIONS_H
 
-#include "read/attributes.h"
+#include "read/includes.h"
 
-/* Whether this is a <parameter> with a value, which follows from others, in place of a start. */
-bool is_calculated(xmlNodePtr node);
+/* An expression and the element whose name it has. */
+struct NamedExpression {
+  xmlNodePtr node;
+  const char *attribute;     /* that holds the expression; NULL for the text */
+  struct Source *source;     /* in which the element stands */
+  const struct Given *given; /* where an <include> gives the expression; else NULL */
+};
+
+/* Whether a <parameter> or <input> has a value, its own or a given one, in place of a start. */
+bool has_value(xmlNodePtr node, const struct Given *given);
 
 /* Collects the named expressions of an element, if it has any. */
 void collect_named_expressions(struct Reader *reader, xmlNodePtr node);
 
-/* The value of a <define>, or of a component of a particle or body or a <parameter>, for NULL or the attribute's name. */
-struct Quantity read_named_expression(struct Reader *reader, xmlNodePtr node, const char *attribute);
+/* Its value. */
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression);
 
-/* Enters the value of a <define> or a <parameter> into the model, under its name; bodies enter their components. */
+/*
+ * Enters the value of a <define>, <parameter> or <input> into the model, under its name; bodies enter their components.
+ */
 void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value);
 
 #endif

@@ -11,6 +11,7 @@
 #include "algebra/simplify.h"
 #include "read/hints.h"
 #include "read/quantities.h"
+#include "read/tables.h"
 #include "read/unknown_names.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
@@ -128,8 +129,8 @@ static char *read_identifier(struct Parser *parser) {
   return identifier;
 }
 
-/* The rest of a name after its identifier: an index, a component. Takes and returns an allocated string. */
-static char *read_name_suffix(struct Parser *parser, char *name) {
+/* The index after an identifier, if there is one. Takes and returns an allocated string. */
+static char *read_index(struct Parser *parser, char *name) {
   if (*parser->next == '[') {
     parser->next++;
     long index = parse_whole(parser, "the index in brackets");
@@ -140,12 +141,19 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
     free(name);
     name = indexed;
   }
-  if (*parser->next == '.' && isalpha((unsigned char)parser->next[1])) {
+  return name;
+}
+
+/* The rest of a name after its first identifier. Takes and returns an allocated string. */
+static char *read_name_suffix(struct Parser *parser, char *name) {
+  name = read_index(parser, name);
+  while (!parser->failed && *parser->next == '.' &&
+         (isalpha((unsigned char)parser->next[1]) || parser->next[1] == '_')) {
     parser->next++;
-    char *component = read_identifier(parser), *whole = format_text("%s.%s", name, component);
-    free(component);
+    char *part = read_identifier(parser), *whole = format_text("%s.%s", name, part);
+    free(part);
     free(name);
-    name = whole;
+    name = read_index(parser, whole);
   }
   return name;
 }
@@ -186,8 +194,11 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
 }
 
 static struct Quantity look_up(struct Parser *parser, const char *name) {
-  const struct Quantity *quantity = scope_find(parser->scope, name);
-  if (quantity == NULL && definitions_wait_for(parser->scope->definitions, name)) return nothing;
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Quantity *quantity = scope_find(parser->scope, full_name);
+  bool waits = quantity == NULL && definitions_wait_for(parser->scope->definitions, full_name);
+  free(full_name);
+  if (waits) return nothing;
   if (quantity == NULL) {
     report_unknown_name(parser, name);
     return nothing;
@@ -221,7 +232,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
     FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
          parser->place.what, found(parser, buffer));
-  char *index = read_identifier(parser);
+  char *index_name = read_identifier(parser), *index = scope_full_name(parser->scope, index_name);
   expect(parser, ',', "after the index of sum(index, first, last, expression)");
   const char *bounds = parser->next;
   long first = parse_whole(parser, "the first index of sum(...)");
@@ -232,7 +243,8 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
          first, last);
   expect(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, index);
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
+         index_name);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
   if (first > last) skip_to_end(parser);
@@ -244,6 +256,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     total = quantity_add(parser, total, parse_sum(parser));
   }
   scope_remove(parser->scope, index);
+  free(index_name);
   free(index);
   expect(parser, ')', "at the end of sum(...)");
   return total;
@@ -272,7 +285,23 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
 }
 
+static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
+  struct Quantity argument = parse_sum(parser);
+  expect(parser, ')', "after the argument of a table");
+  return parser->failed ? nothing : table_at(parser, table, name, argument);
+}
+
+/* The table of a name as the file calls it; NULL where there is none. */
+static const struct Table *find_table(const struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Table *table = table_named(parser->scope, full_name);
+  free(full_name);
+  return table;
+}
+
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
+  const struct Table *table = find_table(parser, name);
+  if (table != NULL) return parse_table(parser, table, name);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
   bool is_root = strcmp(name, "sqrt") == 0;
@@ -330,6 +359,9 @@ static struct Quantity parse_primary(struct Parser *parser) {
   if (!call) {
     parser->next = end; /* an error about the name is on its line */
     name = read_name_suffix(parser, name);
+    end = parser->next;
+    call = !parser->failed && find_table(parser, name) != NULL && accept(parser, '(');
+    if (!call) parser->next = end;
   }
   struct Quantity value = nothing;
   if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);
@@ -418,12 +450,13 @@ bool parse_number(struct Scope *scope, const char *text, struct Place place, dou
   return true;
 }
 
-char *parse_name(struct Scope *scope, const char *text, struct Place place) {
+char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts) {
   struct Parser parser = parser_of(scope, text, place);
   char *name = NULL;
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
-  if (name == NULL || *parser.next != '\0' || strchr(name, '.') != NULL)
-    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]", place.what, text);
+  if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
+    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]%s", place.what, text,
+         parts ? ", also of what is included, as in motor.theta" : "");
   if (!parser.failed) return name;
   free(name);
   return NULL;

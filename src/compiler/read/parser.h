@@ -21,15 +21,19 @@ struct Place {
  *   power    = primary [ "^" sign ]
  *   primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
  *            | "sum" "(" index "," first "," last "," sum ")" | "der" "(" sum ")"
- *   name     = identifier [ "[" index expression "]" ] [ "." identifier ]
+ *   name     = part { "." part }
+ *   part     = identifier [ "[" index expression "]" ]
  */
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
 
 /* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
 
-/* Replaces the index in a name by its value: theta[i+1] to theta[3]. Returns NULL after reporting an error. */
-char *parse_name(struct Scope *scope, const char *text, struct Place place);
+/*
+ * Replaces the indices in a name by their values: theta[i+1] to theta[3]. parts: whether it may have several, as in
+ * motor.theta. Returns NULL after reporting an error.
+ */
+char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);
 
 /* Makes the names of the language itself known: pi and the functions. */
 void define_language(struct Scope *scope);

@@ -67,6 +67,10 @@ struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct
   return result;
 }
 
+static long line_after_reading(struct Parser *parser) {
+  return scope_line(parser->scope, current_line(parser));
+}
+
 /* A power or root of numbers that has a finite value, or of what may have one. */
 static void check_power(struct Parser *parser, Node base, Node exponent) {
   const struct Graph *graph = parser->graph;
@@ -81,7 +85,7 @@ static void check_power(struct Parser *parser, Node base, Node exponent) {
     FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
   require_finite(parser, "a power");
   if (!exponent_given || n != floor(n))
-    require_domain(&parser->scope->requirements, graph, POWER, base, current_line(parser));
+    require_domain(&parser->scope->requirements, graph, POWER, base, line_after_reading(parser));
 }
 
 struct Quantity quantity_power(struct Parser *parser, struct Quantity base, struct Quantity exponent) {
@@ -101,7 +105,7 @@ static void check_function(struct Parser *parser, enum Operation operation, Node
   if (parser->graph->not_finite)
     FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
          operation_name(operation), graph_value(parser->graph, argument), domain_text(operation));
-  require_domain(&parser->scope->requirements, parser->graph, operation, argument, current_line(parser));
+  require_domain(&parser->scope->requirements, parser->graph, operation, argument, line_after_reading(parser));
 }
 
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,

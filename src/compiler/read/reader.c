@@ -8,13 +8,15 @@
 #include "read/checks.h"
 #include "read/definitions.h"
 #include "read/elements.h"
+#include "read/includes.h"
 #include "read/linearization_reader.h"
 #include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
+#include "read/start_expressions.h"
 #include "read/xml.h"
 
-enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20 };
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 100 };
 
 /* An index beyond could not be counted on in doubles. */
 static const double index_limit = 1e9;
@@ -25,7 +27,8 @@ static char refused, backwards, repeated;
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass);
 
 /* Whether the bounds are right and the index is a new name; names may have been defined since the last pass. */
-static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
+static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, const char *index_name,
+                             double from, double to) {
   bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
   if (!are_whole || to - from >= REPETITION_LIMIT) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
@@ -35,7 +38,7 @@ static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char 
   }
   if (scope_find(reader->scope, index) == NULL) return true;
   report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
-               index);
+               index_name);
   return false;
 }
 
@@ -51,10 +54,11 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   struct Scope *scope = reader->scope;
   double from = 0, to = -1;
   if (node->_private == &refused) return;
-  char *index = attribute(node, "index");
-  if (index == NULL || !number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
-      !check_repetition(reader, node, index, from, to)) {
+  char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
+  if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
+      !check_repetition(reader, node, index, index_name, from, to)) {
     node->_private = &refused;
+    free(index_name);
     free(index);
     return;
   }
@@ -69,6 +73,7 @@ static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pa
   }
   check_limit(reader, node);
   scope_remove(scope, index);
+  free(index_name);
   free(index);
 }
 
@@ -90,10 +95,22 @@ static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
   }
 }
 
+static void read_include(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  struct Graph *graph = reader->model->graph;
+  graph_work(graph, INCLUDE_WORK);
+  struct Source *source = graph_limit(graph) == NULL ? include_open(reader, node, pass) : NULL;
+  if (source == NULL) return;
+  struct Source *outer = source_enter(reader, source);
+  read_children(reader, source->root, pass);
+  if (pass == DECLARATIONS) check_repetitions(reader, source->root);
+  source_enter(reader, outer);
+}
+
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
     if (xmlStrEqual(node->name, (const xmlChar *)"for")) read_repetition(reader, node, pass);
+    else if (xmlStrEqual(node->name, (const xmlChar *)"include")) read_include(reader, node, pass);
     else read_element(reader, node, pass);
   }
 }
@@ -189,6 +206,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_children(reader, root, DECLARATIONS);
   check_repetitions(reader, root);
   check_definitions_used(reader);
+  check_given(reader);
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
   append_reactions(reader->model, reader->scope);
@@ -196,6 +214,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
+  evaluate_start_expressions(reader);
   read_children(reader, root, EXPRESSIONS);
   reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
@@ -223,6 +242,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     model = model_create();
     *scope = language_of(model, &local);
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
+    includes_begin(&reader, path, root);
     reader.bodies = names_create();
     reader.definitions = (*scope)->definitions = definitions_create();
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
@@ -231,6 +251,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     free(reader.dissipations);
     free(reader.undisplaced);
     names_free(reader.bodies);
+    includes_end(&reader);
     definitions_free(reader.definitions);
     (*scope)->definitions = NULL;
   }

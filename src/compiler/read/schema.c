@@ -67,10 +67,19 @@ static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const
   }
 }
 
-static struct Choices choices_in(const struct Check *check, const char *element, const char *kind) {
+/* What the schema says of an element: in the type named like its parent, if that declares it itself, or else anywhere. */
+static xmlNodePtr declaration_of(const struct Check *check, xmlNodePtr element) {
+  xmlNodePtr schema = xmlDocGetRootElement(check->schema);
+  bool is_inside = element->parent->type == XML_ELEMENT_NODE;
+  xmlNodePtr around = is_inside ? find_declared(schema, "complexType", (const char *)element->parent->name) : NULL;
+  xmlNodePtr own = around != NULL ? find_declared(around, "element", (const char *)element->name) : NULL;
+  return own != NULL ? own : find_declared(schema, "element", (const char *)element->name);
+}
+
+static struct Choices choices_in(const struct Check *check, xmlNodePtr element, const char *kind) {
   struct Choices choices = {.count = 0};
-  xmlNodePtr schema = xmlDocGetRootElement(check->schema), place = find_declared(schema, "element", element);
-  if (place != NULL) collect(schema, place, kind, "name", &choices);
+  xmlNodePtr place = declaration_of(check, element);
+  if (place != NULL) collect(xmlDocGetRootElement(check->schema), place, kind, "name", &choices);
   return choices;
 }
 
@@ -107,7 +116,7 @@ static char *remedy(const char *wanted, struct Choices choices) {
 
 static void report_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
   const char *of = (const char *)element->name;
-  char *what_then = remedy(name, choices_in(check, of, "attribute"));
+  char *what_then = remedy(name, choices_in(check, element, "attribute"));
   report_error(check->diagnostics, xmlGetLineNo(element), "<%s> has no attribute '%s'; %s", of, name, what_then);
   free(what_then);
 }
@@ -127,7 +136,7 @@ static void report_element(const struct Check *check, xmlNodePtr element) {
   const char *name = (const char *)element->name, *parent = (const char *)element->parent->name;
   const char *hint = hint_for_element(name);
   bool is_known = find_declared(xmlDocGetRootElement(check->schema), "element", name) != NULL;
-  char *what_then = remedy(name, choices_in(check, parent, "element"));
+  char *what_then = remedy(name, choices_in(check, element->parent, "element"));
   report_error(check->diagnostics, xmlGetLineNo(element), "<%s> %s <%s>; %s", name,
                is_known ? "cannot stand in" : "is no element of", parent, *hint != '\0' ? hint : what_then);
   free(what_then);
@@ -152,7 +161,7 @@ static void report_text(const struct Check *check, const xmlNode *node, const ch
 static void report_content(const struct Check *check, xmlNodePtr element) {
   const char *name = (const char *)element->name;
   const xmlNode *text = first_of(element, XML_TEXT_NODE), *inner = first_of(element, XML_ELEMENT_NODE);
-  struct Choices elements = choices_in(check, name, "element");
+  struct Choices elements = choices_in(check, element, "element");
   if (elements.count > 0 && text != NULL)
     report_text(check, text, name, "an element such as <potential>...</potential>, or in <!-- ... -->");
   else if (inner != NULL)

@@ -2,10 +2,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "algebra/differentiate.h"
 #include "memory.h"
 #include "read/similar.h"
+#include "read/tables.h"
 
 struct Entry {
   struct Quantity quantity;
@@ -18,12 +20,15 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->graph = graph;
   scope->diagnostics = diagnostics;
   scope->names = names_create();
+  scope->tables = names_create();
+  scope->prefix = "";
   return scope;
 }
 
 void scope_free(struct Scope *scope) {
   if (scope == NULL) return;
   names_free(scope->names);
+  tables_free(scope->tables);
   free(scope->time_derivatives);
   free(scope->requirements.items);
   free(scope);
@@ -80,15 +85,30 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name) {
   return entry == NULL ? NULL : &entry->quantity;
 }
 
+static bool is_of_language(const struct Entry *entry) {
+  return entry != NULL && entry->line == 0 && !entry->is_index;
+}
+
+char *scope_full_name(const struct Scope *scope, const char *name) {
+  bool as_it_is = *scope->prefix == '\0' || is_of_language(find_entry(scope, name));
+  return format_text("%s%s", as_it_is ? "" : scope->prefix, name);
+}
+
+long scope_line(const struct Scope *scope, long line) {
+  return scope->include_line > 0 ? scope->include_line : line;
+}
+
 bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity) {
   return graph_is_constant(scope->graph, quantity->node) && isnan(graph_value(scope->graph, quantity->node));
 }
 
 const char *scope_similar_name(const struct Scope *scope, const char *name) {
   struct Similar similar = {.wanted = name};
+  size_t length = strlen(scope->prefix);
   for (size_t i = 0; i < scope->names->capacity; i++) {
     const char *known = scope->names->places[i].text;
-    if (known != NULL && !scope_is_reserved(scope, scope_find(scope, known))) similar_consider(&similar, known);
+    if (known == NULL || scope_is_reserved(scope, scope_find(scope, known))) continue;
+    if (strncmp(known, scope->prefix, length) == 0) similar_consider(&similar, known + length);
   }
   return similar.best;
 }

@@ -15,8 +15,11 @@ struct Scope {
   struct Names *names;              /* name -> struct Entry */
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
+  struct Names *tables;             /* full name -> struct Table, see tables.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
+  const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
+  long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
@@ -36,10 +39,19 @@ void scope_remove(struct Scope *scope, const char *name);
 /* NULL where the name is unknown. */
 const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 
+/*
+ * What the file being read calls by this name: with the prefix of the file, unless it is a word of the language. Free with
+ * free().
+ */
+char *scope_full_name(const struct Scope *scope, const char *name);
+
+/* The line in the system's own file for messages that come when no longer the file of the line is read. */
+long scope_line(const struct Scope *scope, long line);
+
 /* Whether a known name is a word of the language that has no value, such as that of a function. */
 bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity);
 
-/* The name of a value that was meant by an unknown one, or NULL; see similar.h. */
+/* The name of a value that was meant by an unknown one, as the file being read calls it, or NULL; see similar.h. */
 const char *scope_similar_name(const struct Scope *scope, const char *name);
 
 /* Whether two quantities may be added; always true where units are not checked. */

@@ -8,6 +8,7 @@
 #include "read/definitions.h"
 #include "read/hints.h"
 #include "read/similar.h"
+#include "read/tables.h"
 
 const char *const special_functions[] = {"sqrt", "der", "sum", NULL};
 
@@ -21,12 +22,17 @@ enum Operation find_function(const char *name) {
 
 /* What may stand where numbers alone are allowed, or everything. */
 static const char *expected_names(const struct Parser *parser) {
+  if (parser->place.kinds == 1u << PARAMETER) return "a parameter or a constant";
   return parser->place.kinds == 0 ? "a number, or a constant that stands further up"
                                   : "a parameter, coordinate, velocity, input, definition or time";
 }
 
 static bool is_known(const struct Parser *parser, const char *name) {
-  return scope_find(parser->scope, name) != NULL || definitions_contain(parser->scope->definitions, name);
+  char *full_name = scope_full_name(parser->scope, name);
+  bool known =
+      scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+  free(full_name);
+  return known;
 }
 
 /* The components that a particle or body has, such as "bob.x or bob.y"; "" where there is none of this name. */
@@ -45,17 +51,33 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
   return list;
 }
 
+/* How many of name[1], name[2], ... there are. */
+static int count_indices(const struct Parser *parser, const char *name) {
+  enum { LIMIT = 1000 };
+  for (int i = 1; i <= LIMIT; i++) {
+    char *indexed = format_text("%s[%d]", name, i);
+    bool known = is_known(parser, indexed);
+    free(indexed);
+    if (!known) return i - 1;
+  }
+  return LIMIT;
+}
+
 void report_unknown_name(struct Parser *parser, const char *name) {
   /* A search through all names is for messages that are shown. */
   bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
   const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
-  char *components = components_of(parser, name, strcspn(name, "."));
+  const char *point = strrchr(name, '.');
+  char *components = components_of(parser, name, point != NULL ? (size_t)(point - name) : strlen(name));
+  int indices = shown ? count_indices(parser, name) : 0;
   const char *next = parser->next + strspn(parser->next, " \t\r\n");
   if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
   if (*components != '\0')
     FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->place.what, name,
          components);
   else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->place.what, name, hint);
+  else if (indices > 0)
+    FAIL(parser, "%s: unknown name '%s'; expected %s[1], ..., %s[%d]", parser->place.what, name, name, name, indices);
   else if (similar != NULL)
     FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));
@@ -65,9 +87,12 @@ void report_unknown_name(struct Parser *parser, const char *name) {
 void report_reserved(struct Parser *parser, const char *name) {
   bool is_function = find_function(name) < OPERATION_COUNT;
   for (size_t i = 0; special_functions[i] != NULL; i++) is_function |= strcmp(name, special_functions[i]) == 0;
-  if (is_function)
-    FAIL(parser, "%s: '%s' is no variable but a function; expected its argument in parentheses, as in %s(...)",
-         parser->place.what, name, name);
+  char *full_name = scope_full_name(parser->scope, name);
+  bool is_table = table_named(parser->scope, full_name) != NULL;
+  free(full_name);
+  if (is_function || is_table)
+    FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
+         parser->place.what, name, is_table ? "table" : "function", name);
   else
     FAIL(parser, "%s: '%s' is no variable but a result, which expressions cannot use; expected %s", parser->place.what,
          name, expected_names(parser));
@@ -86,15 +111,25 @@ static char *function_names(void) {
   return names;
 }
 
+/* Those of the file being read, as it calls them. */
+static void consider_tables(struct Similar *similar, const struct Scope *scope) {
+  size_t length = strlen(scope->prefix);
+  for (size_t i = 0; i < scope->tables->capacity; i++) {
+    const char *name = scope->tables->places[i].text;
+    if (name != NULL && strncmp(name, scope->prefix, length) == 0) similar_consider(similar, name + length);
+  }
+}
+
 void report_unknown_function(struct Parser *parser, const char *name) {
   struct Similar similar = {.wanted = name};
   for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
+  consider_tables(&similar, parser->scope);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
-  else if (scope_find(parser->scope, name) != NULL)
+  else if (is_known(parser, name))
     FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
   else if (*hint_for_function(name) != '\0')
     FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));

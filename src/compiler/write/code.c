@@ -81,6 +81,8 @@ static void write_routines(FILE *file, const struct Program *program, const stru
     const struct FunctionText *text;
     const struct Routine *routine;
   } functions[] = {{&prepare_text, program->prepare},
+                   {&initial_state_text, program->initial},
+                   {&initial_state_along_text, program->initial_along},
                    {&derivatives_text, program->derivatives},
                    {&directional_text, program->directional},
                    {&jacobian_text, program->jacobian},

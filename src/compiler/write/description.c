@@ -17,12 +17,15 @@ static void write_variables(FILE *file, const struct Interface *interface) {
       [VARIABLE_RESULT] = "VARIABLE_RESULT",
       [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
   };
+  static const char *const types[] = {
+      [TYPE_REAL] = "TYPE_REAL", [TYPE_INTEGER] = "TYPE_INTEGER", [TYPE_BOOLEAN] = "TYPE_BOOLEAN"};
   fputs("static const struct ScalarVariable variables[] = {\n", file);
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     fputs("    {", file);
     write_c_string(file, entry->name);
-    fprintf(file, ", %s, %zu, %s, ", kinds[entry->kind], entry->index, entry->is_output ? "true" : "false");
+    fprintf(file, ", %s, %s, %zu, %s, ", kinds[entry->kind], types[entry->type], entry->index,
+            entry->is_output ? "true" : "false");
     write_c_number(file, isnan(entry->start) ? 0.0 : entry->start);
     fputs(", ", file);
     write_c_number(file, isnan(entry->minimum) ? -INFINITY : entry->minimum);
@@ -132,6 +135,8 @@ static void write_functions(FILE *file, const struct Program *program) {
   bool moves = program->equations->count > 0;
   const struct SeriesProgram *series = program->series, *output_series = program->output_series;
   fputs("    .prepare = prepare,\n", file);
+  if (program->initial != NULL)
+    fputs("    .initial_state = initial_state,\n    .initial_state_along = initial_state_along,\n", file);
   if (moves) fputs("    .derivatives = derivatives,\n    .directional = directional,\n", file);
   if (program->interface->result_count > 0)
     fputs("    .result_uses_acceleration = result_uses_acceleration,\n    .result = result,\n"

@@ -6,6 +6,19 @@ const struct FunctionText prepare_text = {"What depends on parameters alone",
                                           "prepared",
                                           RETURNS_STATUS,
                                           IN_WORKSPACE};
+const struct FunctionText initial_state_text = {"Start values that follow from parameters",
+                                                "initial_state",
+                                                "const struct Point *point, double *state",
+                                                "state",
+                                                RETURNS_NOTHING,
+                                                IN_WORKSPACE};
+const struct FunctionText initial_state_along_text = {
+    "Start values along a direction",
+    "initial_state_along",
+    "const struct Point *point, const struct Seed *seed, double *state",
+    "state",
+    RETURNS_NOTHING,
+    IN_WORKSPACE};
 const struct FunctionText derivatives_text = {
     "d state / dt", "derivatives",  "const struct Point *point, double *derivative",
     "derivative",   RETURNS_STATUS, IN_TARGET};

@@ -42,6 +42,8 @@ struct TableContext *table_context_create(const struct Program *program) {
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
   note(context, program->prepare);
+  note(context, program->initial);
+  note(context, program->initial_along);
   note(context, program->derivatives);
   note(context, program->directional);
   note(context, program->jacobian);
@@ -86,6 +88,7 @@ static size_t longest(size_t length, const struct Routine *routine) {
 /* The local variables of the routine that has most. */
 static size_t local_count(const struct Program *program) {
   size_t count = longest(longest(longest(0, program->derivatives), program->directional), program->jacobian);
+  count = longest(longest(count, program->initial), program->initial_along);
   count = longest(longest(count, program->accelerations), program->accelerations_along);
   count = longest(longest(count, program->correct_positions), program->correct_velocities);
   count = longest(longest(count, program->start_positions), program->start_velocities);

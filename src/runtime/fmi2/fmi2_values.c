@@ -17,7 +17,7 @@ fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
   if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
       !check_array(instance, value, nvr, __func__, "value"))
     return fmi2Error;
-  return fmi2_status(values_get_statistics(instance, vr, nvr, value, __func__));
+  return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
@@ -28,7 +28,31 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   return fmi2_status(values_set(instance, vr, nvr, value, __func__));
 }
 
-/* There are no variables to set or to get of the types Integer (to set), Boolean and String. */
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
+  struct Instance *instance = enter(c, FUNCTION_GET_VALUE, __func__);
+  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
+      !check_array(instance, value, nvr, __func__, "value"))
+    return fmi2Error;
+  return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+}
+
+fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
+  struct Instance *instance = enter(c, FUNCTION_SET_DISCRETE, __func__);
+  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
+      !check_array(instance, value, nvr, __func__, "value"))
+    return fmi2Error;
+  return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
+}
+
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
+  struct Instance *instance = enter(c, FUNCTION_SET_DISCRETE, __func__);
+  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
+      !check_array(instance, value, nvr, __func__, "value"))
+    return fmi2Error;
+  return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+}
+
+/* There are no variables of the type String. */
 static fmi2Status no_variable(fmi2Component c, enum Function function, const char *name, size_t nvr) {
   struct Instance *instance = enter(c, function, name);
   if (instance == NULL) return fmi2Error;
@@ -36,28 +60,10 @@ static fmi2Status no_variable(fmi2Component c, enum Function function, const cha
   return fmi2_status(log_error(instance, "%s: the FMU has no variable for this function", name));
 }
 
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
-  (void)vr;
-  (void)value;
-  return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);
-}
-
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[]) {
   (void)vr;
   (void)value;
   return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);
-}
-
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
-  (void)vr;
-  (void)value;
-  return no_variable(c, FUNCTION_SET_DISCRETE, __func__, nvr);
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
-  (void)vr;
-  (void)value;
-  return no_variable(c, FUNCTION_SET_DISCRETE, __func__, nvr);
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[]) {

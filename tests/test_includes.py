@@ -1,0 +1,182 @@
+"""Systems inside of others, against the normal modes of oscillators and formulas by hand."""
+
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+import fmu
+from fmu import lagc
+
+# An oscillator of N equal springs in parallel; its definition, body and output have names that others use too.
+PART = """<system name="IncludePart">
+  <constant name="N" value="1"/>
+  <parameter name="m" start="{mass}" unit="kg" min="0"/>
+  <parameter name="k" start="8" unit="N/m"/>
+  <parameter name="rate" value="sqrt(K/m)" unit="rad/s"/>
+  <input name="F" unit="N"/>
+  <coordinate name="x" velocity="v" unit="m" start="0.5"/>
+  <define name="K" unit="N/m">sum(i, 1, N, k)</define>
+  <particle mass="m" x="x"/>
+  <for index="i" from="1" to="N"><potential>k*body1.x^2/2</potential></for>
+  <force on="body1" x="F"/>
+  <output name="elongation" unit="m">body1.x</output>
+  <work/>
+  <solver method="bdf" tolerance="1e-3"/>
+  <experiment stopTime="77"/>
+</system>
+"""
+# Three of them in a row, each on a spring to the next; i is a name out here too.
+ROW = """<system name="IncludeRow">
+  <parameter name="i" start="4" unit="N/m"/>
+  <for index="j" from="1" to="3">
+    <include file="../IncludePart/system.xml" as="mass[j]">
+      <parameter name="m" value="heavy"/>
+      <coordinate name="x" start="amplitude*sin(j*pi/4)"/>
+    </include>
+  </for>
+  <parameter name="heavy" start="3" unit="kg"/>
+  <parameter name="amplitude" start="0.1" unit="m"/>
+  <for index="j" from="1" to="2"><potential>i*(mass[j].x - mass[j+1].x)^2/2</potential></for>
+  <potential>i*(mass[1].body1.x^2 + mass[3].elongation^2)/2</potential>
+</system>
+"""
+# Parts in parts: damped by what is out here, with three springs and another stiffness from outside of all.
+NEST = """<system name="IncludeNest">
+  <parameter name="b" start="1.5" unit="N.s/m"/>
+  <include file="../IncludeMiddle/system.xml" as="middle">
+    <input name="part.F" value="-b*middle.part.v"/>
+    <parameter name="part.k" start="5" max="6"/>
+  </include>
+</system>
+"""
+MIDDLE = """<system name="IncludeMiddle">
+  <include file="../IncludePart/system.xml" as="part">
+    <constant name="N" value="3"/>
+    <parameter name="k" start="100"/>
+  </include>
+  <output name="speed" unit="m/s">der(part.body1.x)</output>
+</system>
+"""
+LINEAR = """<linearization of="../IncludeRow/system.xml" name="IncludeLinear"><at name="mass[2].x" value="0"/></linearization>
+"""
+TEXTS = {"IncludePart": PART.format(mass=2), "IncludeRow": ROW, "IncludeNest": NEST, "IncludeMiddle": MIDDLE, "IncludeLinear": LINEAR}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    fmu.build_systems("includes", TEXTS)
+
+
+@pytest.mark.parametrize("name", ["IncludeRow", "IncludeLinear"])
+def test_row_swings_in_its_mode(name, open_fmu):
+    instance = open_fmu(name).initialize({"heavy": 5.0, "amplitude": 0.2})
+    rate = np.sqrt((8 + 4 * 4 * np.sin(np.pi / 8) ** 2) / 5)
+    for time in (0.0, 0.7, 2.0):
+        instance.step(time - instance.time) if time > 0 else None
+        for j in (1, 2, 3):
+            x = 0.2 * np.sin(j * np.pi / 4) * np.cos(rate * time)
+            assert instance.get(f"mass[{j}].x") == pytest.approx(x, abs=1e-8)
+            assert instance.get(f"mass[{j}].elongation") == pytest.approx(x, abs=1e-8)
+    assert instance.get("mass[2].m") == 5.0 and instance.get("mass[2].rate") == pytest.approx(np.sqrt(8 / 5))
+
+
+def test_parts_in_parts(open_fmu):
+    instance = open_fmu("IncludeNest").initialize()
+    d, w = 1.5 / 4, np.sqrt(15 / 2 - (1.5 / 4) ** 2)
+    for time in (0.4, 1.0, 3.0):
+        instance.step(time - instance.time)
+        x = 0.5 * np.exp(-d * time) * (np.cos(w * time) + d / w * np.sin(w * time))
+        v = -0.5 * np.exp(-d * time) * (w + d * d / w) * np.sin(w * time)
+        assert instance.get("middle.part.x") == pytest.approx(x, abs=1e-7)
+        assert instance.get("middle.speed") == pytest.approx(v, abs=1e-7)
+    assert instance.get("middle.part.rate") == pytest.approx(np.sqrt(15 / 2))
+
+
+def test_variables():
+    names = {v.name: v for v in fmu.description("IncludeNest").modelVariables}
+    for name in ("middle.part.x", "der(middle.part.v)", "middle.part.m", "middle.part.body1.x", "middle.speed", "b"):
+        assert name in names
+    assert "middle.part.F" not in names and "nonConservativeWork" not in names
+    assert (float(names["middle.part.k"].start), float(names["middle.part.k"].max)) == (5, 6)
+    row = {v.name: v for v in fmu.description("IncludeRow").modelVariables}
+    assert row["mass[1].F"].causality == "input" and row["mass[1].m"].causality == "calculatedParameter"
+    assert fmu.description("IncludeRow").defaultExperiment.stopTime == "10"
+    for name in TEXTS:
+        assert validate_fmu(str(fmu.archive(name))) == []
+
+
+def test_a_part_that_changes_is_built_anew():
+    before = {name: fmu.archive(name).read_bytes() for name in TEXTS}
+    try:
+        fmu.build_systems("includes", {**TEXTS, "IncludePart": PART.format(mass=4)})
+        assert all(fmu.archive(name).read_bytes() != before[name] for name in ("IncludePart", "IncludeMiddle", "IncludeNest"))
+    finally:
+        fmu.build_systems("includes", TEXTS)
+
+
+def compile_all(folder, texts):
+    for name, text in texts.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    return lagc("system.xml", "-o", "out", cwd=folder)
+
+
+AROUND = '<system name="Around">\n<parameter name="secret" start="1"/>\n<include file="parts/part.xml" as="part">{}</include>\n</system>'
+INCLUDED = " (included as 'part' on line 3 of system.xml)"
+
+
+@pytest.mark.parametrize("inside, message", [
+    ("<coordinate name='x' velocity='v'/>\n<particle mass='secret' x='x'/>",
+     "parts/part.xml:3: mass of <particle>: unknown name 'secret'; expected a parameter, coordinate, velocity, input, definition or time" + INCLUDED),
+    ("<coordinate name='mass' velocity='v'/>\n<particle mass='1' x='maas'/>", "parts/part.xml:3: x of <particle>: unknown name 'maas'; did you mean 'mass'?" + INCLUDED),
+    ("<parameter name='sin' start='1'/>", "parts/part.xml:2: the name 'sin' belongs to the language itself; expected another name" + INCLUDED),
+    ("<particle name='a' mass='1' x='1'/>\n<particle name='a' mass='1' x='1'/>", "a particle or body named 'part.a' is already defined on line 2"),
+    ("<define name='a'>b</define>\n<define name='b'>a</define>", "parts/part.xml:2: definitions need each other in a circle: part.a -> part.b -> part.a"),
+    ("<potentail>1</potentail>", "parts/part.xml:2: <potentail> is no element of <system>; did you mean 'potential'?" + INCLUDED),
+    ("<include file='../system.xml' as='again'/>", "files include each other in a circle: system.xml -> parts/part.xml -> parts/../system.xml"),
+    ("<include file='nothing.xml' as='again'/>", "parts/part.xml:2: the file 'parts/nothing.xml' cannot be read: No such file or directory"),
+    ("<coordinate name='x' velocity='v'/>", "system.xml:3: the coordinate 'part.x' has no inertia"),
+])  # fmt: skip
+def test_mistakes_in_a_part(inside, message, tmp_path):
+    result = compile_all(tmp_path, {"system.xml": AROUND.format(""), "parts/part.xml": f"<system name='P'>\n{inside}\n</system>"})
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
+@pytest.mark.parametrize("inside, message", [
+    ('<parameter name="Q" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'Q'; expected one of its names"),
+    ('<parameter name="masss" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'masss'; did you mean 'mass'?"),
+    ('<parameter name="F" start="1"/>', "system.xml:3: 'F' is no <parameter> of 'parts/part.xml'; expected <input name=...>"),
+    ('<parameter name="mass" value="1" start="2"/>', "a <parameter> with a value and a start"),
+    ('<parameter name="mass" value="lost"/>', "system.xml:3: value of <parameter>: unknown name 'lost'"),
+    ('<parameter name="mass" value="part.x"/>', "system.xml:3: value of <parameter> cannot depend on coordinates, but 'part.x' does"),
+    ('<parameter name="mass" start="2"/><parameter name="mass" start="2"/>', "'mass' is given twice; expected it once"),
+    ('<parameter name="mass" start="-2"/>', "'part.mass': start -2 is outside min and max"),
+    ('<parameter name="mass" unit="kg"/>', "<parameter> has no attribute 'unit'; expected name, start, value, min or max"),
+    ('<input name="F" value="part.mass"/>', "system.xml:3: unit mismatch: the value of the input has the unit kg, expected kg.m/s2"),
+    ('<coordinate name="x" start="part.mass"/>', "system.xml:3: unit mismatch: the start value has the unit kg, expected m"),
+])  # fmt: skip
+def test_mistakes_in_what_is_given(inside, message, tmp_path):
+    part = """<system name="P"><parameter name="mass" start="1" unit="kg" min="0"/><input name="F" unit="N"/>
+<coordinate name="x" velocity="v" unit="m"/><particle mass="mass" x="x"/><force coordinate="x">F</force></system>"""
+    result = compile_all(tmp_path, {"system.xml": AROUND.format(inside), "parts/part.xml": part})
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
+@pytest.mark.parametrize("second, message", [
+    ('<include file="part.xml" as="part"/>', 'as="part" is the name of the <include> on line 1 already; expected another name'),
+    ('<for index="i" from="1" to="2"><include file="part.xml" as="other"/></for>', "with an index such as [i] where a <for> repeats it"),
+    ('<include file="line.xml" as="other"/>', "line.xml:1: a <linearization> cannot be included; expected the file of a <system>"),
+])  # fmt: skip
+def test_mistakes_in_the_name(second, message, tmp_path):
+    part = '<system name="P"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/></system>'
+    line = '<linearization of="part.xml" name="L"/>'
+    around = f'<system name="Around"><include file="part.xml" as="part"/>{second}</system>'
+    result = compile_all(tmp_path, {"system.xml": around, "part.xml": part, "line.xml": line})
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
+def test_parts_that_multiply_end(tmp_path):
+    """Each file includes the next one a hundred times."""
+    texts = {f"p{i}.xml": f'<system name="P"><for index="i" from="1" to="100"><include file="p{i + 1}.xml" as="a[i]"/></for></system>' for i in range(9)}
+    result = compile_all(tmp_path, {**texts, "p9.xml": '<system name="P"/>', "system.xml": texts["p0.xml"]})
+    assert result.returncode == 1 and "the system is too large" in result.stderr, result.stderr
