@@ -108,7 +108,8 @@ static void write_experiment(xmlTextWriterPtr writer, const struct Model *model)
 }
 
 /* Causality, variability and initial by the tables of section 2.2.7. */
-static void write_classification(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
+static void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
+  const struct ScalarVariable *entry = &variable->entry;
   static const char *const causalities[] = {
       [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
       [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
@@ -128,7 +129,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct ScalarVar
                   : entry->kind == VARIABLE_STATISTIC                ? "discrete"
                                                                      : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
-    write_attribute(writer, "initial", has_following_start(entry) ? "approx" : initials[entry->kind]);
+    write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);
 }
 
 static void write_real(xmlTextWriterPtr writer, const struct Interface *interface,
@@ -170,7 +171,7 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
     write_attribute(writer, "name", variable->entry.name);
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", i);
     if (variable->description != NULL) write_attribute(writer, "description", variable->description);
-    write_classification(writer, &variable->entry);
+    write_classification(writer, variable);
     if (variable->entry.type == TYPE_INTEGER) write_integer(writer, &variable->entry);
     else if (variable->entry.type == TYPE_BOOLEAN) write_boolean(writer, &variable->entry);
     else write_real(writer, interface, variable);

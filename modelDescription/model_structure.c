@@ -70,7 +70,7 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
 /*
  * A derivative of a large coupled system depends on nearly all states, so that the lists of all of them would grow as
  * their square. Without a list it depends on all knowns (section 2.2.8). Outputs keep theirs: importers find algebraic
- * loops by them.
+ * loops by them. Where constraints move the start values, all that is computed initially depends on all of them.
  */
 enum { DEPENDENCY_LIMIT = 1000 };
 
@@ -79,29 +79,30 @@ static void write_unknown(const struct Structure *structure, size_t unknown, boo
   size_t count = find_places(structure, unknown, initial);
   xmlTextWriterStartElement(structure->writer, BAD_CAST "Unknown");
   xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST "index", "%zu", unknown + 1);
-  if (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output)
+  bool is_solved_for = initial && structure->dependencies->equations->constraints->count > 0;
+  if (!is_solved_for && (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output))
     write_dependencies(structure, count, initial);
   xmlTextWriterEndElement(structure->writer);
 }
 
-static bool is_output(const struct ScalarVariable *entry) {
-  return entry->is_output;
+static bool is_output(const struct InterfaceVariable *variable) {
+  return variable->entry.is_output;
 }
 
-static bool is_derivative(const struct ScalarVariable *entry) {
-  return entry->kind == VARIABLE_DERIVATIVE;
+static bool is_derivative(const struct InterfaceVariable *variable) {
+  return variable->entry.kind == VARIABLE_DERIVATIVE;
 }
 
 /* What initialisation computes; other states have the initial value that was set. */
-static bool is_computed_initially(const struct ScalarVariable *entry) {
-  return is_unknown(entry) && (entry->kind != VARIABLE_STATE || has_following_start(entry));
+static bool is_computed_initially(const struct InterfaceVariable *variable) {
+  return is_unknown(&variable->entry) && (variable->entry.kind != VARIABLE_STATE || starts_nearby(variable));
 }
 
 static void write_unknowns(const struct Structure *structure, const char *element,
-                           bool (*belongs)(const struct ScalarVariable *), bool initial) {
+                           bool (*belongs)(const struct InterfaceVariable *), bool initial) {
   bool open = false;
   for (size_t i = 0; i < structure->interface->count; i++) {
-    if (!belongs(&structure->interface->variables[i].entry)) continue;
+    if (!belongs(&structure->interface->variables[i])) continue;
     if (!open) xmlTextWriterStartElement(structure->writer, BAD_CAST element);
     open = true;
     write_unknown(structure, i, initial);

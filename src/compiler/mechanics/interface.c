@@ -198,6 +198,17 @@ static int output_derivative_order(const struct Interface *interface, const stru
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 
+/* Those of coordinates that stand in constraints and are not fixed. */
+static void mark_moved_states(struct Interface *interface, const struct Model *model,
+                              const struct Equations *equations) {
+  size_t n = equations->count;
+  for (size_t i = 0; i < 2 * n && equations->constraints->count > 0; i++) {
+    struct InterfaceVariable *state = &interface->variables[interface_find(interface, VARIABLE_STATE, i)];
+    state->is_moved_at_start =
+        inertia_block_of(equations->inertia, i % n)->constraint_count > 0 && !model->coordinates.items[i % n].is_fixed;
+  }
+}
+
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
@@ -244,6 +255,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
   append_statistics(interface);
+  mark_moved_states(interface, model, equations);
   return interface;
 }
 

@@ -14,6 +14,7 @@ struct InterfaceVariable {
   double nominal;              /* NAN where none was given */
   Node node;                   /* the value; ZERO for statistics */
   Node start;                  /* of a state whose start value follows from parameters; else ZERO */
+  bool is_moved_at_start;      /* a state that constraints may move as initialization ends */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
@@ -27,6 +28,11 @@ struct Interface {
   const struct Method *method; /* the one that is used; NULL for a system without coordinates */
   int output_derivative_order;
 };
+
+/* Whether initialization computes the state, from its start value among others. */
+static inline bool starts_nearby(const struct InterfaceVariable *variable) {
+  return has_following_start(&variable->entry) || variable->is_moved_at_start;
+}
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations);
 void interface_free(struct Interface *interface);
