@@ -1,5 +1,7 @@
 """Constraints: an independent derivation with multipliers, closed forms, published values, and what cannot be fulfilled."""
 
+import subprocess
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -7,6 +9,7 @@ from fmpy.fmi2 import FMU2Model
 
 import fmu
 from closed_forms import pendulum_angle
+from differential.build import runtime
 from fmu import DISCARD, ERROR, WARNING, build_systems
 from mechanics import time, velocity
 
@@ -102,6 +105,11 @@ SYSTEMS = {
     "PulledArm": ARM,
     "Table": TABLE,
     "Slider": SLIDER,
+    "DrivenFourBar": (fmu.ROOT / "fmu" / "FourBar" / "system.xml").read_text()
+    .replace('name="FourBar"', 'name="DrivenFourBar"')
+    .replace('fixed="true"', 'fixed="true" acceleration="2.3*sin(time) + tau"')
+    .replace('<input name="tau" unit="N.m"', '<input name="tau" unit="rad/s2"')
+    .replace('<force coordinate="theta">tau</force>', ""),
     "Rods8": RODS.format(count=8),
     "Angles8": ANGLES.format(count=8),
 }
@@ -178,6 +186,26 @@ def test_accelerations_and_forces(name, define, open_fmu):
         velocities = states[len(states) // 2 :]
         ours = instance.get(*[f"der({v})" for v in velocities], *[f"{c}.force" for c in constraints])
         np.testing.assert_allclose(ours, definition.solve(values), rtol=1e-9, atol=1e-9)
+
+
+def test_driven_mechanism(open_fmu):
+    """The crank turns as it is told; the torque is the multiplier of a further row, d2 theta/dt2 = what is told."""
+    definition, _ = four_bar()
+    instance = open_fmu("DrivenFourBar").initialize(tolerance=1e-10)
+    states = fmu.states_of("DrivenFourBar")
+    parameters = instance.get(*[symbol.name for symbol in definition.arguments[7:]])
+    for _ in range(20):
+        instance.step(0.1)
+        t, state = instance.time, instance.get(*states)
+        assert state[0] == pytest.approx(1 + 10.3 * t - 2.3 * np.sin(t), abs=1e-8)
+        matrix, right = definition.system(t, *state, *parameters)
+        bordered = np.zeros((6, 6))
+        bordered[:5, :5], bordered[5, 0], bordered[0, 5] = np.array(matrix, float), 1, 1
+        solution = np.linalg.solve(bordered, [*np.array(right, float).ravel(), 2.3 * np.sin(t)])
+        ours = instance.get("der(omegaCoupler)", "der(omegaRocker)", "loopX.force", "loopY.force", "theta.force")
+        np.testing.assert_allclose(ours, [*solution[1:5], -solution[5]], rtol=1e-9, atol=1e-9)
+        x = 0.3 * np.cos(state[0]) + 0.8 * np.cos(state[1]) - 0.9 - 0.6 * np.cos(state[2])
+        assert abs(x) < 1e-13
 
 
 def test_pendulum_and_its_tension(open_fmu):
@@ -386,6 +414,24 @@ def test_a_parameter_that_is_tuned(open_fmu):
     assert np.hypot(*instance.get("x", "y")) == pytest.approx(1.1, abs=1e-14)
     assert any("moved to fulfil" in text for _, _, text in instance.messages)
     assert all(status <= WARNING for status, _, _ in instance.messages)
+
+
+def test_jacobian(tmp_path):
+    """Column by column as the derivative along each state, which is held against differences above."""
+    source = fmu.archive("Sliderbdf").parent.parent / "systems" / "Sliderbdf" / "system.c"
+    words = ["gcc", "-O1", f"-I{fmu.ROOT}/include", f"-I{fmu.ROOT}/src/runtime", fmu.ROOT / "tests" / "c" / "jacobian.c", source, *runtime()]
+    subprocess.run([*map(str, words), "-o", str(tmp_path / "jacobian")], check=True)
+    states, elements, difference = subprocess.run([tmp_path / "jacobian"], capture_output=True, text=True, check=True).stdout.split()
+    assert int(states) == 6 and int(elements) > 12 and float(difference) < 1e-12
+
+
+def test_linearization():
+    """A pendulum by x and y at rest below its pivot: der(vx) = -g/l x, and der(vy) = 0 to first order."""
+    system = fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml"
+    result = fmu.lagc("--linearize", system, "--at", "y=-1")
+    assert result.returncode == 0 and "[-9.81, 0, 0, 0]\n  [0, 0, 0, 0]" in result.stdout
+    wrong = fmu.lagc("--linearize", system, "--at", "y=-2")
+    assert wrong.returncode == 1 and "the point does not fulfil the constraint 'rod': it is 1 there" in wrong.stderr
 
 
 MISTAKES = [

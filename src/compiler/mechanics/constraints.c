@@ -8,12 +8,14 @@
 #include "mechanics/time_derivative.h"
 #include "memory.h"
 
-static void append_row(struct Constraints *constraints, struct Graph *graph, size_t row, Node target,
+static void append_row(struct Constraints *constraints, const struct Model *model, size_t row, Node target,
                        enum SymbolKind kind) {
+  struct Graph *graph = model->graph;
   struct Gradient gradient = gradient_by_kinds(graph, target, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    elements_append(&constraints->jacobian, row, coordinate, gradient.values[i]);
+    bool is_driven = model->drives[coordinate].given;
+    elements_append(is_driven ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
   }
   gradient_free(&gradient);
 }
@@ -32,7 +34,7 @@ struct Constraints *constraints_derive(const struct Model *model) {
     Node node = model->constraints.items[j].node;
     bool is_holonomic = !graph_depends_on(graph, node, VELOCITY);
     if (is_holonomic) constraints->position[j] = node;
-    append_row(constraints, graph, j, node, is_holonomic ? COORDINATE : VELOCITY);
+    append_row(constraints, model, j, node, is_holonomic ? COORDINATE : VELOCITY);
     if (is_holonomic) derivative_along(graph, &node, 1, seeds, &constraints->velocity[j]);
     else constraints->velocity[j] = node;
     derivative_along(graph, &constraints->velocity[j], 1, seeds, &constraints->acceleration[j]);
@@ -46,6 +48,7 @@ struct Constraints *constraints_derive(const struct Model *model) {
 void constraints_free(struct Constraints *constraints) {
   if (constraints == NULL) return;
   elements_free(&constraints->jacobian);
+  elements_free(&constraints->driven);
   free(constraints->position);
   free(constraints->velocity);
   free(constraints->acceleration);
@@ -53,12 +56,8 @@ void constraints_free(struct Constraints *constraints) {
   free(constraints);
 }
 
-void constraints_add_forces(struct Graph *graph, const struct Constraints *constraints, const Node *forces, Node *sum) {
-  const struct Elements *jacobian = &constraints->jacobian;
-  for (size_t k = 0; k < jacobian->count; k++) {
-    Node *target = &sum[jacobian->positions[k].column];
-    *target = add(graph, *target, multiply(graph, jacobian->nodes[k], forces[jacobian->positions[k].row]));
-  }
+Node constraint_force_along(struct Graph *graph, const struct Elements *elements, size_t element, const Node *forces) {
+  return multiply(graph, elements->nodes[element], forces[elements->positions[element].row]);
 }
 
 Node *constraint_slopes(struct Graph *graph, const struct Constraints *constraints) {

@@ -18,13 +18,14 @@ struct Constraints {
   Node *acceleration;       /* the time derivative of velocity */
   Node *acceleration_rest;  /* the same with 0 for the accelerations */
   struct Elements jacobian; /* J: constraints and coordinates */
+  struct Elements driven;   /* the elements of driven coordinates, which no constraint moves, so that J has none */
 };
 
 struct Constraints *constraints_derive(const struct Model *model);
 void constraints_free(struct Constraints *constraints);
 
-/* sum += J^T forces */
-void constraints_add_forces(struct Graph *graph, const struct Constraints *constraints, const Node *forces, Node *sum);
+/* What one of the elements contributes to J^T forces. */
+Node constraint_force_along(struct Graph *graph, const struct Elements *elements, size_t element, const Node *forces);
 
 /* For each constraint the length of its row of J. Free with free(). */
 Node *constraint_slopes(struct Graph *graph, const struct Constraints *constraints);

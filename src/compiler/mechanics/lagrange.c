@@ -151,10 +151,19 @@ static void derive_motion(const struct Model *model, struct Equations *equations
 /* The rows of the constraints, and their forces in those of the coordinates. */
 static void add_constraints(const struct Model *model, struct Equations *equations) {
   const struct Constraints *constraints = equations->constraints;
-  constraints_add_forces(model->graph, constraints, model->constraint_forces, equations->residual);
+  struct Graph *graph = model->graph;
+  const struct Elements *free_ones = &constraints->jacobian, *driven = &constraints->driven;
+  for (size_t k = 0; k < free_ones->count; k++) {
+    Node *sum = &equations->residual[free_ones->positions[k].column];
+    *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->constraint_forces));
+  }
+  for (size_t k = 0; k < driven->count; k++) {
+    Node *sum = &equations->reactions[model->drives[driven->positions[k].column].reaction];
+    *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->constraint_forces));
+  }
   for (size_t j = 0; j < constraints->count; j++) {
     equations->residual[equations->count + j] = constraints->acceleration[j];
-    equations->right_side[equations->count + j] = negate(model->graph, constraints->acceleration_rest[j]);
+    equations->right_side[equations->count + j] = negate(graph, constraints->acceleration_rest[j]);
   }
 }
 

@@ -18,16 +18,10 @@ static void check_content(const struct Reader *reader) {
                  "a system without coordinates has nothing to solve; expected no <solver>");
   if (model->work_line > 0 && !model->has_forces)
     report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && model->drive_count > 0)
-    report_error(reader->diagnostics, model->constraints.items[0].line,
-                 "the constraint '%s' beside a driven coordinate; expected one that holds the coordinate to its motion "
-                 "in place of its acceleration=\"...\"",
-                 model->constraints.items[0].name);
-  if (model->constraints.count > 0 && model->work_line > 0 && model->inputs_move)
-    report_error(
-        reader->diagnostics, model->work_line,
-        "<work/> beside the constraint '%s' and an input that moves positions or energies; expected no <work/>",
-        model->constraints.items[0].name);
+  if (model->constraints.count > 0 && model->work_line > 0 && (model->inputs_move || model->drive_count > 0))
+    report_error(reader->diagnostics, model->work_line,
+                 "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
+                 model->drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
   if (model->work_line > 0 && model->moving_constraint != NULL)
     report_error(reader->diagnostics, model->work_line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
