@@ -28,7 +28,8 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
                                              "providesDirectionalDerivative"};
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
-  write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
+  /* A step is asked for whether its state has drifted from the constraints. */
+  if (model->constraints.count == 0) write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
   xmlTextWriterEndElement(writer);

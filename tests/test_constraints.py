@@ -72,6 +72,16 @@ SLIDER = """
   <experiment stopTime="3" stepSize="0.01"/>
 </system>
 """
+JUMP = """
+<system name="Jump"><parameter name="g" start="9.81"/>
+  <coordinate name="x" velocity="vx" start="-0.2" velocityStart="1"/>
+  <coordinate name="y" velocity="vy" start="-0.1"/>
+  <particle mass="2" x="x" y="y"/>
+  <potential>2*g*y</potential>
+  <constraint name="c0">y - 0.1*sign(x)</constraint>
+  <experiment stopTime="1"/>
+</system>
+"""
 RODS = """
 <system name="Rods{count}" description="chain of rods without mass, by positions">
   <constant name="N" value="{count}"/>
@@ -110,8 +120,27 @@ SYSTEMS = {
     .replace('fixed="true"', 'fixed="true" acceleration="2.3*sin(time) + tau"')
     .replace('<input name="tau" unit="N.m"', '<input name="tau" unit="rad/s2"')
     .replace('<force coordinate="theta">tau</force>', ""),
+    "Jump": JUMP,
     "Rods8": RODS.format(count=8),
     "Angles8": ANGLES.format(count=8),
+}
+
+# Constraints that agree at the start and contradict each other later, and constraints by their whole text.
+POINT = """<system name="{name}"><parameter name="g" start="9.81"/>
+<coordinate name="x" velocity="vx" start="0.3"/><coordinate name="y" velocity="vy"/>
+<particle mass="2" x="x" y="y"/><potential>2*g*y</potential>{constraints}<experiment stopTime="1"/></system>"""
+TEXTS = {
+    "Parting": [("x - 0.3", "x - 0.3 + time^2"), ("x - 0.3", "x - 0.3 + max(0, time - 0.5)^3"),
+                ("vy - 0.1*vx", "vy - 0.1*vx - time^2"), ("y - 0.1*sin(time)", "y - 0.1*time")],
+    "Whole": [("(x^2 + y^2 - 0.09)^2",), ("abs(x^2 + y^2 - 0.25)^3",), ("sqrt(x^2 + y^2) - 0.5",), ("log(x) - log(0.3)",)],
+}  # fmt: skip
+WHOLE = {
+    f"{kind}{i}": POINT.format(
+        name=f"{kind}{i}",
+        constraints="".join(f'<constraint name="c{k}">{text}</constraint>' for k, text in enumerate(texts)),
+    )
+    for kind, rows in TEXTS.items()
+    for i, texts in enumerate(rows)
 }
 METHODS = ["taylor", "radau", "auto", "bdf", "erk"]
 
@@ -119,7 +148,7 @@ METHODS = ["taylor", "radau", "auto", "bdf", "erk"]
 @pytest.fixture(scope="module", autouse=True)
 def systems():
     others = {f"Slider{method}": SLIDER.replace("Slider", f"Slider{method}").replace("<experiment", f'<solver method="{method}" tolerance="1e-10"/><experiment') for method in METHODS}  # fmt: skip
-    build_systems("constrained", SYSTEMS | others)
+    build_systems("constrained", SYSTEMS | WHOLE | others)
 
 
 class Constrained:
@@ -357,6 +386,56 @@ def test_redundant_constraints_are_told_from_contrary_ones(open_fmu):
     contrary = open_fmu("Contrary")
     with contrary.fails(ERROR, "'other' with the others: it is -0.1 where 0 is expected"):
         contrary.initialize()
+
+
+@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("size", [0.01, 1.0])
+def test_constraints_that_part_later(number, size, open_fmu):
+    """One that follows from the other at the start, but not later, is not forgotten."""
+    instance = open_fmu(f"Parting{number}").initialize()
+    with instance.fails(DISCARD, "a constraint cannot be kept there"):
+        while instance.time < 1:
+            instance.step(size)
+    assert instance.time < 1
+
+
+def test_constraints_without_derivatives(open_fmu):
+    for name, start in (("Whole0", {"x": 0.3, "y": 0.01}), ("Whole1", {"x": 0.5, "y": 0.0})):
+        instance = open_fmu(name)
+        with instance.fails(ERROR, "'c0' has no derivatives by the coordinates where it holds"):
+            instance.initialize(start)
+
+
+def test_start_values_from_afar(open_fmu):
+    """The nearest point of a circle lies straight ahead, however far away; what has no value is told."""
+    for x, y in ((100.0, -3.0), (5.0, 5.0), (1e6, 1.0)):
+        instance = open_fmu("Whole2").initialize({"x": x, "y": y})
+        np.testing.assert_allclose(instance.get("x", "y"), np.array([x, y]) / np.hypot(x, y) / 2, atol=1e-9)
+    instance = open_fmu("Whole3")
+    with instance.fails(ERROR, "'c0' has no finite value at these start values"):
+        instance.initialize({"x": -1.0})
+
+
+def test_model_exchange_for_long():
+    """FMPy's CVode at a loose tolerance: the length of the rod does not drift."""
+    import fmpy
+
+    result = fmpy.simulate_fmu(
+        str(fmu.archive("PendulumCartesian")), fmi_type="ModelExchange", stop_time=100, output_interval=0.5, relative_tolerance=1e-4,
+        output=["x", "y"],
+    )  # fmt: skip
+    assert np.max(np.abs(np.hypot(result["x"], result["y"]) - 1)) < 5e-3
+
+
+def test_a_step_that_fails_does_not_go_back(open_fmu):
+    """The coordinate jumps at t = 0.2, inside a step of the solver that has served earlier communication steps."""
+    instance = open_fmu("Jump").initialize()
+    for _ in range(3):
+        instance.step(0.05)
+    before = instance.get("x")
+    with instance.fails(DISCARD, "stopped at time 0.1"):
+        instance.step(0.2)
+    assert instance.get("x") >= before
 
 
 def test_overconstrained_table(open_fmu):

@@ -125,7 +125,7 @@ static void log_weakest(struct Instance *instance, double time) {
     log_message(
         instance, STATUS_DISCARD,
         "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "
-        "limit of its reach",
+        "limit of its reach; constraints also end where they contradict each other, jump or have a kink",
         time, name);
 }
 
@@ -135,6 +135,8 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   const struct Solver *solver = lagrangian.solver;
   const char *function = instance->limited_by;
   if (!take_state(instance, reached)) return STEP_FAILED;
+  /* Where the constraints fail, the state is that of the solver. */
+  if (solver_project(instance, reached, instance->state) != NULL && !take_state(instance, reached)) return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   if (lagrangian.projection != NULL) log_weakest(instance, reached);
   const char *others = solver->alternatives;
@@ -158,6 +160,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   *reached = problem != NULL ? last->end : last->start;
   if (*reached > step->end) *reached = last->start;
+  if (*reached < step->start) *reached = step->start; /* what was told already stays */
   return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
 }
 

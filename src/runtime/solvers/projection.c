@@ -16,9 +16,11 @@
 
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 
-static const double converged = 1e-9;   /* a change whose square is below rounding */
-static const double largest_move = 0.5; /* of start values in one iteration, in units of their scales */
-static const double fulfilled = 1e-10;  /* what a constraint may lack, as a share of the scale of the state */
+static const double converged = 1e-9;      /* a change whose square is below rounding */
+static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
+static const double redundant_lack = 1e-8; /* the same of one that follows from others, before the last change */
+static const double vanishing = 1e-6;      /* the length of a row of J where a constraint holds, against that nearby */
+static const double fulfilled = 1e-10;     /* what a constraint may lack, as a share of the scale of the state */
 
 /* The parts of the workspace. */
 struct Work {
@@ -26,6 +28,7 @@ struct Work {
   double *lack, *pivot, *slope; /* of each constraint */
   double *moved;                /* state_count: the coordinates so far */
   double *before;               /* state_count */
+  double *first_slope;          /* of each constraint */
 };
 
 static struct Work work_of(const struct Instance *instance) {
@@ -35,6 +38,7 @@ static struct Work work_of(const struct Instance *instance) {
   work.slope = work.pivot + lagrangian.constraint_count;
   work.moved = work.slope + lagrangian.constraint_count;
   work.before = work.moved + lagrangian.state_count;
+  work.first_slope = work.before + lagrangian.state_count;
   return work;
 }
 
@@ -86,15 +90,41 @@ static double move_velocities(struct Instance *instance, double time, double *st
   return size;
 }
 
+/* Whether a constraint that follows from others holds with them: one that only did so at the start may not any more. */
+static bool others_hold(const struct Work *work, const double *state, size_t first) {
+  double scale = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+    if (isinf(work->pivot[j]) && !(fabs(work->lack[j]) <= redundant_lack * work->slope[j] * scale)) return false;
+  return true;
+}
+
+static bool has_redundant(const struct Work *work) {
+  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+    if (isinf(work->pivot[j])) return true;
+  return false;
+}
+
+/* The velocities' part of project(), at coordinates that fulfil the constraints. */
+static double project_velocities(struct Instance *instance, double time, double *state) {
+  struct Work work = work_of(instance);
+  double size = move_velocities(instance, time, state, VELOCITIES);
+  if (!isfinite(size) || !has_redundant(&work)) return size;
+  bool hold =
+      evaluate_lack(instance, time, state, VELOCITIES) && others_hold(&work, state, lagrangian.coordinate_count);
+  return hold ? size : INFINITY;
+}
+
 static double project(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
     if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;
     double size = size_of(work.change, state, 0);
+    if (size <= converged && !others_hold(&work, state, 0)) return INFINITY;
     move_positions(&work, state, 1.0);
     if (size > converged) continue;
-    double velocities = move_velocities(instance, time, state, VELOCITIES);
+    double velocities = project_velocities(instance, time, state);
     return fmax(size_of(work.moved, state, 0), velocities);
   }
   return INFINITY;
@@ -104,6 +134,13 @@ static double drift(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   return project(instance, time, work.before);
+}
+
+/* The first constraint that has no finite value. */
+static size_t find_without_value(const struct Work *work) {
+  size_t j = 0;
+  while (j + 1 < lagrangian.constraint_count && isfinite(work->lack[j])) j++;
+  return j;
 }
 
 /* The constraint that lacks most, as a way in units of the state's scale; constraint_count where none lacks anything. */
@@ -121,17 +158,30 @@ static size_t find_lacking(const struct Work *work, const double *state, size_t 
   return worst;
 }
 
-/* Moves the coordinates onto the constraints from afar; the one that cannot be fulfilled, constraint_count for none. */
+/*
+ * Moves the coordinates onto the constraints from afar, in iterations to the least way, or, where these do not end, to
+ * any point on the constraints. False where that fails.
+ */
+static bool approach_from(struct Instance *instance, double time, double *state, enum Target target, bool least) {
+  struct Work work = work_of(instance);
+  memcpy(state, work.before, lagrangian.state_count * sizeof *state);
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  for (int iteration = 0; iteration < START_LIMIT; iteration++) {
+    if (!least) memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    if (!evaluate_lack(instance, time, state, target)) return false;
+    double size = size_of(work.change, state, 0);
+    move_positions(&work, state, least && size > largest_move ? largest_move / size : 1.0);
+    if (size <= converged) return true;
+  }
+  return false;
+}
+
+/* The constraint that cannot be fulfilled; constraint_count for none. */
 static size_t approach_positions(struct Instance *instance, double time, double *state, enum Target target) {
   struct Work work = work_of(instance);
+  if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  double size = INFINITY;
-  for (int iteration = 0; iteration < START_LIMIT && size > converged; iteration++) {
-    if (!evaluate_lack(instance, time, state, target)) return 0;
-    size = size_of(work.change, state, 0);
-    move_positions(&work, state, size > largest_move ? largest_move / size : 1.0);
-  }
-  if (!evaluate_lack(instance, time, state, target)) return 0;
+  if (!evaluate_lack(instance, time, state, target)) return find_without_value(&work);
   return find_lacking(&work, state, 0);
 }
 
@@ -177,10 +227,42 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return false;
   }
-  log_error(instance,
-            "%s: no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
-            "expected start values nearer to a solution, or parameters for which there is one",
-            function, what, lagrangian.constraints[constraint], -work.lack[constraint]);
+  const char *name = lagrangian.constraints[constraint];
+  if (!isfinite(work.lack[constraint]))
+    log_error(instance, "%s: the constraint '%s' has no finite value at these start values; expected others", function,
+              name);
+  else
+    log_error(
+        instance,
+        "%s: no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
+        "expected start values nearer to a solution, fewer of them fixed, or parameters for which there is one",
+        function, what, name, -work.lack[constraint]);
+  return false;
+}
+
+/*
+ * A constraint such as (x^2 + y^2 - l^2)^2 = 0 has no derivatives where it holds, and with them no hold on the motion. The
+ * rows of J are held against those of a state nearby. Returns its number; constraint_count for none.
+ */
+static size_t find_vanishing(struct Instance *instance, double time, const double *state) {
+  struct Work work = work_of(instance);
+  size_t n = lagrangian.coordinate_count, found = 0;
+  double *nearby = work.moved; /* which the velocities do not need */
+  if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraint_count;
+  memcpy(work.first_slope, work.slope, lagrangian.constraint_count * sizeof *work.slope);
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    nearby[i] = state[i] + (i < n ? (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i) : 0.0);
+  if (!evaluate_lack(instance, time, nearby, VELOCITIES)) return lagrangian.constraint_count;
+  while (found < lagrangian.constraint_count && !(work.first_slope[found] <= vanishing * work.slope[found])) found++;
+  return found;
+}
+
+static bool refuse_vanishing(struct Instance *instance, size_t constraint, const char *function) {
+  log_error(
+      instance,
+      "%s: the constraint '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
+      "motion; expected it without a square, a root or abs of the whole, or a start away from a singular position",
+      function, lagrangian.constraints[constraint]);
   return false;
 }
 
@@ -207,10 +289,16 @@ static bool make_consistent(struct Instance *instance, bool is_start, const char
   bool keeps_fixed = is_start && lagrangian.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
-  if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "coordinates", function);
-  if (is_start) log_redundant(instance, &work);
+  size_t vanishing_one = is_start ? find_vanishing(instance, time, instance->state) : lagrangian.constraint_count;
+  if (vanishing_one < lagrangian.constraint_count) return refuse_vanishing(instance, vanishing_one, function);
+  if (lacking < lagrangian.constraint_count) {
+    memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    evaluate_lack(instance, time, instance->state, POSITIONS);
+    return refuse(instance, lacking, "coordinates", function);
+  }
   lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
   if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "velocities", function);
+  if (is_start) log_redundant(instance, &work);
   if (keeps_fixed && !keep_fixed(instance, work.before, function)) return false;
   log_moves(instance, work.before);
   return true;
