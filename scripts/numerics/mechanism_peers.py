@@ -190,9 +190,10 @@ def mujoco_text(planar, step, integrator):
     if planar.spring is not None:
         _, _, fixed, stiffness, length = planar.spring
         site = f'<site name="fixed" pos="{vector([*fixed, 0])}"/>'
-        tendon = f'<tendon><spatial stiffness="{stiffness!r}" springlength="{length!r}"><site site="pull"/><site site="fixed"/></spatial></tendon>'
-    return (f'<mujoco><compiler angle="radian" boundmass="0"/><option timestep="{step!r}" integrator="{integrator}" gravity="0 -{planar.gravity!r} 0">'
-            f'<flag contact="disable"/></option><worldbody>{site}{nested(GROUND, np.zeros(2))}</worldbody>'
+        tendon = (f'<tendon><spatial stiffness="{stiffness!r}" springlength="{length!r}">'
+                  '<site site="pull"/><site site="fixed"/></spatial></tendon>')  # fmt: skip
+    return (f'<mujoco><compiler angle="radian"/><option timestep="{step!r}" integrator="{integrator}" '
+            f'gravity="0 -{planar.gravity!r} 0"><flag contact="disable"/></option><worldbody>{site}{nested(GROUND, np.zeros(2))}</worldbody>'
             f"{tendon}<equality>{loops}</equality></mujoco>")  # fmt: skip
 
 

@@ -145,12 +145,13 @@ def cycloid(times):
 
 PROBLEMS = [
     Mechanism("PendulumCartesian", "pendulum in x and y (A01)", 10.0, "Jacobi's elliptic function", pendulum_positions, ["x", "y"],
-              [("drift", 5e-5, "IFToMM"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], pendulum(), [100, 200, 300, 1000, 3000, 10000, 30000, 100000],
-              from_bodies=lambda positions: positions[:, :2]),
+              [("drift", 5e-5, "IFToMM"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], pendulum(),
+              [100, 200, 300, 1000, 3000, 10000, 30000, 100000], from_bodies=lambda positions: positions[:, :2]),
     Mechanism("NFourBar", "row of 40 four-bar linkages (A02)", 10.0, "its energy", None, [],
               [("drift", 0.1, "IFToMM"), ("drift", 1e-4, "ours")], four_bars(40), [200, 500, 1000, 2000, 5000, 10000]),
     Mechanism("AndrewsSqueezer", "Andrews' mechanism (A03)", 0.03, "values of the IVP test set at 0.03 s", lambda times: np.array([SQUEEZED]), ANGLES,
               [("error", 1e-2, "ours"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], squeezer(), [100, 200, 300, 1000, 3000, 10000, 30000],
               at_end=True, from_bodies=squeezer_angles),
-    Mechanism("KnifeEdge", "knife edge on a slope", 10.0, "cycloid", cycloid, ["x", "y"], [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], None, []),
+    Mechanism("KnifeEdge", "knife edge on a slope", 10.0, "cycloid", cycloid, ["x", "y"],
+              [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], None, []),
 ]  # fmt: skip

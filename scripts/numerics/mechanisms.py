@@ -18,8 +18,8 @@ from numerics.stiff import ratio, time_to
 NOTES = [
     "All programs take turns in one run, and the fastest of five rounds (of two with --quick) counts; the medians and all samples are in "
     "the CSV files. An error is the largest at 100 communication points (Andrews' mechanism: at the end), relative where values are above 1.",
-    "The FMU does 100 communication steps in a C program. exudyn and MuJoCo get one call from Python, and are recorded in another run. "
-    "Models are built, and the FMU is initialized, before the clock runs.",
+    "The FMU does 100 communication steps in a C program, by the clock. exudyn and MuJoCo get one call from Python, of which the processor time "
+    "counts, and are recorded in another run. Models are built, and the FMU is initialized, before that.",
     "exudyn has planar bodies with revolute joints (a distance for the pendulum), modified Newton, one thread, and sparse matrices for the large "
     "system; its explicit methods refuse constraints. MuJoCo has a tree of hinges, so that the pendulum has one angle and no constraint, and "
     "closes loops with soft constraints, as stiff as it allows: a time constant of two steps, an impedance of 0.9999. That softness is in its errors.",
@@ -68,7 +68,7 @@ class Fmu:
 
 
 class Peer:
-    """Another program, whose one call is timed."""
+    """Another program, of whose one call the processor time counts: long runs would suffer more from other work on the machine."""
 
     def __init__(self, problem, steps, peer):
         build, method = PEERS[peer]
@@ -76,9 +76,9 @@ class Peer:
         self.record = self.model.record
 
     def run(self):
-        begin = time.perf_counter()
+        begin = time.process_time()
         self.model.run()
-        return time.perf_counter() - begin
+        return time.process_time() - begin
 
 
 def drift(problem, energies):
