@@ -8,8 +8,8 @@ import platform
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
-from numerics import energy, footprint, stiff, work_precision
-from numerics.plots import energy_plot, legend, stiff_legend, stiff_plot, work_precision_plot
+from numerics import energy, footprint, mechanisms, stiff, work_precision
+from numerics.plots import energy_plot, legend, mechanism_legend, mechanism_plot, stiff_legend, stiff_plot, work_precision_plot
 from numerics.peers import PEERS
 from numerics.scenarios import check_of_reference
 from progress import Progress
@@ -19,7 +19,7 @@ FOLDER = ROOT / "build" / "report"
 
 def machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
-    packages = ["fmpy", "scipy", "heyoka", "mujoco", "sympy", "python-flint"]
+    packages = ["fmpy", "scipy", "heyoka", "mujoco", "exudyn", "sympy", "python-flint"]
     versions = []
     for package in packages:
         try:
@@ -81,6 +81,26 @@ def stiff_section(quick, progress):
     return sentences, paragraphs([*sentences, text]) + stiff_legend(stiff.PEERS) + plots + table(stiff.HEADER, rows)
 
 
+def mechanisms_section(quick, progress):
+    """(sentences for the first screen, the section)."""
+    samples, missing = mechanisms.collect(quick, progress)
+    write_csv(FOLDER / "mechanisms.csv", mechanisms.SAMPLES_HEADER, mechanisms.sample_rows(samples))
+    rows = mechanisms.rows(samples, missing)
+    write_csv(FOLDER / "mechanism_ratios.csv", mechanisms.HEADER, rows)
+    sentences = mechanisms.summary(rows)
+    absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
+    plots = ""
+    for problem in mechanisms.PROBLEMS:
+        measure = problem.levels[0][0]
+        points = {method: mechanisms.points_of(samples, problem.system, method, measure) for method in mechanisms.METHODS}
+        plots += mechanism_plot(problem.title, mechanisms.text_of(problem, measure), points)
+    level, times, ratios = slice(0, len(mechanisms.LEVEL)), mechanisms.TIMES, mechanisms.FASTEST
+    tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
+              table(mechanisms.HEADER[level][:4] + mechanisms.HEADER[ratios], [row[level][:4] + row[ratios] for row in rows])]  # fmt: skip
+    content = paragraphs([*sentences, *absent, *mechanisms.NOTES]) + mechanism_legend() + f'<div class="plots">{plots}</div>'
+    return sentences, content + "".join(tables)
+
+
 def references_section(systems):
     header = ["system", "seconds", "reference checked with", "largest difference"]
     rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in systems]
@@ -120,12 +140,13 @@ def main():
     quick = parser.parse_args().quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     tasks = work_precision.plan(quick)
-    progress = Progress(len(tasks) + len(CASES) + len(energy.RUNS) * len(energy.METHODS) + len(stiff.plan(quick)))
+    progress = Progress(len(tasks) + len(CASES) + len(energy.RUNS) * len(energy.METHODS) + len(stiff.plan(quick)) + len(mechanisms.PROBLEMS))
     samples, failures = work_precision.collect(tasks, progress)
     work_precision.write_csv(samples, FOLDER / "work_precision.csv")
     systems = list(dict.fromkeys(s.system for s in samples))
     verdicts, stability = stability_section(stability_rows(progress))
     stiff_sentences, stiff_content = stiff_section(quick, progress)
+    mechanism_sentences, mechanism_content = mechanisms_section(quick, progress)
     energies = energy_section(quick, progress)
     left_out_header = ["FMU", "form", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
                        "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
@@ -133,7 +154,7 @@ def main():
     write_csv(FOLDER / "left_out.csv", left_out_header, left_out)
     failed = [f"{count} runs of {method} gave up or took more than a minute." for method, count in failures.items()]
     summary = work_precision.summary(samples)
-    first = [verdicts, *stiff_sentences, *missing_peers(samples),
+    first = [verdicts, *stiff_sentences, *mechanism_sentences, *missing_peers(samples),
              "Times are those of the doStep loop alone, measured in a C program, the fastest of several runs; those of Python's "
              "packages include Python, as their users see them, but no loading and no compilation."]  # fmt: skip
     plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
@@ -142,6 +163,7 @@ def main():
          "".join(paragraphs([text]) + bullets(items) for text, items in summary) + paragraphs(first)),
         ("Error against run time", paragraphs([*failed, "Left is loose, right is accurate; low is fast."]) + legend() + plots + ratio_tables(samples)),
         ("Stiff systems", stiff_content),
+        ("Mechanisms", mechanism_content),
         ("Stiff and extreme cases", stability),
         ("Energy over long runs", energies),
         ("Left out", table(left_out_header, left_out)),
@@ -151,7 +173,7 @@ def main():
     (FOLDER / "index.html").write_text(page(sections))
     for text, items in summary:
         print(text, *items, sep="\n  ")
-    print(verdicts, *stiff_sentences, sep="\n")
+    print(verdicts, *stiff_sentences, *mechanism_sentences, sep="\n")
     print(f"report  {FOLDER / 'index.html'}")
 
 

@@ -11,6 +11,8 @@ STIFF_COLOURS = {"auto": "#c1121f", "radau": "#8338ec", "taylor": "#f4a261", "bd
 STYLES = ["-", "--", ":"]  # of the ways of communication
 MARKERS = {"SciPy DOP853": "s", "SciPy LSODA": "v", "SciPy Radau": "^", "FMPy CVode (model exchange)": "D",
            "heyoka": "*", "MuJoCo RK4": "P", "MuJoCo Euler": "X"}  # fmt: skip
+MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#8338ec", "o"), "exudyn generalized-alpha": ("#2a6f97", "s"),
+                    "exudyn trapezoidal, index 2": ("#2a6f97", "v"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
 LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk": "built with erk", "bdf": "built with bdf"}
 
 def front(points):
@@ -94,6 +96,33 @@ def stiff_legend(peers):
         axes.plot([], [], style, color="#444", label=way)
     axes.axis("off")
     axes.legend(ncols=5, fontsize=8, loc="center", frameon=False)
+    return svg(figure)
+
+
+def mechanism_plot(title, measure, points):
+    """points: (seconds, error) of each method."""
+    figure, axes = plt.subplots(figsize=(6.2, 4.6))
+    for method, pairs in points.items():
+        if pairs:
+            best = front([(seconds, max(error, 1e-17)) for seconds, error in pairs])
+            colour, marker = MECHANISM_STYLES[method]
+            axes.loglog(best[:, 1], best[:, 0], color=colour, marker=marker, markersize=4, linewidth=2 if method == "taylor" else 1)
+    axes.set_xlabel(measure)
+    axes.set_ylabel("run time [s]")
+    axes.invert_xaxis()
+    axes.grid(alpha=0.3)
+    axes.set_title(title, fontsize=10)
+    figure.tight_layout()
+    return svg(figure)
+
+
+def mechanism_legend():
+    """One for all plots of mechanisms."""
+    figure, axes = plt.subplots(figsize=(11, 0.5))
+    for method, (colour, marker) in MECHANISM_STYLES.items():
+        axes.plot([], [], color=colour, marker=marker, label=method)
+    axes.axis("off")
+    axes.legend(ncols=6, fontsize=8, loc="center", frameon=False)
     return svg(figure)
 
 

@@ -108,13 +108,17 @@ def collect(quick, progress):
     return samples
 
 
-def seconds_to(samples, problem, way, method, level):
-    """The time to this error, between tolerances by powers; infinite where the method never gets there."""
-    points = [(s.seconds, max(s.error, 1e-17)) for s in samples if (s.problem, s.way, s.method) == (problem, way, method)]
+def time_to(points, level):
+    """The time to this error, between points of (seconds, error) by powers; infinite where they never get there."""
+    points = [(seconds, max(error, 1e-17)) for seconds, error in points]
     if min((error for _, error in points), default=math.inf) > level:
         return math.inf
     seconds, errors = np.log(front(points))[::-1].T
     return float(np.exp(np.interp(math.log(level), errors, seconds)))
+
+
+def seconds_to(samples, problem, way, method, level):
+    return time_to([(s.seconds, s.error) for s in samples if (s.problem, s.way, s.method) == (problem, way, method)], level)
 
 
 def ratio(numerator, denominator):

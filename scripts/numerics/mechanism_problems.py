@@ -1,0 +1,157 @@
+"""Mechanisms with known answers, each once as a planar mechanism of bodies and joints that other programs are built from."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from closed_forms import pendulum_angle
+from fmu import start_values
+from numerics.driver import POINTS
+
+GRAVITY = 9.81  # m/s2, along -y
+GROUND = None
+
+
+@dataclass
+class Body:
+    """At the start: centre of mass, and velocities; angles count from there. An inertia of 0 is a mass point."""
+
+    mass: float
+    inertia: float
+    centre: np.ndarray
+    velocity: tuple = (0.0, 0.0)
+    rate: float = 0.0
+
+
+@dataclass
+class Joint:
+    """A hinge; the first one of a body hangs it on what has been hung before, as a tree, and further ones close loops."""
+
+    body: int
+    other: int | None  # or GROUND
+    point: np.ndarray  # at the start
+
+
+@dataclass
+class Planar:
+    bodies: list
+    joints: list
+    gravity: float = GRAVITY
+    torque: tuple = (0, 0.0)  # (body, N m)
+    spring: tuple | None = None  # (body, its point at the start, point of the ground, stiffness, length at rest)
+
+    def energy(self, positions, velocities):
+        """Of rows of (x, y, angle) and their rates for each body; without springs."""
+        masses = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies]).ravel()
+        weights = np.array([[0.0, self.gravity * body.mass, 0.0] for body in self.bodies]).ravel()
+        return velocities**2 @ masses / 2 + positions @ weights
+
+
+@dataclass
+class Mechanism:
+    system: str  # in fmu/
+    title: str
+    end: float  # s
+    reference: str  # what is right
+    expected: Callable | None  # rows of what is compared, at times; without it, energy is the measure
+    compared: list  # names of those states of the FMU
+    levels: list  # errors at which times are compared: (of "drift" in J or "error", level, whose it is)
+    planar: Planar | None  # None where the other programs cannot express it
+    steps: list  # numbers of fixed steps, multiples of POINTS
+    at_end: bool = False  # the reference is known at the end alone
+    from_bodies: Callable | None = None  # what is compared, of rows of (x, y, angle) of the bodies
+
+    @property
+    def times(self):
+        return np.array([self.end]) if self.at_end else self.end * np.arange(1, POINTS + 1) / POINTS
+
+    def error(self, rows):
+        """The largest over the communication points, relative where values are above 1; not a number without a reference."""
+        if self.expected is None:
+            return np.nan
+        exact = self.expected(self.times)
+        return float(np.max(np.abs(rows[-len(exact) :] - exact) / np.maximum(1.0, np.abs(exact))))
+
+    def start_energy(self):
+        rows = [[np.array([*body.centre, 0.0]), np.array([*body.velocity, body.rate])] for body in self.planar.bodies]
+        positions, velocities = (np.concatenate([row[i] for row in rows]) for i in (0, 1))
+        return float(self.planar.energy(positions, velocities))
+
+
+def direction(angle):
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def pendulum():
+    """A mass of 1 kg on a rod of 1 m, let go where it is level."""
+    return Planar([Body(1.0, 0.0, np.array([-1.0, 0.0]))], [Joint(0, GROUND, np.zeros(2))])
+
+
+def pendulum_positions(times):
+    angles = np.array([pendulum_angle(-np.pi / 2, np.sqrt(GRAVITY), t) for t in times])
+    return np.array([np.sin(angles), -np.cos(angles)]).T
+
+
+def four_bars(count):
+    """Windows of uniform rods of 1 kg and 1 m, upright, whose upper joints move with 1 m/s to the right."""
+    pillars = [Body(1.0, 1 / 12, np.array([i, 0.5]), (0.5, 0.0), -1.0) for i in range(count + 1)]
+    beams = [Body(1.0, 1 / 12, np.array([i + 0.5, 1.0]), (1.0, 0.0)) for i in range(count)]
+    feet = [Joint(i, GROUND, np.array([i, 0.0])) for i in range(count + 1)]
+    left = [Joint(count + 1 + i, i, np.array([i, 1.0])) for i in range(count)]
+    right = [Joint(count + 1 + i, i + 1, np.array([i + 1, 1.0])) for i in range(count)]
+    return Planar(pillars + beams, feet + left + right)
+
+
+def squeezer():
+    """Andrews' mechanism, of the numbers and names that fmu/AndrewsSqueezer has from the test set for initial value problems."""
+    value = start_values("AndrewsSqueezer")
+    lengths = ["rr", "ra", "d", "da", "e", "ea", "sa", "sb", "sc", "sd", "ta", "tb", "u", "ua", "ub", "zf", "zt", "fa"]
+    rr, ra, d, da, e, ea, sa, sb, sc, sd, ta, tb, u, ua, ub, zf, zt, fa = (value[name] for name in lengths)
+    a, b, c = (np.array([value[f"x{name}"], value[f"y{name}"]]) for name in "abc")
+    crank, rod, lever = (direction(value["beta"]), direction(value["beta"] + value["theta"]), direction(value["gamma"]))
+    left, upper = direction(value["phi"] + value["delta"]), direction(value["delta"])
+    right, lower = direction(value["omega"] + value["epsilon"]), direction(value["epsilon"])
+    below = lambda way: np.array([way[1], -way[0]])  # turned by -90 degrees
+    knee, left_joint, right_joint = rr * crank - d * rod, a + zt * upper, a + u * below(lower)
+    centres = [ra * crank, rr * crank - da * rod, b + sa * below(lever) + sb * lever, left_joint + (e - ea) * below(left),
+               a + ta * upper - tb * below(upper), right_joint + (zf - fa) * right, a + ua * below(lower) - ub * lower]  # fmt: skip
+    bodies = [Body(value[f"m{i}"], value[f"I{i}"], centre) for i, centre in enumerate(centres, 1)]
+    joints = [Joint(0, GROUND, np.zeros(2)), Joint(1, 0, rr * crank), Joint(2, GROUND, b), Joint(4, GROUND, a),
+              Joint(6, GROUND, a), Joint(3, 4, left_joint), Joint(5, 6, right_joint),
+              Joint(2, 1, knee), Joint(3, 1, knee), Joint(5, 1, knee)]  # fmt: skip
+    spring = (2, b + sc * below(lever) + sd * lever, c, value["c0"], value["l0"])
+    return Planar(bodies, joints, 0.0, (0, value["torque"]), spring)
+
+
+ANGLES = ["beta", "theta", "gamma", "phi", "delta", "omega", "epsilon"]
+# At 0.03 s, of the test set for initial value problems (Mazzia and Magherini).
+SQUEEZED = [15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
+            0.5244099658805304, 0.5347301163226948, 1.048080741042263]  # fmt: skip
+
+
+def squeezer_angles(positions):
+    """The angles of the test set, of which some are relative ones, of those by which the seven bodies have turned."""
+    value = start_values("AndrewsSqueezer")
+    one, two, three, four, five, six, seven = positions[:, 2::3].T
+    return np.array([one, two - one, three, four - five, five, six - seven, seven]).T + [value[name] for name in ANGLES]
+
+
+def cycloid(times):
+    """Of the knife edge (Neimark and Fufaev)."""
+    scale = GRAVITY * np.sin(0.2) / 2
+    return scale * np.array([np.sin(times) ** 2, times - np.sin(2 * times) / 2]).T
+
+
+PROBLEMS = [
+    Mechanism("PendulumCartesian", "pendulum in x and y (A01)", 10.0, "Jacobi's elliptic function", pendulum_positions, ["x", "y"],
+              [("drift", 5e-5, "IFToMM"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], pendulum(),
+              [100, 200, 300, 1000, 3000, 10000, 30000, 100000], from_bodies=lambda positions: positions[:, :2]),
+    Mechanism("NFourBar", "row of 40 four-bar linkages (A02)", 10.0, "its energy", None, [],
+              [("drift", 0.1, "IFToMM"), ("drift", 1e-4, "ours")], four_bars(40), [200, 500, 1000, 2000, 5000, 10000]),
+    Mechanism("AndrewsSqueezer", "Andrews' mechanism (A03)", 0.03, "values of the IVP test set at 0.03 s", lambda times: np.array([SQUEEZED]), ANGLES,
+              [("error", 1e-2, "ours"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], squeezer(), [100, 200, 300, 1000, 3000, 10000, 30000],
+              at_end=True, from_bodies=squeezer_angles),
+    Mechanism("KnifeEdge", "knife edge on a slope", 10.0, "cycloid", cycloid, ["x", "y"],
+              [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], None, []),
+]  # fmt: skip
