@@ -183,7 +183,7 @@ def test_scripts_refuse_to_set_it(script, words, message, tmp_path):
     ('<parameter name="a" value="n"/>', "unknown name 'n'"),
     ('<parameter name="J" value="m"/>', "the name 'J' is already defined on line 3"),
     ('<parameter name="l" value="m"/>', "the name 'l' is already defined on line"),
-    ('<parameter name="a" unit="m"/>', '<parameter> needs the attribute \'start\'; expected start="...", or value="..."'),
+    ('<parameter name="a" unit="m"/>', '<parameter> needs the attribute \'start\'; expected start="...", value="..." for one that'),
     ('<parameter name="a" value=""/>', 'value="" of <parameter> is empty'),
     ('<parameter name="a" start="J"/>', "unknown name 'J'"),
 ])  # fmt: skip

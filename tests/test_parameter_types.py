@@ -108,7 +108,7 @@ def test_a_boolean_that_is_neither(open_fmu):
     from ctypes import c_int, c_size_t, c_uint
 
     instance = open_fmu("TypesFall")
-    with instance.fails(ERROR, "the value for 'on' is 2; expected fmi2True or fmi2False"):
+    with instance.fails(ERROR, "the value for 'on' is 2; expected true or false"):
         instance.fmu.fmi2SetBoolean(instance.fmu.component, (c_uint * 1)(*instance.vr("on")), c_size_t(1), (c_int * 1)(2))
 
 

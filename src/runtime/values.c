@@ -84,8 +84,8 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
     return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
                      value);
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
-    return log_error(instance, "%s: the value for '%s' is %g; expected fmi2True or fmi2False, which are 1 and 0",
-                     function, variable->name, value);
+    return log_error(instance, "%s: the value for '%s' is %g; expected true or false, which are 1 and 0", function,
+                     variable->name, value);
   if (value < variable->minimum || value > variable->maximum)
     return log_error(instance, "%s: %g for '%s' is outside its range from %g to %g", function, value, variable->name,
                      variable->minimum, variable->maximum);
