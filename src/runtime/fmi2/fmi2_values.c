@@ -4,51 +4,48 @@
 #include "fmi2_life_cycle.h"
 #include "values.h"
 
+/* The instance where the function may be called with these arrays; NULL after logging where it may not. */
+static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,
+                                          const fmi2ValueReference vr[], size_t nvr, const void *value) {
+  struct Instance *instance = enter(c, function, name);
+  bool are_right = instance != NULL && check_array(instance, vr, nvr, name, "vr") &&
+                   check_array(instance, value, nvr, name, "value");
+  return are_right ? instance : NULL;
+}
+
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
-  struct Instance *instance = enter(c, FUNCTION_GET_VALUE, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_get(instance, vr, nvr, value, __func__));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
-  struct Instance *instance = enter(c, FUNCTION_GET_VALUE, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
-  struct Instance *instance = enter(c, FUNCTION_SET_REAL, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_set(instance, vr, nvr, value, __func__));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
-  struct Instance *instance = enter(c, FUNCTION_GET_VALUE, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
-  struct Instance *instance = enter(c, FUNCTION_SET_DISCRETE, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
-  struct Instance *instance = enter(c, FUNCTION_SET_DISCRETE, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, value, nvr, __func__, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
+  if (instance == NULL) return fmi2Error;
   return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
 }
 
