@@ -2,6 +2,13 @@
 
 #include <math.h>
 
+const char *evaluate_state_name(size_t state) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++)
+    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == state)
+      return lagrangian.variables[i].name;
+  return "";
+}
+
 void log_singularity(const struct Instance *instance, enum Status status, double time) {
   if (instance->singular == 0) {
     log_message(
@@ -12,10 +19,7 @@ void log_singularity(const struct Instance *instance, enum Status status, double
     return;
   }
   size_t coordinate = (size_t)instance->singular - 1;
-  const char *name = "";
-  for (size_t i = 0; i < lagrangian.variable_count; i++)
-    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == coordinate)
-      name = lagrangian.variables[i].name;
+  const char *name = evaluate_state_name(coordinate);
   log_message(instance, status,
               "time %g: the mass matrix is singular or not positive definite in coordinate '%s' (%s = %g); it depends "
               "on %s: keep these away from values where the coordinate is not defined",

@@ -11,6 +11,9 @@ static inline bool are_finite(const double *value, size_t count) {
   return sum == 0.0;
 }
 
+/* The name of the state with this index. */
+const char *evaluate_state_name(size_t state);
+
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);
 

@@ -18,9 +18,9 @@ enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 
 static const double converged = 1e-9;      /* a change whose square is below rounding */
 static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
+static const double fulfilled = 1e-10;     /* what a constraint may lack, as a share of the scale of the state */
 static const double redundant_lack = 1e-8; /* the same of one that follows from others, before the last change */
 static const double vanishing = 1e-6;      /* the length of a row of J where a constraint holds, against that nearby */
-static const double fulfilled = 1e-10;     /* what a constraint may lack, as a share of the scale of the state */
 
 /* The parts of the workspace. */
 struct Work {
@@ -54,6 +54,13 @@ static double size_of(const double *value, const double *state, size_t first) {
     if (!(size <= largest)) largest = size;
   }
   return largest;
+}
+
+/* The largest scale among the coordinates, or the velocities, where first is the first of them. */
+static double largest_scale(const double *state, size_t first) {
+  double scale = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  return scale;
 }
 
 /* What is to fulfil the constraints: coordinates or velocities, those of a step or of the start. */
@@ -92,8 +99,7 @@ static double move_velocities(struct Instance *instance, double time, double *st
 
 /* Whether a constraint that follows from others holds with them: one that only did so at the start may not any more. */
 static bool others_hold(const struct Work *work, const double *state, size_t first) {
-  double scale = 0.0;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraint_count; j++)
     if (isinf(work->pivot[j]) && !(fabs(work->lack[j]) <= redundant_lack * work->slope[j] * scale)) return false;
   return true;
@@ -146,8 +152,7 @@ static size_t find_without_value(const struct Work *work) {
 /* The constraint that lacks most, as a way in units of the state's scale; constraint_count where none lacks anything. */
 static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
   size_t worst = lagrangian.constraint_count;
-  double scale = 0.0, most = fulfilled;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  double scale = largest_scale(state, first), most = fulfilled;
   for (size_t j = 0; j < lagrangian.constraint_count; j++) {
     double way = work->lack[j] == 0.0 ? 0.0 : fabs(work->lack[j]) / (work->slope[j] * scale);
     if (way > most) {
@@ -192,13 +197,6 @@ static size_t approach_velocities(struct Instance *instance, double time, double
   return find_lacking(&work, state, lagrangian.coordinate_count);
 }
 
-static const char *name_of_state(size_t index) {
-  for (size_t i = 0; i < lagrangian.variable_count; i++)
-    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == index)
-      return lagrangian.variables[i].name;
-  return "";
-}
-
 static void log_moves(const struct Instance *instance, const double *before) {
   char text[600] = "";
   int length = 0;
@@ -206,7 +204,7 @@ static void log_moves(const struct Instance *instance, const double *before) {
     double after = instance->state[i];
     if (fabs(after - before[i]) <= instance->situation->tolerance * scale_of(before, i)) continue;
     length += snprintf(text + length, sizeof text - (size_t)length, "%s%.60s from %.9g to %.9g", length > 0 ? ", " : "",
-                       name_of_state(i), before[i], after);
+                       evaluate_state_name(i), before[i], after);
   }
   if (length > 0)
     log_message(instance, STATUS_DONE, "time %g: moved to fulfil the constraints: %s%s", instance->situation->time,
@@ -275,7 +273,7 @@ static bool keep_fixed(struct Instance *instance, const double *before, const ch
       log_error(instance,
                 "%s: the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
                 "start value there, or fewer fixed coordinates",
-                function, name_of_state(i), instance->state[i], before[i]);
+                function, evaluate_state_name(i), instance->state[i], before[i]);
       return false;
     }
     instance->state[i] = before[i];
