@@ -92,8 +92,8 @@ Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolK
   struct Motions velocities = motions_of_velocities(model, seeds, kind);
   Node *force = allocate(count, sizeof *force), *along = allocate(count, sizeof *along);
   weighted_gradient_of(graph, positions.moved, positions.force, positions.count, kind, count, force);
-  weighted_gradient_of(graph, velocities.moved, velocities.force, velocities.count, kind == COORDINATE ? VELOCITY : kind,
-                       count, along);
+  weighted_gradient_of(graph, velocities.moved, velocities.force, velocities.count,
+                       kind == COORDINATE ? VELOCITY : kind, count, along);
   if (kind == COORDINATE)
     for (size_t i = 0; i < count; i++) force[i] = add(graph, force[i], along[i]);
   else

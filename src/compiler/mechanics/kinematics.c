@@ -16,7 +16,8 @@ struct Vector vector_cross(struct Graph *graph, struct Vector a, struct Vector b
   struct Vector product;
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
-    product.along[i] = subtract(graph, multiply(graph, a.along[j], b.along[k]), multiply(graph, a.along[k], b.along[j]));
+    product.along[i] =
+        subtract(graph, multiply(graph, a.along[j], b.along[k]), multiply(graph, a.along[k], b.along[j]));
   }
   return product;
 }
@@ -59,11 +60,9 @@ void pose_translate(struct Graph *graph, struct Pose *pose, struct Vector offset
 
 /* turn: from the components along the new axes to those along the present ones; spin: its angular velocity. */
 static void turn_axes(struct Graph *graph, struct Pose *pose, const struct Matrix *turn, struct Vector spin) {
-  for (int i = 0; i < 3; i++)
-    pose->rotation.row[i] = matrix_apply_transposed(graph, turn, pose->rotation.row[i]);
+  for (int i = 0; i < 3; i++) pose->rotation.row[i] = matrix_apply_transposed(graph, turn, pose->rotation.row[i]);
   pose->velocity = matrix_apply_transposed(graph, turn, pose->velocity);
-  pose->angular_velocity =
-      vector_add(graph, matrix_apply_transposed(graph, turn, pose->angular_velocity), spin);
+  pose->angular_velocity = vector_add(graph, matrix_apply_transposed(graph, turn, pose->angular_velocity), spin);
 }
 
 /* Rodrigues: cos I + sin [e x] + (1 - cos) e e^T */
@@ -91,7 +90,8 @@ void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node 
   for (int i = 0; i < 4; i++) square[i] = power_number(graph, q[i], 2.0);
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
-    turn.row[i].along[i] = subtract(graph, add(graph, square[0], square[i + 1]), add(graph, square[j + 1], square[k + 1]));
+    turn.row[i].along[i] =
+        subtract(graph, add(graph, square[0], square[i + 1]), add(graph, square[j + 1], square[k + 1]));
     Node product = multiply(graph, q[i + 1], q[j + 1]), lever = multiply(graph, q[0], q[k + 1]);
     turn.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, lever));
     turn.row[j].along[i] = scale(graph, 2.0, add(graph, product, lever));

@@ -165,8 +165,7 @@ static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *bod
 }
 
 static struct Vector undisplaced(struct Reader *reader, const struct Body *body, struct Vector vector) {
-  for (int i = 0; i < 3; i++)
-    vector.along[i] = without_displacements(reader, body->line, body->name, vector.along[i]);
+  for (int i = 0; i < 3; i++) vector.along[i] = without_displacements(reader, body->line, body->name, vector.along[i]);
   return vector;
 }
 
@@ -241,10 +240,11 @@ static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
   if (!xmlStrEqual(node->name, (const xmlChar *)"body")) return true;
   if (is_in_frame ? !has_angle && !has_inertia : has_angle && has_inertia && !has_moments) return true;
   report_error(reader->diagnostics, xmlGetLineNo(node),
-               is_in_frame ? "a <body> in a frame turns with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
-                             "and inertia"
-                           : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
-                             "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
+               is_in_frame
+                   ? "a <body> in a frame turns with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
+                     "and inertia"
+                   : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
+                     "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
   return false;
 }
 

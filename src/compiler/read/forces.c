@@ -105,7 +105,8 @@ static struct Vector read_components(struct Reader *reader, xmlNodePtr node, con
 }
 
 /* From the axes of the frame to those of the base, both where nothing is displaced. */
-static struct Vector along_base(struct Reader *reader, long line, const struct ReferenceFrame *frame, struct Vector vector) {
+static struct Vector along_base(struct Reader *reader, long line, const struct ReferenceFrame *frame,
+                                struct Vector vector) {
   struct Matrix rotation = frame->pose.rotation;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -235,4 +236,3 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   free(coordinate);
   free(on);
 }
-

@@ -16,7 +16,7 @@ static const char *const frame_components[] = {"x",   "y",   "z",   "R11", "R12"
 static const char *const point_components[] = {"x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", NULL};
 static const char *const particle_components[] = {"x", "y", "z", "vx", "vy", "vz", NULL};
 static const char *const planar_components[] = {"x", "y", "z", "angle", NULL};
-static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy",     "vz",    "omegaX",
+static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy",     "vz", "omegaX",
                                               "omegaY", "omegaZ", "alphaX", "alphaY", "alphaZ", NULL};
 
 static bool is_element(xmlNodePtr node, const char *name) {
@@ -131,7 +131,8 @@ static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const c
     report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; did you mean '%s'?", name,
                  similar.best);
   else
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; expected the name of a <frame>", name);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; expected the name of a <frame>",
+                 name);
 }
 
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {
@@ -203,7 +204,8 @@ static struct Pose pose_of_planar_body(struct Reader *reader, xmlNodePtr node, c
   return pose;
 }
 
-static struct Pose read_pose(struct Reader *reader, xmlNodePtr node, const char *name, const struct ReferenceFrame *parent) {
+static struct Pose read_pose(struct Reader *reader, xmlNodePtr node, const char *name,
+                             const struct ReferenceFrame *parent) {
   struct Pose pose = parent->pose;
   if (is_element(node, "body")) return pose_of_planar_body(reader, node, name);
   for (xmlNodePtr step = node->children; step != NULL; step = step->next) {
@@ -266,8 +268,7 @@ static struct Vector vector_of(struct Scope *scope, const struct Pose *pose, con
   if (strncmp(component, "omega", 5) == 0) return pose->angular_velocity;
   if (strncmp(component, "alpha", 5) == 0) return derivative_of(scope, pose->angular_velocity);
   if (component[0] == 'v') return matrix_apply(graph, &pose->rotation, point->velocity);
-  if (component[0] == 'a')
-    return matrix_apply(graph, &pose->rotation, acceleration_of(scope, pose, point->velocity));
+  if (component[0] == 'a') return matrix_apply(graph, &pose->rotation, acceleration_of(scope, pose, point->velocity));
   return point->position;
 }
 

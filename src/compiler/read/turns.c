@@ -73,7 +73,8 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
     if (strcmp(model->constraints.items[i].name, name) == 0) model->constraints.items[i].node = norm;
   if (!graph_depends_on(graph, norm, COORDINATE))
     report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the quaternion of '%s' holds no coordinate; expected four coordinates, whose norm is held at 1", frame);
+                 "the quaternion of '%s' holds no coordinate; expected four coordinates, whose norm is held at 1",
+                 frame);
   free(frame);
   free(name);
 }
@@ -98,8 +99,8 @@ static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name
   for (char *part = strtok_r(text, blanks, &rest); part != NULL; part = strtok_r(NULL, blanks, &rest)) found++;
   if (!is_simple && found != expected)
     report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "%s of <rotate> has %zu parts; expected %zu expressions between blanks, without blanks in them%s", name,
-                 found, expected, expected == 3 ? ", or x, y or z" : "");
+                 "%s of <rotate> has %zu parts; expected %zu expressions between blanks, without blanks in them%s",
+                 name, found, expected, expected == 3 ? ", or x, y or z" : "");
   free(text);
 }
 

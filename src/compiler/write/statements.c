@@ -113,6 +113,7 @@ void statements_results(FILE *file, const struct Program *program) {
   }
   begin_choice(file, &result_along_text);
   for (size_t i = 0; i < count; i++)
-    if (program->result_along[i] != NULL) fprintf(file, "  case %zu: return result_along%zu(point, seed, a, da);\n", i, i);
+    if (program->result_along[i] != NULL)
+      fprintf(file, "  case %zu: return result_along%zu(point, seed, a, da);\n", i, i);
   end_choice(file);
 }
