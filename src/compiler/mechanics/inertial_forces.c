@@ -74,10 +74,10 @@ static struct Motions motions_of_velocities(const struct Model *model, const Nod
     struct Vector velocity = displaced ? body->displaced_velocity : body->velocity;
     struct Vector spin = displaced ? body->displaced_angular_velocity : body->angular_velocity;
     struct Vector momentum = matrix_apply(graph, &body->tensor, body->angular_velocity);
-    struct Vector force = {{ZERO, ZERO, ZERO}}, torque = force;
+    struct Vector force = {{ZERO, ZERO, ZERO}};
     if (body->mass.node != ZERO)
       force = vector_scale(graph, body->mass.node, rate_in_frame(graph, seeds, body->angular_velocity, body->velocity));
-    torque = rate_in_frame(graph, seeds, body->angular_velocity, momentum);
+    struct Vector torque = rate_in_frame(graph, seeds, body->angular_velocity, momentum);
     for (int axis = 0; axis < 3; axis++) {
       append(&motions, velocity.along[axis], force.along[axis]);
       append(&motions, spin.along[axis], torque.along[axis]);

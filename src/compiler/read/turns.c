@@ -80,7 +80,7 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
 }
 
 static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
-  Node q[4], rate[4];
+  Node q[4] = {ZERO, ZERO, ZERO, ZERO}, rate[4];
   read_expressions(reader, node, "quaternion", IN_MASS | KIND(COORDINATE) | KIND(TIME), 4, q);
   if (definitions_are_waiting(reader->definitions) || reader->diagnostics->errors > 0) return;
   for (int i = 0; i < 4; i++) rate[i] = total_time_derivative(reader->scope, q[i]);
