@@ -107,9 +107,11 @@ def _shown_rows(elements, count):
     return np.unique(np.linspace(0, count - 1, frames).round().astype(int))
 
 
-def _trails(elements):
-    """A few, or that of the last one."""
-    moving = [i for i, e in enumerate(elements) if e.kind in ("particle", "point") and np.ptp(e.position, axis=0).any()]
+def _trails(elements, found):
+    """Of particles, points and bodies without joints: a few, or that of the last one."""
+    jointed = {end.element for ends in found for end in ends}
+    free = [i for i, e in enumerate(elements) if e.kind in ("particle", "point") or (e.angle is not None and i not in jointed)]
+    moving = [i for i in free if np.ptp(elements[i].position, axis=0).any()]
     return set(moving if len(moving) <= MAX_TRAILS else moving[-1:])
 
 
@@ -120,8 +122,9 @@ def scene_data(description, elements, times):
     boxes = [box_of(element, directions.get(i)) for i, element in enumerate(elements)]
     view = _view(elements, [sides for sides, _ in boxes], found)
     rows = _shown_rows(elements, len(times))
-    writer, trails = _Writer(rows, view["radius"]), _trails(elements)
+    writer, trails = _Writer(rows, view["radius"]), _trails(elements, found)
     heaviest = max((e.mass for e in elements if np.isfinite(e.mass)), default=0.0) or 1.0
+    largest = 0.07 * view["radius"] / (1.0 + len(elements) / 8)
     data = []
     for i, (element, (sides, axes)) in enumerate(zip(elements, boxes)):
         one = {"kind": element.kind, "name": element.name, "position": writer.lengths(element.position)}
@@ -132,11 +135,11 @@ def scene_data(description, elements, times):
         if element.frame is not None:
             one["frame"] = element.frame
         if element.kind == "body" and sides.any():
-            one["sides"] = np.maximum(sides, 0.02 * view["radius"]).round(writer.digits).tolist()
+            one["sides"] = np.maximum(sides, sides.max() / 25).round(writer.digits + 1).tolist()
             one["axes"] = quaternions(axes[None])[0].round(5).tolist()
         else:
             share = np.cbrt(element.mass / heaviest) if np.isfinite(element.mass) else 0.5
-            one["radius"] = round(view["radius"] * (0.02 + 0.05 * share), writer.digits + 1) if element.mass else 0.0
+            one["radius"] = round(largest * (0.3 + 0.7 * share), writer.digits + 1) if element.mass else 0.0
         if i in trails:
             one["trail"] = True
         data.append(one)

@@ -108,7 +108,7 @@ function drawMark(point) {
   const seen = project(camera, point);
   if (!seen) return;
   pen.beginPath();
-  pen.arc(seen[0], seen[1], 3.5, 0, 2 * Math.PI);
+  pen.arc(seen[0], seen[1], Math.max(1.5, 3.5 / (1 + scene.elements.length / 40)), 0, 2 * Math.PI);
   pen.fillStyle = "#fff";
   pen.fill();
   pen.strokeStyle = "#333";
