@@ -270,3 +270,50 @@ def test_a_view_of_space():
         scale = camera["zoom"] * camera["distance"] / (camera["distance"] - towards)
         expected = [400 + right * scale, 300 - up * scale]
         assert any(np.allclose(circle[:2], expected, atol=0.05) for circle in circles(drawn))
+
+
+ARM = """<system name="SceneArm">
+  <parameter name="l" start="0.5" unit="m"/><parameter name="m" start="2" unit="kg"/>
+  <parameter name="a" start="0.3" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
+  <coordinate name="q" velocity="v" unit="rad" velocityStart="2"/>
+  <coordinate name="s" velocity="vs" unit="m" start="0.3"/>
+  <frame name="column"><rotate axis="y" angle="q"/></frame>
+  <frame name="slide" in="column"><translate x="s"/><rotate axis="x" angle="pi/2"/></frame>
+  <body name="arm" in="column" mass="m" x="l/2" Iyy="m*l^2/12" Izz="m*l^2/12"/>
+  <body name="block" in="slide" mass="m" Ixx="m*a^2/6" Iyy="m*a^2/6" Izz="m*a^2/6"/>
+  <particle name="load" in="slide" mass="m/3" z="0.1"/>
+  <point name="tip" in="column" x="l"/>
+  <gravity y="-g"/>
+  <experiment stopTime="3" stepSize="0.01"/>
+</system>"""
+
+
+def test_frames(tmp_path_factory):
+    """An arm that turns about the upward y axis, and a block that slides along it with a load above, where z of the slide points down."""
+    fmu.build_systems("animation", {"SceneArm": ARM})
+    text, _ = run(tmp_path_factory.mktemp("arm"), "SceneArm", "l=0.7")
+    scene, browser = scene_in(text), Browser(text)
+    assert scene["view"]["plane"] is None and scene["view"]["up"] == [0, 1, 0]
+    of = {element["name"]: i for i, element in enumerate(scene["elements"])}
+    assert [(e["kind"], e["name"]) for e in scene["elements"]] == [
+        ("frame", "column"), ("frame", "slide"), ("body", "arm"), ("body", "block"), ("particle", "load"), ("point", "tip")]  # fmt: skip
+    assert sorted(scene["elements"][of["arm"]]["sides"]) == pytest.approx([0.028, 0.028, 0.7], abs=1e-4)
+    # A cube has m a^2/6.
+    assert scene["elements"][of["block"]]["sides"] == pytest.approx([0.3] * 3, abs=1e-4)
+    links = {(link["from"][0], link["to"][0]): link["kind"] for link in scene["links"]}
+    assert links == {(of["column"], of["arm"]): "rod", (of["column"], of["tip"]): "rod", (of["slide"], of["block"]): "rod",
+                     (of["slide"], of["load"]): "rod", (of["column"], of["slide"]): "line", (-1, of["column"]): "rod"}  # fmt: skip
+    for k in (0, 100, 250):
+        tip, slide, load = (np.array(browser.eval(f"positionOf(scene.elements[{of[name]}], {k})")) for name in ("tip", "slide", "load"))
+        assert np.linalg.norm(tip) == pytest.approx(0.7, abs=1e-4) and np.cross(tip, slide) == pytest.approx(np.zeros(3), abs=1e-4)
+        assert load - slide == pytest.approx([0, -0.1, 0], abs=1e-4)
+        along, down = (np.array(browser.eval(f"turned(turnOf(scene, scene.elements[{of['slide']}], {k}), {axis})")) for axis in ([1, 0, 0], [0, 0, 1]))
+        assert along == pytest.approx(tip / 0.7, abs=2e-4) and down == pytest.approx([0, -1, 0], abs=1e-4)
+        corners = np.array(browser.eval(f"boxOf(scene, scene.elements[{of['arm']}], {k}).flatMap((face) => face.corners)"))
+        assert np.max(corners @ tip) / 0.7 == pytest.approx(0.7, abs=2e-3) and np.min(corners @ tip) / 0.7 == pytest.approx(0, abs=2e-3)
+    # Upwards is up in the picture, whatever the view.
+    browser.do('document.getElementById("picture").listeners.pointerdown({ clientX: 0, clientY: 0 })')
+    browser.do('document.getElementById("picture").listeners.pointermove({ clientX: 100, clientY: -20 })')
+    browser.frame(0.1)
+    low, high = browser.eval("[project(camera, [0, 0, 0]), project(camera, [0, 0.1, 0])]")
+    assert high[0] == pytest.approx(low[0], abs=2.0) and high[1] < low[1] - 10

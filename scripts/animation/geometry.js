@@ -86,16 +86,25 @@ function startingCamera(scene, width, height) {
     const [across, along] = camera.plane.map((axis) => Math.abs(dot(axis, add(high, scaled(low, -1)))) + 0.5 * radius);
     camera.zoom = Math.min(width / across, height / along);
   } else {
+    camera.up = scene.view.up;
     camera.distance = 4 * radius;
-    camera.zoom = (0.42 * Math.min(width, height)) / radius;
+    camera.zoom = (0.55 * Math.min(width, height)) / radius;
   }
   return camera;
 }
 
+// Two axes of the ground, which make a right-handed system with the one upwards.
+function groundAxes(up) {
+  const axis = up.findIndex((x) => x !== 0), names = ["x", "y", "z"];
+  return [unitOf(names[(axis + 1) % 3]), scaled(unitOf(names[(axis + 2) % 3]), up[axis])];
+}
+
+// Of the picture: to the right, upwards, away from the eye.
 function axesOf(camera) {
   if (camera.plane) return [...camera.plane, cross(camera.plane[1], camera.plane[0])];
-  const { azimuth, elevation } = camera, up = [0, 0, 1];
-  const outwards = [Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation)];
+  const { azimuth, elevation, up } = camera, [first, second] = groundAxes(up);
+  const level = add(scaled(first, Math.cos(azimuth)), scaled(second, Math.sin(azimuth)));
+  const outwards = add(scaled(level, Math.cos(elevation)), scaled(up, Math.sin(elevation)));
   const right = unit(cross(up, outwards));
   return [right, cross(outwards, right), scaled(outwards, -1)];
 }

@@ -111,12 +111,16 @@ def _distances(elements, first, second):
     return np.linalg.norm(_samples(elements[second].position) - start, axis=1)
 
 
+def _is_kept(distances):
+    return np.ptp(distances) <= 1e-3 * distances.max()
+
+
 def _rods(elements, places):
     """The shortest that hold all together which keep their distances, and those that they hold."""
     rigid = []
     for first, second in _pairs(places):
         distances = _distances(elements, first, second)
-        if np.ptp(distances) <= 1e-3 * distances.max():
+        if _is_kept(distances):
             rigid.append((distances.max(), first, second))
     groups, links, held = _Groups(), [], set()
     for length, first, second in sorted(rigid, key=lambda rod: rod[0]):
@@ -153,6 +157,8 @@ def links_of(elements, found):
             if end.element is not None and end.place.any():
                 links.append(Link(End(end.element, np.zeros(3)), end, "rod"))
     for i, element in enumerate(elements):
-        if element.frame is not None or element.kind == "frame":
-            links.append(Link(End(element.frame, np.zeros(3)), End(i, np.zeros(3)), "rod"))
+        kept = _is_kept(_distances(elements, element.frame, i))
+        # What moves freely in the base has no line to it.
+        if element.frame is not None or (element.kind == "frame" and kept):
+            links.append(Link(End(element.frame, np.zeros(3)), End(i, np.zeros(3)), "rod" if kept else "line"))
     return links

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from animation.links import joints, links_of
-from animation.scene import elements_of
+from animation.scene import AXES, elements_of, upwards
 
 HERE = Path(__file__).resolve().parent
 MAX_FRAMES, MAX_NUMBERS = 1500, 200_000  # which keeps a page below 2 MB
@@ -66,8 +66,8 @@ def _directions(elements, found):
     return {i: place[:2] / np.linalg.norm(place) for i, place in farthest.items()}
 
 
-def _view(elements, sizes, found):
-    """Which plane is seen, or else which axis points up; the middle and radius of it all, m."""
+def _view(elements, sizes, found, up):
+    """Which plane is seen, to the right and upwards, where all moves in one; what is where, m."""
     fixed = [end.place for ends in found for end in ends if end.element is None]
     points = np.concatenate([*(element.position for element in elements), *(place[None] for place in fixed)])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -75,16 +75,10 @@ def _view(elements, sizes, found):
         low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)  # the origin, unless it is far away
     radius = max(0.5 * float(np.linalg.norm(high - low)), *(0.5 * float(np.linalg.norm(size)) for size in sizes)) or 1.0
     moves = [bool(np.ptp(points[:, axis]) > 1e-9 * radius or abs(points[0, axis]) > 1e-9 * radius) for axis in range(3)]
-    turns = [True] * 3
-    for axis in range(3):
-        unit = np.eye(3)[axis]
-        turns[axis] = any(element.rotation is not None and not np.allclose(element.rotation[:, axis], unit, atol=1e-9) for element in elements)
-    plane = None
-    if not moves[2] and not turns[2]:
-        plane = ["x", "y"]
-    elif not moves[1] and not turns[1]:
-        plane = ["x", "z"]
-    return {"plane": plane, "low": low.tolist(), "high": high.tolist(), "radius": radius}
+    rotations = [element.rotation for element in elements if element.rotation is not None]
+    across = [axis for axis in (2, 1, 0) if not moves[axis] and all(np.allclose(turn[:, axis], np.eye(3)[axis], atol=1e-9) for turn in rotations)]
+    plane = [name for name in AXES if name != AXES[across[0]]] if across else None
+    return {"plane": plane, "up": up.tolist(), "low": low.tolist(), "high": high.tolist(), "radius": radius}
 
 
 class _Writer:
@@ -115,12 +109,12 @@ def _trails(elements, found):
     return set(moving if len(moving) <= MAX_TRAILS else moving[-1:])
 
 
-def scene_data(description, elements, times):
+def scene_data(description, elements, times, up=np.array([0.0, 0.0, 1.0])):
     """What the page draws, as in geometry.js."""
     found = joints(elements)
     directions = _directions(elements, found)
     boxes = [box_of(element, directions.get(i)) for i, element in enumerate(elements)]
-    view = _view(elements, [sides for sides, _ in boxes], found)
+    view = _view(elements, [sides for sides, _ in boxes], found, up)
     rows = _shown_rows(elements, len(times))
     writer, trails = _Writer(rows, view["radius"]), _trails(elements, found)
     heaviest = max((e.mass for e in elements if np.isfinite(e.mass)), default=0.0) or 1.0
@@ -170,4 +164,4 @@ def page(description, data):
 def write_animation(path, description, scene, result, values):
     """The page of a simulation's result, a structured array."""
     elements = elements_of(scene, result, values)
-    path.write_text(page(description, scene_data(description, elements, np.array(result["time"]))))
+    path.write_text(page(description, scene_data(description, elements, np.array(result["time"]), upwards(scene, values))))

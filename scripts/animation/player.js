@@ -27,21 +27,26 @@ function line(points, color, width, dash = []) {
   pen.stroke();
 }
 
+let written = []; // where names stand already
+
 function write(text, point, color, beside = 0) {
   const seen = project(camera, point);
   if (!seen) return;
-  const distance = 5 + beside * seen[3];
+  const x = seen[0] + 5 + beside * seen[3];
+  let y = seen[1] - 5 - beside * seen[3];
+  while (written.some((other) => Math.abs(other[0] - x) < 30 && Math.abs(other[1] - y) < 12)) y += 12;
+  written.push([x, y]);
   pen.fillStyle = color;
-  pen.fillText(text, seen[0] + distance, seen[1] - distance);
+  pen.fillText(text, x, y);
 }
 
 // In the plane of the motion over the whole picture, or on the ground below it.
 function drawGrid() {
-  const { low, high, radius } = scene.view, planar = camera.plane !== undefined;
-  const [across, along] = planar ? camera.plane : [unitOf("x"), unitOf("y")];
+  const { low, high, radius, up } = scene.view, planar = camera.plane !== undefined;
+  const [across, along] = planar ? camera.plane : groundAxes(up);
   const step = niceStep(planar ? 70 / camera.zoom : radius / 4);
   const reach = planar ? [camera.width, camera.height].map((size) => size / 2 / camera.zoom) : [2 * radius, 2 * radius];
-  const ground = planar ? [0, 0, 0] : [0, 0, Math.min(low[2], 0)];
+  const ground = planar ? [0, 0, 0] : scaled(up, Math.min(dot(up, low), dot(up, high), 0));
   const ranges = [across, along].map((axis, i) => {
     const middle = dot(axis, planar ? camera.centre : scaled(add(low, high), 0.5));
     return [Math.floor((middle - reach[i]) / step), Math.ceil((middle + reach[i]) / step)];
@@ -159,6 +164,7 @@ function draw() {
   camera = camera || startingCamera(scene, width, height);
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);
+  written = [];
   pen.font = "12px system-ui, sans-serif";
   pen.lineCap = pen.lineJoin = "round";
   const place = placeOf(scene.times, state.time);

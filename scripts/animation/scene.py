@@ -9,14 +9,18 @@ from xml.etree import ElementTree
 import numpy as np
 
 AXES = "xyz"
+TURN = [f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]  # of a frame, row by row
 FUNCTIONS = {name: getattr(math, name) for name in "sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh".split()}
 FUNCTIONS |= {"abs": abs, "min": min, "max": max, "sign": lambda x: math.copysign(bool(x), x)}
 NAME = re.compile(r"(?<![\w.])[A-Za-z_][\w.]*(?:\[[^]]*\])*(?!\()")
 
 
+KINDS = ("particle", "body", "frame", "point")
+
+
 @dataclass
 class Element:
-    kind: str  # particle, body, frame or point
+    kind: str  # one of KINDS
     name: str
     position: np.ndarray  # m along the base axes, a row for each time
     mass: float = 0.0  # kg; NaN where it is not known
@@ -44,8 +48,7 @@ def read_scene(fmu):
 
 def variables_of(scene, known):
     """The names of the variables that tell where the elements are."""
-    components = [*AXES, "angle", *(f"R[{i},{j}]" for i in (1, 2, 3) for j in (1, 2, 3))]
-    names = (f"{element.get('name')}.{component}" for element in scene for component in components)
+    names = (f"{element.get('name')}.{component}" for element in scene for component in [*AXES, "angle", *TURN])
     return [name for name in names if name in known]
 
 
@@ -62,17 +65,25 @@ def _inertia(element, values):
     return np.array([[of("I" + "".join(sorted(a + b))) for b in AXES] for a in AXES])
 
 
+def upwards(scene, values):
+    """The axis, with its sign, that is nearest to the opposite of gravity; z where the scene does not tell."""
+    gravity = np.array([value_of(element.get(axis, "0"), values) for element in scene if element.tag == "gravity" for axis in AXES])
+    if not np.isfinite(gravity).all() or not gravity.any():
+        return np.array([0.0, 0.0, 1.0])
+    return np.where(abs(gravity) == abs(gravity).max(), -np.sign(gravity), 0.0)
+
+
 def elements_of(scene, result, values):
     """Of a simulation's result, a structured array, with these values of the parameters."""
-    places, elements = {"base": None}, []
+    scene = [element for element in scene if element.tag in KINDS]
+    frames = {element.get("name"): place for place, element in enumerate(scene) if element.tag in ("frame", "body")}
+    elements = []
     for element in scene:
         name = element.get("name")
-        known = Element(element.tag, name, _columns(result, name, AXES), frame=places.get(element.get("in", "base")))
+        known = Element(element.tag, name, _columns(result, name, AXES), frame=frames.get(element.get("in")))
+        known.mass = value_of(element.get("mass", "0"), values)
         if element.tag == "frame":
-            places[name] = len(elements)
-            known.rotation = _columns(result, name, [f"R[{i},{j}]" for i in (1, 2, 3) for j in (1, 2, 3)]).reshape(-1, 3, 3)
-        if element.tag in ("particle", "body"):
-            known.mass = value_of(element.get("mass"), values)
+            known.rotation = _columns(result, name, TURN).reshape(-1, 3, 3)
         if element.tag == "body":
             known.inertia = _inertia(element, values)
         if f"{name}.angle" in result.dtype.names:
