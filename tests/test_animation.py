@@ -168,6 +168,9 @@ def test_directions_of_rods():
     found = joints([pillar, plate])
     assert len(found) == 1 and found[0][0].element is None and found[0][0].place == pytest.approx([0, 0, 0], abs=1e-9)
     assert found[0][1].element == 0 and found[0][1].place == pytest.approx([0, -0.5, 0], abs=1e-9)
+    # What turns with the pillar is joined to it nowhere; both turn about the base.
+    upper = Element("body", "upper", 2.0 * upright, mass=1.0, angle=-t, inertia=np.diag([0, 0, 0.1]))
+    assert [(ends[0].element, ends[1].element) for ends in joints([pillar, upper])] == [(None, 0), (None, 1)]
     sides, axes = box_of(pillar, (0.0, -1.0))
     assert sides == pytest.approx([1.0, 0, 0]) and abs(axes[:, 0]) == pytest.approx([0, 1, 0])
     assert box_of(plate, None)[0] == pytest.approx([math.sqrt(0.9)] * 2 + [0])
