@@ -10,6 +10,7 @@ import subprocess
 import sys
 from types import SimpleNamespace
 
+import matplotlib.image
 import numpy as np
 import pytest
 import quickjs
@@ -291,9 +292,31 @@ ARM = """<system name="SceneArm">
 </system>"""
 
 
-def test_frames(tmp_path_factory):
-    """An arm that turns about the upward y axis, and a block that slides along it with a load above, where z of the slide points down."""
+@pytest.fixture(scope="module")
+def arm():
     fmu.build_systems("animation", {"SceneArm": ARM})
+    return fmu.unpacked("SceneArm")
+
+
+def test_the_icon_of_a_system_in_space(arm):
+    """A disk of 5 pixels where the load is, under the slide, whose axes stand above it; upwards is y, in green."""
+    image = matplotlib.image.imread(arm / "model.png")
+    near = lambda *color: np.argwhere(np.all(abs(image[:, :, :3] - color) < 0.05, axis=2))  # rows from the top, columns
+    load, body = near(0.85, 0.25, 0.15), near(0.25, 0.55, 0.85)
+    green = image[:, :, 1] - np.maximum(image[:, :, 0], image[:, :, 2]) > 0.1
+    assert len(load) == pytest.approx(math.pi * 5**2, rel=0.25) and np.ptp(load, axis=0) == pytest.approx([9, 9], abs=2)
+    assert len(body) > 100 and load[:, 0].mean() > body[:, 0].mean()
+    assert green.sum(axis=0).max() > 15  # a vertical line
+    assert image[0, 0] == pytest.approx(1.0)
+
+
+def test_the_documentation_shows_the_sketch(arm):
+    assert '<img src="../model.png"' in (arm / "documentation" / "index.html").read_text()
+    assert "<img" not in (fmu.unpacked("FourBar") / "documentation" / "index.html").read_text()
+
+
+def test_frames(arm, tmp_path_factory):
+    """An arm that turns about the upward y axis, and a block that slides along it with a load above, where z of the slide points down."""
     text, _ = run(tmp_path_factory.mktemp("arm"), "SceneArm", "l=0.7")
     scene, browser = scene_in(text), Browser(text)
     assert scene["view"]["plane"] is None and scene["view"]["up"] == [0, 1, 0]
