@@ -262,6 +262,9 @@ def test_a_view_of_space():
     data = scene_data(description, particles, times)
     assert data["view"]["plane"] is None
     browser = Browser(page(description, data))
+    for time in (0.0, 5.0, 10.0):
+        balls = circles(browser.to(time))
+        assert len(balls) >= 2 and all(0 <= x <= 800 and 0 <= y <= 600 for x, y, _ in balls)
     browser.do('document.getElementById("picture").listeners.pointerdown({ clientX: 10, clientY: 10 })')
     browser.do('document.getElementById("picture").listeners.pointermove({ clientX: 40, clientY: 90 })')
     browser.do('document.getElementById("picture").listeners.wheel({ deltaY: 300, preventDefault() {} })')

@@ -88,7 +88,7 @@ function startingCamera(scene, width, height) {
   } else {
     camera.up = scene.view.up;
     camera.distance = 4 * radius;
-    camera.zoom = (0.55 * Math.min(width, height)) / radius;
+    camera.zoom = (0.47 * Math.min(width, height)) / radius;
   }
   return camera;
 }
