@@ -263,6 +263,19 @@ static void write_form(xmlTextWriterPtr writer, const struct Program *program) {
   free(text);
 }
 
+/* model.png, which src/icon draws: of a system with frames, a sketch of its start. */
+static void write_sketch(xmlTextWriterPtr writer, const struct Model *model) {
+  bool has_frames = false;
+  for (size_t i = 1; i < model->frame_count; i++) has_frames |= !model->frames[i].is_of_body;
+  if (!has_frames) return;
+  xmlTextWriterStartElement(writer, BAD_CAST "p");
+  xmlTextWriterStartElement(writer, BAD_CAST "img");
+  write_attribute(writer, "src", "../model.png");
+  write_attribute(writer, "alt", "the frames and bodies at the start, with the way of the last of them");
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+}
+
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary) {
   const struct Model *model = program->model;
   const struct Equations *equations = program->equations;
@@ -281,6 +294,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
   xmlTextWriterStartElement(writer, BAD_CAST "body");
   element(writer, "h1", model->name);
   if (model->description != NULL) element(writer, "p", model->description);
+  write_sketch(writer, model);
   const struct Page page = {writer, model, equations, interface, summary};
   write_calculated(&page);
   write_definitions(&page);

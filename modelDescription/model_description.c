@@ -9,6 +9,7 @@
 #include "memory.h"
 #include "algebra/formula.h"
 #include "model_structure.h"
+#include "scene.h"
 #include "xml_output.h"
 
 /* FMUs without SUNDIALS are complete in C, as one file that the build makes of system.c and the runtime. */
@@ -209,6 +210,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   write_units(writer, interface);
   write_log_categories(writer);
   write_experiment(writer, model);
+  scene_write(writer, model);
   write_variables(writer, interface);
   model_structure_write(writer, model, equations, interface);
   xmlTextWriterEndElement(writer);

@@ -1,4 +1,4 @@
-"""Simulates an FMU with FMPy and leaves a CSV and a plot: simulate.py FMU [VARIABLE=VALUE ...]"""
+"""Simulates an FMU with FMPy and leaves a CSV, a plot and an animation: simulate.py FMU [VARIABLE=VALUE ...]"""
 
 import argparse
 import sys
@@ -11,8 +11,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
+from numpy.lib.recfunctions import repack_fields
 
-from variables import settable, why_not
+from animation.page import write_animation
+from animation.scene import read_scene, variables_of
+from variables import settable, start_values, why_not
 
 
 def start_value(text):
@@ -61,10 +64,13 @@ def main():
         if name not in free:
             what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is no variable of {description.modelName}"
             sys.exit(f"scripts/run: {what}{why_not(name, description)}; these can be: {', '.join(free)}")
+    scene = read_scene(arguments.fmu)
+    outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
     try:
-        result = simulate_fmu(
+        motion = simulate_fmu(
             arguments.fmu,
             start_values=dict(arguments.start),
+            output=outputs + variables_of(scene, known),
             fmi_type="CoSimulation",
             logger=print_problem,
             debug_logging=True,
@@ -74,10 +80,17 @@ def main():
 
     folder = Path("build/results")
     folder.mkdir(parents=True, exist_ok=True)
-    csv, plot = (folder / f"{description.modelName}.{kind}" for kind in ("csv", "png"))
+    csv, plot, animation = (folder / f"{description.modelName}.{kind}" for kind in ("csv", "png", "html"))
+    result = repack_fields(motion[["time", *outputs]])
     np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
     draw(description, result, plot)
-    print(f"FMU   {arguments.fmu.resolve()}\nCSV   {csv.resolve()}\nplot  {plot.resolve()}")
+    print(f"FMU        {arguments.fmu.resolve()}\nCSV        {csv.resolve()}\nplot       {plot.resolve()}")
+    if scene:
+        write_animation(animation, description, scene, motion, start_values(description) | dict(arguments.start))
+        print(f"animation  {animation.resolve()}")
+    else:
+        animation.unlink(missing_ok=True)
+        print("animation  none, since the system has no particles, bodies, frames or points")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,11 @@ def settable(description):
     return [v.name for v in description.modelVariables if v.start is not None and v.type == "Real"]
 
 
+def start_values(description):
+    """Of all that have one, as numbers."""
+    return {v.name: {"true": 1.0, "false": 0.0}[v.start] if v.type == "Boolean" else float(v.start) for v in description.modelVariables if v.start is not None}
+
+
 def why_not(name, description):
     """Why it cannot be set, where that needs a word."""
     calculated = [v.name for v in description.modelVariables if v.causality == "calculatedParameter"]

@@ -1,18 +1,19 @@
 /*
- * Draws an FMU's model.png: the phase portrait of its first coordinate, from a run of the FMU itself; without
- * coordinates, its first output over its first input. Usage: icon LIBRARY modelDescription.xml model.png
+ * Draws an FMU's model.png from a run of the FMU itself: a sketch of a system with frames; of others, the phase portrait of
+ * the first coordinate, or without coordinates the first output over the first input.
+ * Usage: icon LIBRARY modelDescription.xml model.png
  */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cairo.h>
-#include <dlfcn.h>
 
 #include "description.h"
-#include "fmi2.h"
+#include "library.h"
+#include "scene.h"
+#include "sketch.h"
 
 enum { SIZE = 128, MARGIN = 12, POINTS = 1500 };
 
@@ -21,70 +22,9 @@ struct Curve {
   int count;
 };
 
-/* The functions of the FMU that a run needs. */
-struct Library {
-  __typeof__(fmi2Instantiate) *instantiate;
-  __typeof__(fmi2SetupExperiment) *setup_experiment;
-  __typeof__(fmi2EnterInitializationMode) *enter_initialization_mode;
-  __typeof__(fmi2ExitInitializationMode) *exit_initialization_mode;
-  __typeof__(fmi2SetReal) *set_real;
-  __typeof__(fmi2GetReal) *get_real;
-  __typeof__(fmi2GetInteger) *get_integer;
-  __typeof__(fmi2DoStep) *do_step;
-  __typeof__(fmi2Reset) *reset;
-  __typeof__(fmi2FreeInstance) *free_instance;
-};
-
-static bool load(const char *path, struct Library *library) {
-  struct {
-    const char *name;
-    void *target;
-  } functions[] = {
-      {"fmi2Instantiate", &library->instantiate},
-      {"fmi2SetupExperiment", &library->setup_experiment},
-      {"fmi2EnterInitializationMode", &library->enter_initialization_mode},
-      {"fmi2ExitInitializationMode", &library->exit_initialization_mode},
-      {"fmi2SetReal", &library->set_real},
-      {"fmi2GetReal", &library->get_real},
-      {"fmi2GetInteger", &library->get_integer},
-      {"fmi2DoStep", &library->do_step},
-      {"fmi2Reset", &library->reset},
-      {"fmi2FreeInstance", &library->free_instance},
-  };
-  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  if (handle == NULL) fprintf(stderr, "icon: %s\n", dlerror());
-  for (size_t i = 0; i < sizeof functions / sizeof *functions && handle != NULL; i++) {
-    void *function = dlsym(handle, functions[i].name);
-    memcpy(functions[i].target, &function, sizeof function);
-  }
-  return handle != NULL;
-}
-
 static void append(struct Curve *curve, double x, double y) {
   curve->x[curve->count] = x;
   curve->y[curve->count++] = y;
-}
-
-/* A step of the FMU. False where it fails, or where the solver has taken too many steps, as for a stiff system. */
-static bool advance(const struct Library *fmu, fmi2Component c, const struct Description *description, double from,
-                    double to) {
-  /* The work of a step grows as the states do, or as their square. */
-  double limit = fmin(200000.0, fmax(300.0, 4e6 / (description->states * description->states)));
-  fmi2Integer steps = 0;
-  return fmu->do_step(c, from, to - from, fmi2True) == fmi2OK &&
-         fmu->get_integer(c, &description->solver_steps, 1, &steps) == fmi2OK && steps <= limit;
-}
-
-/* The first step, in parts that double from a tiny one: the work for a part tells that for the next. */
-static bool begin(const struct Library *fmu, fmi2Component c, const struct Description *description, double end) {
-  enum { HALVINGS = 24 };
-  double from = 0.0;
-  for (int i = HALVINGS; i >= 0; i--) {
-    double to = ldexp(end, -i);
-    if (!advance(fmu, c, description, from, to)) return false;
-    from = to;
-  }
-  return true;
 }
 
 /* Runs the FMU to the end; where it stops early or becomes too slow, the portrait ends there. */
@@ -93,8 +33,7 @@ static struct Curve run(const struct Library *fmu, fmi2Component c, const struct
   double values[2], step = end / POINTS;
   for (int i = 0; i <= POINTS; i++) {
     if (description->has_states) {
-      if (i == 1 && !begin(fmu, c, description, step)) break;
-      if (i > 1 && !advance(fmu, c, description, (i - 1) * step, i * step)) break;
+      if (i > 0 && !advance(fmu, c, description, i, step)) break;
       if (fmu->get_real(c, description->shown, 2, values) != fmi2OK) break;
     } else {
       values[0] = 10.0 * (2.0 * i / POINTS - 1.0);
@@ -144,12 +83,6 @@ static double drawn_length(const struct Curve *curve) {
   return length;
 }
 
-/* Brings a new or reset instance to its start. False where the system cannot start at its start values. */
-static bool start(const struct Library *fmu, fmi2Component c) {
-  return fmu->setup_experiment(c, fmi2True, 1e-5, 0.0, fmi2False, 0.0) == fmi2OK &&
-         fmu->enter_initialization_mode(c) == fmi2OK && fmu->exit_initialization_mode(c) == fmi2OK;
-}
-
 /* The run, or so much of its beginning that the curve is no block of lines, as that of a fast top would be. */
 static struct Curve portrait(const struct Library *fmu, fmi2Component c, const struct Description *description) {
   enum { LENGTH_LIMIT = 25, HALVINGS = 20 };
@@ -190,14 +123,26 @@ static void draw_curve(cairo_t *cairo, const struct Curve *curve, struct Range x
   cairo_fill(cairo);
 }
 
-static bool draw(const struct Curve *curve, const char *path) {
+static void draw_portrait(cairo_t *cairo, const struct Library *fmu, fmi2Component c,
+                          const struct Description *description) {
+  struct Curve curve = portrait(fmu, c, description);
+  /* A system that cannot start gets a portrait of a point. */
+  if (curve.count == 0) append(&curve, 0.0, 0.0);
+  struct Range x = range_of(curve.x, curve.count), y = range_of(curve.y, curve.count);
+  draw_axes(cairo, x, y);
+  draw_curve(cairo, &curve, x, y);
+}
+
+static bool draw(const struct Library *fmu, fmi2Component c, const struct Description *description,
+                 const struct Scene *scene, const char *path) {
   cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, SIZE, SIZE);
   cairo_t *cairo = cairo_create(surface);
-  struct Range x = range_of(curve->x, curve->count), y = range_of(curve->y, curve->count);
   cairo_set_source_rgb(cairo, 1.0, 1.0, 1.0);
   cairo_paint(cairo);
-  draw_axes(cairo, x, y);
-  draw_curve(cairo, curve, x, y);
+  bool has_scene = scene->count > 0,
+       sketched = has_scene && start(fmu, c) && sketch(cairo, SIZE, fmu, c, description, scene);
+  if (has_scene && !sketched) fmu->reset(c);
+  if (!sketched) draw_portrait(cairo, fmu, c, description);
   cairo_status_t status = cairo_surface_write_to_png(surface, path);
   if (status != CAIRO_STATUS_SUCCESS) fprintf(stderr, "icon: %s: %s\n", path, cairo_status_to_string(status));
   cairo_destroy(cairo);
@@ -208,19 +153,19 @@ static bool draw(const struct Curve *curve, const char *path) {
 int main(int count, char **words) {
   struct Description description;
   struct Library fmu;
+  struct Scene scene;
   if (count != 4) {
     fputs("usage: icon LIBRARY modelDescription.xml model.png\n", stderr);
     return 1;
   }
-  if (!description_read(words[2], &description) || !load(words[1], &fmu)) return 1;
+  if (!description_read(words[2], &description) || !scene_read(words[2], &scene) || !library_load(words[1], &fmu))
+    return 1;
   const fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
   fmi2Component c = fmu.instantiate("icon", fmi2CoSimulation, description.guid, NULL, &callbacks, fmi2False, fmi2False);
-  struct Curve curve = {.count = 0};
-  if (c != NULL) curve = portrait(&fmu, c, &description);
-  /* A system that cannot start gets a portrait of a point. */
-  if (curve.count == 0) append(&curve, 0.0, 0.0);
+  bool drawn = c != NULL && draw(&fmu, c, &description, &scene, words[3]);
   if (c != NULL) fmu.free_instance(c);
+  scene_free(&scene);
   description_free(&description);
   if (c == NULL) fputs("icon: the FMU cannot be instantiated\n", stderr);
-  return c != NULL && draw(&curve, words[3]) ? 0 : 1;
+  return drawn ? 0 : 1;
 }

@@ -44,7 +44,8 @@ struct Body {
 /* Axes that are moved and turned, as functions of displacements too. The first one is the base. */
 struct ReferenceFrame {
   char *name;
-  size_t parent; /* among the model's */
+  size_t parent;   /* among the model's */
+  bool is_of_body; /* turns with the planar body of its name */
   struct Pose pose;
 };
 
@@ -96,6 +97,7 @@ struct Model {
   struct ReferenceFrame *frames;
   size_t frame_count;
   struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
+  struct Vector gravity;     /* m/s2: the direction of what <gravity> gives, along the base's axes */
   struct Stillness *stillnesses;
   size_t stillness_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */

@@ -202,6 +202,7 @@ void read_gravity(struct Reader *reader, xmlNodePtr node) {
     struct Quantity gravity = {.node = ZERO};
     if (!expression_attribute(reader, node, axes[axis], IN_MASS, &gravity)) continue;
     require_unit(reader, xmlGetLineNo(node), axes[axis], gravity, unit_of("m/s2"));
+    model->gravity.along[axis] = gravity.node;
     for (size_t i = 0; i < model->body_count; i++) {
       const struct Body *body = &model->bodies[i];
       if (!is_of_file(reader, body->name)) continue;

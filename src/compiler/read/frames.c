@@ -45,19 +45,20 @@ static struct Vector derivative_of(struct Scope *scope, struct Vector vector) {
   return vector;
 }
 
-static void append_frame(struct Reader *reader, const char *name, size_t parent, struct Pose pose) {
+static void append_frame(struct Reader *reader, const char *name, struct ReferenceFrame frame) {
   struct Model *model = reader->model;
   size_t *place = allocate(1, sizeof *place);
   *place = model->frame_count;
   model->frames = reallocate(model->frames, model->frame_count + 1, sizeof *model->frames);
-  model->frames[model->frame_count++] = (struct ReferenceFrame){copy_text(name), parent, pose};
+  frame.name = copy_text(name);
+  model->frames[model->frame_count++] = frame;
   names_set(reader->frames, name, place);
 }
 
 void frames_begin(struct Reader *reader) {
   reader->frames = names_create();
   reader->spatial_points = names_create();
-  append_frame(reader, "base", 0, pose_of_base());
+  append_frame(reader, "base", (struct ReferenceFrame){.pose = pose_of_base()});
 }
 
 void frames_end(struct Reader *reader) {
@@ -227,7 +228,9 @@ static void read_frame(struct Reader *reader, xmlNodePtr node, const char *name)
     for (int j = 0; j < 3; j++)
       model->inputs_move |= graph_depends_on(model->graph, pose.rotation.row[i].along[j], INPUT);
   }
-  if (names_find(reader->frames, name) == NULL) append_frame(reader, name, number, pose);
+  if (names_find(reader->frames, name) != NULL) return;
+  append_frame(reader, name,
+               (struct ReferenceFrame){.parent = number, .is_of_body = is_element(node, "body"), .pose = pose});
 }
 
 static void read_point(struct Reader *reader, xmlNodePtr node, const char *name) {
