@@ -97,6 +97,16 @@ def block(t):
     return {"x": 2 * moving - 0.3 * 9.81 * moving**2 / 2, "v": 2 - 0.3 * 9.81 * moving}
 
 
+def hand_and_bob(t):
+    angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
+    return {"x": 0.1, "theta": angle, "hand.force": -2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1)) * np.sin(angle)}
+
+
+def beam_on_three(t):
+    share, lever = 25 * 9.81 / 3, 5 * 9.81 * (0.5 * t - 1) / 3
+    return {"s": 0.5 * t - 1, "left.force": share - lever, "middle.force": share, "right.force": share + lever, "z": 0.0}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -113,6 +123,7 @@ MOTIONS = {
     "RodPendulum": (rod_pendulum, 1e-6),
     "Skate": (skate, 1e-7),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
+    "BeamOnThree": (beam_on_three, 1e-10),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),
     "DampedOscillator": (damped, 1e-6),
     "MotorAndBead": (motor_and_bead, 1e-6),

@@ -214,9 +214,10 @@ static void log_moves(const struct Instance *instance, const double *before) {
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraint_count; j++)
     if (isinf(work->pivot[j]))
-      log_message(instance, STATUS_DONE,
-                  "time %g: the constraint '%s' follows from the others; they carry its load, and its force is 0",
-                  instance->situation->time, lagrangian.constraints[j]);
+      log_message(
+          instance, STATUS_DONE,
+          "time %g: the constraint '%s' follows from the others; their forces are the least that carry the load",
+          instance->situation->time, lagrangian.constraints[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what, const char *function) {
