@@ -114,6 +114,7 @@ MOTIONS = {
     "ReleasedPendulum": (lambda t: {"theta": pendulum_angle(np.arccos(0.6), np.sqrt(9.81 / 0.5), t)}, 1e-6),
     "Scale": (lambda t: {"theta": 5 * 0.02 * t**2 / (2 * (0.09 + 0.08 + 0.04)), "a[2]": 0.2}, 1e-12),
     "Catapult": (lambda t: {"x": 1 - np.cos(2 * t) if t < np.pi / 4 else 1 + 2 * (t - np.pi / 4)}, 1e-7),
+    "MotorMap": (lambda t: {"w": 1.5 * (1 - np.exp(-4 * t)), "phi": 1.5 * t - 0.375 * (1 - np.exp(-4 * t))}, 1e-7),
     "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
     "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
