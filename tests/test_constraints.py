@@ -496,6 +496,22 @@ def test_a_parameter_that_is_tuned(open_fmu):
     assert all(status <= WARNING for status, _, _ in instance.messages)
 
 
+def test_a_parameter_that_is_tuned_beyond_reach(open_fmu):
+    """The step is discarded and the state stays, as an importer needs it to try another value."""
+    instance = open_fmu("FourBar").initialize()
+    instance.step(0.1)
+    state = instance.fmu.getFMUState()
+    before = instance.get(*fmu.states_of("FourBar"))
+    instance.set(d=9.0)
+    with instance.fails(DISCARD, "time 0.1: after a parameter or an input was set, no coordinates near the present ones fulfil .*'loop"):
+        instance.step(0.1)
+    assert instance.get(*fmu.states_of("FourBar")) == before
+    instance.fmu.setFMUState(state)
+    instance.step(0.1)
+    assert all(status <= DISCARD for status, _, _ in instance.messages)
+    instance.free_state(state)
+
+
 def test_jacobian(tmp_path):
     """Column by column as the derivative along each state, which is held against differences above."""
     source = fmu.archive("Sliderbdf").parent.parent / "systems" / "Sliderbdf" / "system.c"
