@@ -534,7 +534,11 @@ MISTAKES = [
     ('<constraint name="c">l - 1</constraint>', "the constraint 'c' holds no coordinate"),
     ('<constraint name="c">vx*vy</constraint>', "the constraint 'c' is not linear in the velocities"),
     ('<constraint name="c" unit="m">x*y</constraint>', "unit mismatch: the constraint"),
-    ('<constraint name="rod">x</constraint>', "rod"),
+    ('<constraint name="rod">x</constraint>', "the name 'rod' is already defined"),
+    ('<constraint name="m">x</constraint>', "the name 'm' is already defined"),
+    ('<constraint name="vx">x</constraint>', "the name 'vx' is already defined"),
+    ('<define name="other">x</define>', "the name 'other' is already defined"),
+    ('<constraint name="c">x - rod</constraint>', "'rod' is a constraint, whose value is 0; expected rod.force for its force"),
     ('<constraint name="c">x - c.force</constraint>', "constraint"),
     ('<constraint>x</constraint>', "name"),
 ]
