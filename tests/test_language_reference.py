@@ -102,6 +102,11 @@ def hand_and_bob(t):
     return {"x": 0.1, "theta": angle, "hand.force": -2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1)) * np.sin(angle)}
 
 
+def rack_and_wheels(t):
+    x = 0.2 * np.cos(np.sqrt(1.5) / 0.2 * t)
+    return {"x": x, "a": 10 * x, "b": 5 * x, "teeth.force": 2 * 1.5 / 0.04 * x}
+
+
 def beam_on_three(t):
     share, lever = 25 * 9.81 / 3, 5 * 9.81 * (0.5 * t - 1) / 3
     return {"s": 0.5 * t - 1, "left.force": share - lever, "middle.force": share, "right.force": share + lever, "z": 0.0}
@@ -123,6 +128,7 @@ MOTIONS = {
     "HeapedChain": (lambda t: {"x": 9.81 * (0.5 + t)**2 / 6, "v": 9.81 * (0.5 + t) / 3}, 1e-8),
     "RodPendulum": (rod_pendulum, 1e-6),
     "Skate": (skate, 1e-7),
+    "RackAndWheels": (rack_and_wheels, 1e-5),
     "BeamOnThree": (beam_on_three, 1e-10),
     "Cyclotron": (lambda t: {"x": (1 - np.cos(1.5 * t)) / 1.5, "y": np.sin(1.5 * t) / 1.5}, 1e-6),
     "Wall": (lambda t: {"x": wall(t)}, 1e-6),

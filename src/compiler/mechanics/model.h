@@ -32,8 +32,8 @@ struct Body {
   struct Quantity position[3], angle;
   Node displaced[4]; /* x, y, z and angle as functions of displacements too */
   bool has_position[3], has_angle;
-  bool is_in_frame; /* has the following in place of an angle and its inertia */
-  size_t frame;     /* among the model's */
+  bool is_in_frame;     /* has the following in place of an angle and its inertia */
+  size_t frame;         /* among the model's */
   struct Vector offset; /* m, of the centre of mass along the frame's axes */
   struct Matrix tensor; /* kg.m2, about the centre of mass along the frame's axes */
   /* m/s of the centre of mass and rad/s, along the frame's axes; also as functions of displacements and their rates. */
@@ -59,11 +59,11 @@ struct Torque {
 };
 
 /*
- * What has an inertia without energy, since it rests: the rate of a holonomic constraint. Adding its inertia to M, which may be
- * singular without it, changes neither the motion nor the forces.
+ * What has an inertia without energy, since it rests: the rate of a holonomic constraint, or a nonholonomic one itself.
+ * Adding its inertia to M, which may be singular without it, changes neither the motion nor the forces.
  */
 struct Stillness {
-  Node position, inertia;
+  Node constraint, inertia;
 };
 
 /* How a coordinate moves that is driven: in a given way. */
