@@ -75,6 +75,7 @@ enum Opcode {
   CHECK_DIAGONAL, /* return the number r unless a > 1e-28 b */
   FACTOR,         /* the block r; return the coordinate's number where it is singular */
   SOLVE,          /* the block r */
+  LEAST_FORCES,   /* of the solution of the block r, which has constraints */
   SERIES_COPY,    /* a_k */
   SERIES_ZERO,    /* 0 */
   SERIES_SUM,     /* a_k + b_k */
@@ -110,9 +111,11 @@ struct BlockTable {
   size_t count, first_mass, first_side;
   const size_t *start, *column; /* NULL where the pattern is full */
   const int *coordinate;        /* of each row: 1 + its number; of a constraint -1 - its number */
-  /* saddle_factor() and saddle_solve() of a block with constraints, NULL of others */
+  /* saddle_factor(), saddle_solve() and saddle_least_forces() of a block with constraints, NULL of others */
   size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
   void (*solve)(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
+  void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                       double *x);
 };
 
 /* What all tables of a system share. */

@@ -98,6 +98,11 @@ struct LuPattern {
   const int *place, *start, *column;
 };
 
+/* An input that stands in constraints; those behind it are its time derivatives, as many as rates. */
+struct Guide {
+  size_t input, rates;
+};
+
 struct Lu;
 struct Projection;
 struct Solver;
@@ -124,7 +129,10 @@ struct Lagrangian {
   const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
   struct LuPattern lu_pattern; /* where that is lu_sparse */
   size_t constraint_count;
-  const char *const *constraints;      /* their names */
+  const char *const *constraints;       /* their names */
+  const char *const *constraint_inputs; /* the names of those that each holds, NULL for none; NULL without guides */
+  const struct Guide *guides;
+  size_t guide_count;
   const bool *coordinate_is_fixed;     /* at the start; NULL where none is */
   const struct Projection *projection; /* projection.h; NULL without constraints */
 

@@ -27,4 +27,11 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
  */
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
 
+/*
+ * Where constraints follow from others, many forces F have the same J^T F. Replaces those in x by the ones among them of
+ * least Euclidean norm.
+ */
+void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                         double *x);
+
 #endif

@@ -97,6 +97,21 @@ def block(t):
     return {"x": 2 * moving - 0.3 * 9.81 * moving**2 / 2, "v": 2 - 0.3 * 9.81 * moving}
 
 
+def hand_and_bob(t):
+    angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
+    return {"x": 0.1, "theta": angle, "hand.force": -2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1)) * np.sin(angle)}
+
+
+def rack_and_wheels(t):
+    x = 0.2 * np.cos(np.sqrt(1.5) / 0.2 * t)
+    return {"x": x, "a": 10 * x, "b": 5 * x, "teeth.force": 2 * 1.5 / 0.04 * x}
+
+
+def beam_on_three(t):
+    share, lever = 25 * 9.81 / 3, 5 * 9.81 * (0.5 * t - 1) / 3
+    return {"s": 0.5 * t - 1, "left.force": share - lever, "middle.force": share, "right.force": share + lever, "z": 0.0}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -104,6 +119,7 @@ MOTIONS = {
     "ReleasedPendulum": (lambda t: {"theta": pendulum_angle(np.arccos(0.6), np.sqrt(9.81 / 0.5), t)}, 1e-6),
     "Scale": (lambda t: {"theta": 5 * 0.02 * t**2 / (2 * (0.09 + 0.08 + 0.04)), "a[2]": 0.2}, 1e-12),
     "Catapult": (lambda t: {"x": 1 - np.cos(2 * t) if t < np.pi / 4 else 1 + 2 * (t - np.pi / 4)}, 1e-7),
+    "MotorMap": (lambda t: {"w": 1.5 * (1 - np.exp(-4 * t)), "phi": 1.5 * t - 0.375 * (1 - np.exp(-4 * t))}, 1e-7),
     "Elevator": (lambda t: {"z": 0.5 * t**3 / 6, "speed": 0.25 * t**2, "weight": 60 * (9.81 + 0.5 * t)}, 1e-9),
     "DiskOnSlope": (lambda t: {"s": 9.81 * 0.5 * t**2 / 3, "disk.angle": -9.81 * 0.5 * t**2 / 0.3}, 1e-9),
     "BeadOnRod": (lambda t: {"r": 0.2 * np.cosh(2 * t), "bead.x": 0.2 * np.cosh(2 * t) * np.cos(2 * t)}, 1e-7),
@@ -112,6 +128,8 @@ MOTIONS = {
     "HeapedChain": (lambda t: {"x": 9.81 * (0.5 + t)**2 / 6, "v": 9.81 * (0.5 + t) / 3}, 1e-8),
     "RodPendulum": (rod_pendulum, 1e-6),
     "Skate": (skate, 1e-7),
+    "RackAndWheels": (rack_and_wheels, 1e-5),
+    "BeamOnThree": (beam_on_three, 1e-10),
     "Turntable": (lambda t: {"theta": t**2, "omega": 2 * t, "inwards": 0.5 * (2 * t) ** 2, "disk.alphaZ": 2}, 1e-8),
     "FreeTop": (lambda t: {"theta": 0.5, "phi": 2 * t, "psi": 4 * np.cos(0.5) * t}, 1e-7),
     "Thrown": (lambda t: {"bob.z": -9.81 * t**2 / 2, "a": np.cos(1.5 * t), "d": np.sin(1.5 * t), "bob.omegaZ": 3}, 1e-7),
@@ -121,6 +139,7 @@ MOTIONS = {
     "MotorAndBead": (motor_and_bead, 1e-6),
     "DrivenTrolley": (trolley, 1e-5),
     "FloorAndSeat": (floor_and_seat, 1e-7),
+    "HandAndBob": (hand_and_bob, 1e-5),
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-4),

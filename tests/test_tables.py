@@ -140,7 +140,7 @@ def test_a_file_that_changes_is_built_anew():
 
 
 @pytest.mark.parametrize("table, message", [
-    ("<table name='f' file='no.csv'/>", "the file 'no.csv' cannot be read: No such file or directory; expected two columns of numbers"),
+    ("<table name='f' file='no.csv'/>", "the file 'no.csv' cannot be read: No such file or directory; expected columns of numbers"),
     ("<table name='f' file='bad.csv'/>", "bad.csv:3: 'three 4' is no point; expected two numbers, the argument and the value"),
     ("<table name='f' file='back.csv'/>", "back.csv:2: the point at 1 follows that at 1; expected points from left to right"),
     ("<table name='f'>\n0 1\n1\n</table>", "system.xml:4: '1' is no point"),

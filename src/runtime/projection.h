@@ -14,10 +14,15 @@ struct Projection {
   /* How far project() would move the state of the instance at its time, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
   /*
-   * The same with the state of the instance, however far it is, as it was set; at the start, fixed coordinates and their
-   * velocities stay. Logs what was moved. False after logging why the constraints cannot be fulfilled.
+   * The same with the start values of the instance, however far they are; fixed coordinates and their velocities stay. Logs
+   * what was moved. False after logging why the constraints cannot be fulfilled.
    */
-  bool (*make_consistent)(struct Instance *instance, bool is_start, const char *function);
+  bool (*make_consistent)(struct Instance *instance, const char *function);
+  /*
+   * The same with the state at the begin of a step, after parameters or inputs were set. False after logging as what
+   * discards the step why the constraints cannot be fulfilled; the state is then as it was.
+   */
+  bool (*resume)(struct Instance *instance);
   /* The name of the constraint that has least hold on a state, as at the limit of a mechanism; NULL where unknown. */
   const char *(*weakest)(struct Instance *instance, double time, const double *state);
 };

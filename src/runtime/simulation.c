@@ -37,7 +37,7 @@ static bool has_accelerations(struct Instance *instance) {
 enum Status simulation_start(struct Instance *instance, const char *function) {
   if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
   bool is_ready = is_prepared(instance);
-  if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, true, function))
+  if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, function))
     return STATUS_ERROR;
   if (!is_ready || !has_accelerations(instance)) {
     log_singularity(instance, STATUS_ERROR, instance->situation->time);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "evaluate.h"
+#include "guides.h"
 #include "projection.h"
 #include "solver.h"
 
@@ -68,22 +69,21 @@ bool solver_rests(double time, double step) {
 }
 
 /* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
-static bool make_ready(struct Instance *instance, const struct CommunicationStep *step) {
+static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
   struct Situation *situation = instance->situation;
-  if (instance->solver_memory == NULL && !solver->create(instance)) return false;
+  if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
   bool goes_on = !solver->starts_anew && !situation->changed && step->start >= situation->last_step.start &&
                  step->start <= situation->last_step.end && (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set. */
-    if (lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, false, "the step"))
-      return false;
-    if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return false;
+    if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return STEP_PARTIAL;
+    if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
   situation->changed = 0;
-  return true;
+  return STEP_DONE;
 }
 
 /* A user should hear of much work long before it is too much. */
@@ -152,7 +152,11 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   const struct Span *last = &instance->situation->last_step;
   *reached = step->end;
   if (lagrangian.solver == NULL) return STEP_DONE;
-  if (!make_ready(instance, step)) return STEP_FAILED;
+  enum StepResult readiness = make_ready(instance, step);
+  if (readiness != STEP_DONE) {
+    *reached = step->start;
+    return readiness;
+  }
   const char *problem = reach(instance, step);
   if (problem == NULL && take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
@@ -248,6 +252,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   situation->time = time;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
+  guides_begin_step(instance);
   struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
   enum StepResult result = run(instance, &step, &reached);

@@ -44,7 +44,7 @@ def run(words, what):
 def compile_system(system, folder):
     """The folder of the unpacked FMU."""
     source = folder / "system.xml"
-    source.write_text(system.xml())
+    system.write(folder)
     target = folder / "fmu"
     result = run([fmu.LAGC, source, "-o", target, "--form", system.plan.form], "lagc")
     if result.returncode == 1 and re.search(r"system\.xml(:\d+)?: \S", result.stderr):

@@ -39,7 +39,7 @@ def leave(seed, number, folder, keep, outcome):
     place = keep / f"{seed}-{number}"
     place.mkdir(parents=True, exist_ok=True)
     system = generate(seed, number)
-    (place / "system.xml").write_text(system.xml())
+    system.write(place)
     command = f"scripts/differential --seed {seed} --only {number}"
     (place / "README").write_text(
         f"{outcome.message}\n\nfamilies: {', '.join(sorted(system.families))}\nplan: {system.plan}\n\n{command}\n"

@@ -1,35 +1,64 @@
 """The truth about a system: SymPy's Lagrange equation from the generator's trees; nothing of lagc's is read."""
 
+import numpy as np
 import sympy as sp
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from mechanics import System as Mechanics
 from mechanics import kinetic, time, velocity
 
-from .expressions import in_sympy
+from .expressions import Maximum, Minimum, in_sympy
 
 AXES = "xyz"
 
 
+def curve(table):
+    """SciPy's cubics, each of the way in its interval, and straight on outside."""
+    x, y = table.x, table.y
+    cubics = {
+        "monotone": lambda: PchipInterpolator(x, y).c,
+        "spline": lambda: CubicSpline(x, y).c,
+        "linear": lambda: np.array([np.zeros(len(x) - 1), np.zeros(len(x) - 1), np.diff(y) / np.diff(x), y[:-1]]),
+    }[table.interpolation]()
+    width = x[-1] - x[-2]
+    slope = ((3 * cubics[0, -1] * width) + 2 * cubics[1, -1]) * width + cubics[2, -1]
+    number = lambda value: sp.Float(float(value), 40)
+
+    def at(u):
+        value = number(y[0]) + number(cubics[2, 0]) * Minimum(0, u - number(x[0])) + number(slope) * Maximum(u - number(x[-1]), 0)
+        for i, (d, c, b, _) in enumerate(cubics.T):
+            way = Minimum(number(x[i + 1] - x[i]), Maximum(u - number(x[i]), 0))
+            value += way * (number(b) + way * (number(c) + way * number(d)))
+        return value
+
+    return at
+
+
 class Derivation:
     """
-    mechanics: mass matrix and right side; results: outputs, positions and energies by name; symbols in the order of
-    mechanics.arguments are time, coordinates, velocities, inputs, parameters.
+    mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the names, as the FMU
+    has them, of the symbols of mechanics: time, coordinates, velocities, inputs, parameters.
     """
 
     def __init__(self, system):
         self.system = system
-        symbol = lambda label: sp.Symbol(label, real=True)
+        symbol = lambda label: sp.Symbol(label.replace(".", "_"), real=True)  # names of C too
         self.symbols = {"time": time}
         q = [symbol(c.name) for c in system.coordinates]
         v = [symbol(c.velocity) for c in system.coordinates]
         inputs, parameters = [symbol(u) for u in system.inputs], [symbol(p) for p in system.parameters]
-        self.symbols |= {s.name: s for s in [*q, *v, *inputs, *parameters]}
+        labels = [*system.positions, *system.velocities, *system.inputs, *system.parameters]
+        self.arguments = ["time", *labels]
+        self.symbols |= dict(zip(labels, [*q, *v, *inputs, *parameters]))
         self.rate = lambda expression: velocity(sp.sympify(expression), q, v)
         self.results = {}
+        self.symbols |= {displacement: sp.Integer(0) for displacement in system.displacements}
+        self.symbols |= {table.name: curve(table) for table in system.tables}
         self._define(system)
         self.bodies = self._bodies(q, v)
         energy = sp.sympify(self.bodies + sum(map(self.convert, system.kinetic)))
         potential = sum(map(self.convert, system.potentials))
+        potential += sum(self.symbols[c.name] ** 2 for c in system.coordinates if c.part)
         dissipation = sp.sympify(sum(map(self.convert, system.dissipations)))
         forces = [sp.sympify(-sp.diff(dissipation, vi)) for vi in v]
         self.driven_power = sp.Integer(0)  # of forces whose points move in a given way
@@ -40,7 +69,7 @@ class Derivation:
                 self.driven_power += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], time)
                 for i, qi in enumerate(q):
                     forces[i] += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], qi)
-        constraints = [sp.sympify(self.convert(c)) for c in system.constraints]
+        constraints = [sp.sympify(self.convert(c)) for c in [*system.constraints, *system.driven_velocities]]
         self.mechanics = Mechanics(
             q, v, energy, sp.sympify(potential), forces, inputs=inputs, parameters=parameters, constraints=constraints
         )

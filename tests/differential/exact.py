@@ -86,7 +86,7 @@ class Exact:
         self.n, self.rows, self.names = len(mechanics.q), len(mechanics.terms), list(derivation.results)
         flat = [*mechanics.mass, *(sp.sympify(sum(terms)) for terms in mechanics.terms), *derivation.results.values()]
         terms = [term for row in mechanics.terms for term in row]
-        self.arguments = [s.name for s in mechanics.arguments]
+        self.arguments = derivation.arguments
         with precision(DIGITS, 1):
             functions = FUNCTIONS | {"pi": arb.pi()}
         self.evaluate = sp.lambdify(mechanics.arguments, flat, modules=[functions, "mpmath"], cse=True)

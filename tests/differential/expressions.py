@@ -179,7 +179,7 @@ def number_in_sympy(text):
 
 
 def in_sympy(tree, symbols, rate):
-    """symbols: SymPy's expressions by name; rate: the total time derivative, for der(...)."""
+    """symbols: SymPy's expressions by name, and functions of tables; rate: the total time derivative, for der(...)."""
     convert = lambda operand: in_sympy(operand, symbols, rate)
     if tree.operation == "number":
         return number_in_sympy(tree.text)
@@ -199,4 +199,4 @@ def in_sympy(tree, symbols, rate):
             return operands[0] / operands[1]
         case "der":
             return rate(operands[0])
-    return FUNCTIONS[tree.operation](*operands)
+    return (FUNCTIONS.get(tree.operation) or symbols[tree.operation])(*operands)

@@ -3,10 +3,10 @@
 import math
 
 from .draw import Draw, cos, sin, smooth
-from .expressions import function, name
+from .expressions import function, name, node
 from .families import FAMILIES, inputs
 from .skeletons import SKELETONS, coordinate, body
-from .system import Action, Plan, System
+from .system import Action, Body, Coordinate, Plan, System, Table
 
 LIMIT = 4  # coordinates
 TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-6, 1e-8, 1e-8, 1e-10, 1e-10, 1e-12, 1e-13]
@@ -25,6 +25,7 @@ def generate(seed, number):
     forces = system.forces or system.cartesian_forces or system.dissipations
     system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # work is not linear in the state
     follow(Draw(f"{seed}/{number}/constraints", system))
+    extend(Draw(f"{seed}/{number}/parts", system))
     return system
 
 
@@ -86,6 +87,59 @@ def follow(draw):
             system.constraints.append(rate_of_z - leads)
         body(draw, **{draw.choice("xyz"): z})
         system.families.add("constraints")
+
+
+def extend(draw):
+    """What the language has beside equations: a driven coordinate, a displacement, a table, an included part."""
+    for extension in (drive, displacement, table, part):
+        if draw.chance(0.2) and draw.system.method != "exact" and draw.system.coordinates:
+            extension(draw)
+            draw.system.families.add(extension.__name__)
+
+
+def drive(draw):
+    """Another coordinate hangs on it by a spring."""
+    system, (amplitude, rate) = draw.system, (draw.value(0.2, 1.5), draw.value(0.5, 4))
+    other = name(draw.choice(system.coordinates).name)
+    q, v = coordinate(draw)
+    driven = system.coordinates[-1]
+    driven.acceleration = amplitude * cos(rate * name("time"))
+    moved = amplitude / node(rate) * (sin(rate * name("time")) - sin(node(rate) * system.plan.start_time))
+    system.driven_velocities.append(v - driven.velocity_start - moved)
+    system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
+    body(draw, **{draw.choice("xyz"): q})
+    system.work = False  # knows of drives, which the truth does not
+
+
+def displacement(draw):
+    system = draw.system
+    if not system.bodies:
+        return
+    system.displacements.append("s1")
+    moved = draw.choice(system.bodies)
+    axis = draw.choice(moved.position)
+    moved.position[axis] = moved.position[axis] + draw.choice([name("s1"), sin(2 * name("s1")), name("s1") * name("s1")])
+
+
+def table(draw):
+    system, c = draw.system, draw.choice(draw.system.coordinates)
+    count = draw.whole(2, 6)
+    x = [round(-1.5 + 3 * (i + 0.8 * draw.random.random()) / count, 3) for i in range(count)]
+    system.tables.append(Table("curve", x, [draw.value(-1, 1) for _ in x], draw.choice(["monotone", "spline", "spline"])))
+    value = function("curve", draw.choice([name(c.name), sin(name(c.name)), name(c.name) / 2]))
+    if draw.chance(0.6):
+        system.potentials.append(draw.quantity(0.2, 1) * value)
+    else:
+        system.forces.append((c.name, draw.quantity(-0.6, 0.6) * value))
+
+
+def part(draw):
+    """An oscillator of its own file, whose mass another coordinate pulls at."""
+    system = draw.system
+    other = name(draw.choice([c for c in system.coordinates if c.acceleration is None]).name)
+    system.coordinates.append(Coordinate("part.x", "part.v", draw.value(-0.8, 0.8), draw.value(-0.8, 0.8)))
+    system.bodies.append(Body("part.mass", node(1), {"x": name("part.x")}))
+    system.potentials.append(draw.quantity(0.3, 2) * (name("part.x") - other) ** 2 / 2)
 
 
 def linear(draw):

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { STATES = 10, COLUMNS = 12, GUARDS = 400 };
+enum { STATES = 20, COLUMNS = 12, GUARDS = 400 };
 
 typedef long double real;
 

@@ -15,7 +15,7 @@ from .system import course
 
 REAL = ctypes.c_longdouble
 INPUT_COEFFICIENTS = 4
-GUARDS = 400  # as in reference.c
+STATES, GUARDS = 20, 400  # as in reference.c
 EVALUATIONS = 4_000_000  # of one trajectory
 OUTCOMES = ["", "the reference takes too many steps", "the motion leaves the domain of a function"]
 
@@ -167,6 +167,7 @@ class Reference:
         compile_c(source, source.with_suffix(".so"), "-O1")
         self.right = ctypes.CDLL(str(source.with_suffix(".so"))).right
         self.states = len(self.system.states)
+        assert self.states <= STATES
 
     def trajectory(self, columns, tolerance, fraction, kick=None):
         """

@@ -10,6 +10,12 @@ class Coordinate:
     velocity: str
     start: float
     velocity_start: float
+    acceleration: object = None  # of a driven one
+
+    @property
+    def part(self):
+        """The name of the part that it belongs to, "" for the system itself."""
+        return self.name.rpartition(".")[0]
 
 
 @dataclass
@@ -21,6 +27,16 @@ class Body:
     position: dict  # by axis
     inertia: object = None
     angle: object = None
+
+
+@dataclass
+class Table:
+    """A curve through points, by name a function in expressions."""
+
+    name: str
+    x: list
+    y: list
+    interpolation: str
 
 
 @dataclass
@@ -64,6 +80,9 @@ class System:
     forces: list = field(default_factory=list)  # (coordinate's name, expression)
     cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
     constraints: list = field(default_factory=list)
+    driven_velocities: list = field(default_factory=list)  # each less what its acceleration makes of it: 0 at all times
+    displacements: list = field(default_factory=list)
+    tables: list = field(default_factory=list)
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
     work: bool = False
@@ -103,7 +122,28 @@ class System:
         for _, force in self.cartesian_forces:
             yield from force.values()
         yield from self.constraints
+        yield from self.driven_velocities
         yield from self.definitions.values()
+
+    @property
+    def parts(self):
+        """Files of included systems by name: an oscillator each, that others pull at."""
+        return {
+            f"{c.part}.xml": f"""<system name={quoteattr(c.part)}>
+  <coordinate name="x" velocity="v" start="{c.start!r}" velocityStart="{c.velocity_start!r}"/>
+  <particle name="mass" mass="1" x="x"/>
+  <potential>x^2</potential>
+  <solver method="erk"/>
+</system>
+"""
+            for c in self.coordinates
+            if c.part
+        }
+
+    def write(self, folder):
+        (folder / "system.xml").write_text(self.xml())
+        for name, text in self.parts.items():
+            (folder / name).write_text(text)
 
     def xml(self):
         lines = [f"<system name={quoteattr(self.name)}>"]
@@ -112,19 +152,32 @@ class System:
             words = "".join(f" {key}={quoteattr(str(value))}" for key, value in attributes.items())
             lines.append(f"  <{tag}{words}/>" if content is None else f"  <{tag}{words}>{escape(str(content))}</{tag}>")
 
+        for table in self.tables:
+            points = "".join(f"\n{x!r} {y!r}" for x, y in zip(table.x, table.y))
+            add("table", points, name=table.name, interpolation=table.interpolation)
+        for displacement in self.displacements:
+            add("displacement", name=displacement)
+
         for name, value in self.parameters.items():
             add("parameter", name=name, start=repr(value))
         for name, value in self.inputs.items():
             add("input", name=name, start=repr(value))
         for c in self.coordinates:
+            if c.part:
+                add("include", file=f"{c.part}.xml", **{"as": c.part})
+                continue
+            drive = {"acceleration": c.acceleration} if c.acceleration is not None else {}
             add(
                 "coordinate",
                 name=c.name,
                 velocity=c.velocity,
                 start=repr(c.start),
                 velocityStart=repr(c.velocity_start),
+                **drive,
             )
         for body in self.bodies:
+            if "." in body.name:
+                continue  # has its own file
             if body.angle is None:
                 add("particle", name=body.name, mass=body.mass, **body.position)
             else:

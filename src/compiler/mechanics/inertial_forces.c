@@ -28,6 +28,11 @@ static void motions_free(struct Motions *motions) {
   free(motions->force);
 }
 
+/* Whether what rests is a velocity, of a nonholonomic constraint. */
+static bool is_rate(const struct Graph *graph, Node constraint) {
+  return graph_depends_on(graph, constraint, VELOCITY);
+}
+
 /* Positions and angles of planar bodies. A weight of ZERO is that of a mere point. */
 static struct Motions motions_of_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
@@ -48,7 +53,8 @@ static struct Motions motions_of_positions(const struct Model *model, const Node
     }
   }
   for (size_t i = 0; i < model->stillness_count && kind == COORDINATE; i++) {
-    Node moved = model->stillnesses[i].position, acceleration = moved;
+    Node moved = model->stillnesses[i].constraint, acceleration = moved;
+    if (is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
@@ -66,7 +72,7 @@ static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struc
 
 static struct Motions motions_of_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
-  struct Motions motions = motions_create(6 * model->body_count);
+  struct Motions motions = motions_create(6 * model->body_count + model->stillness_count);
   for (size_t i = 0; i < model->body_count; i++) {
     const struct Body *body = &model->bodies[i];
     if (!body->is_in_frame) continue;
@@ -82,6 +88,12 @@ static struct Motions motions_of_velocities(const struct Model *model, const Nod
       append(&motions, velocity.along[axis], force.along[axis]);
       append(&motions, spin.along[axis], torque.along[axis]);
     }
+  }
+  for (size_t i = 0; i < model->stillness_count && kind == COORDINATE; i++) {
+    Node moved = model->stillnesses[i].constraint, acceleration = moved;
+    if (!is_rate(graph, moved)) continue;
+    derivative_along(graph, &acceleration, 1, seeds, &acceleration);
+    append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
   }
   return motions;
 }
@@ -108,8 +120,8 @@ Node energy_of_stillness(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, false), energy = ZERO;
   for (size_t i = 0; i < model->stillness_count; i++) {
-    Node rate = model->stillnesses[i].position;
-    derivative_along(graph, &rate, 1, seeds, &rate);
+    Node rate = model->stillnesses[i].constraint;
+    if (!is_rate(graph, rate)) derivative_along(graph, &rate, 1, seeds, &rate);
     Node term = multiply(graph, model->stillnesses[i].inertia, power_number(graph, rate, 2.0));
     energy = add(graph, energy, scale(graph, 0.5, term));
   }

@@ -60,11 +60,11 @@ struct Torque {
 };
 
 /*
- * What has an inertia without energy, since it rests: the rate of a holonomic constraint. Adding its inertia to M, which may be
- * singular without it, changes neither the motion nor the forces.
+ * What has an inertia without energy, since it rests: the rate of a holonomic constraint, or a nonholonomic one itself.
+ * Adding its inertia to M, which may be singular without it, changes neither the motion nor the forces.
  */
 struct Stillness {
-  Node position, inertia;
+  Node constraint, inertia;
 };
 
 /* How a coordinate moves that is driven: in a given way. */

@@ -6,7 +6,7 @@
 #include "algebra/simplify.h"
 #include "memory.h"
 
-static double next_random(uint64_t *seed) {
+double next_random(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;
   return 0.5 + (double)(*seed >> 11) / 9007199254740992.0;
 }
@@ -81,7 +81,7 @@ static bool has_all_inertias(const struct Model *model, const struct Inertia *in
     else
       report_error(diagnostics, model->coordinates.items[i].line,
                    "the coordinate '%s' has no inertia: no mass moves with it; expected a <particle>, <body> or "
-                   "<kinetic> that depends on it",
+                   "<kinetic> that depends on it, or constraints that tell its motion",
                    model->coordinates.items[i].name);
     complete = false;
   }
@@ -123,7 +123,7 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
   if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
   report_error(diagnostics, model->coordinates.items[singular].line,
                "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
-               "coordinates; expected one coordinate for each degree of freedom",
+               "coordinates; expected one coordinate for each degree of freedom, or constraints that tell its motion",
                model->coordinates.items[singular].name);
   return false;
 }

@@ -4,6 +4,9 @@
 
 #include "mechanics/inertia.h"
 
+/* Numbers from 0.5 to 1.5, to find what an expression is in general. */
+double next_random(uint64_t *seed);
+
 /* Reports a coordinate without inertia, and a matrix that is singular everywhere or negative at the start values. */
 bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics);
 

@@ -101,6 +101,7 @@ static void append_block(struct Values *values, const struct Equations *equation
   append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, right_side);
+  if (with_forces && block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
       routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),

@@ -30,7 +30,7 @@ bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
 void append_pivot_check(struct Values *values, const struct Pivot *pivot);
 
 /*
- * Computes the accelerations and copies them to their space, and the forces of constraints with them where asked for;
+ * Computes the accelerations and copies them to their space, and the least forces of constraints with them where asked for;
  * the factors of large blocks stay in theirs.
  */
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,

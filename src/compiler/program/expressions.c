@@ -117,6 +117,9 @@ static void create_directional(struct Expressions *expressions) {
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
   derivative_along(graph, &expressions->equations->power, 1, seeds, &expressions->power_along);
+  const struct Elements *jacobian = &expressions->equations->constraints->jacobian;
+  expressions->constraints_along = allocate(jacobian->count, sizeof(Node));
+  derivative_along(graph, jacobian->nodes, jacobian->count, seeds, expressions->constraints_along);
   free(seeds);
 }
 
@@ -191,6 +194,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
   append_nodes(&targets, expressions->along, row_count(equations));
   if (equations->constraints->count > 0) {
+    append_nodes(&targets, expressions->constraints_along, equations->constraints->jacobian.count);
     append_nodes(&targets, expressions->corrections.position, row_count(equations));
     append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
@@ -225,6 +229,7 @@ void expressions_free(struct Expressions *expressions) {
   free(expressions->along);
   free(expressions->initial);
   free(expressions->initial_along);
+  free(expressions->constraints_along);
   free(expressions->corrections.position);
   free(expressions->corrections.velocity);
   free(expressions->corrections.slope);

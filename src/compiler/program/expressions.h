@@ -46,6 +46,7 @@ struct Expressions {
   struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
   struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
   Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
+  Node *constraints_along;              /* of the elements of the constraints' J */
   struct Corrections corrections;       /* NULL without constraints */
   Node power_along;                     /* of the power of the forces */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */

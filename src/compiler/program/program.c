@@ -4,6 +4,7 @@
 
 #include "memory.h"
 #include "program/corrections.h"
+#include "program/least_forces.h"
 
 /*
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
@@ -210,6 +211,7 @@ static struct Routine *accelerations_routine(const struct Program *program, stru
 static struct Routine *accelerations_along_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
   append_along(program, values, 0, row_count(program->equations));
+  if (program->blocks.count > 0) append_least_forces_along(program, values);
   return routine;
 }
 

@@ -31,6 +31,7 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [CHECK_DIAGONAL] = {"if (!($1 > 1e-28 * $2)) return $0", NUMBER, {VALUE, VALUE}, 0, false},
     [FACTOR] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [LEAST_FORCES] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SERIES_COPY] = {"$1", COEFFICIENT, {COEFFICIENT}, 0, false},
     [SERIES_ZERO] = {"0.0", COEFFICIENT, {NO_OPERAND}, 0, false},
     [SERIES_SUM] = {"$1 + $2", COEFFICIENT, {COEFFICIENT, COEFFICIENT}, 1, false},

@@ -15,7 +15,7 @@ enum { OPERAND_LIMIT = 3 };
 struct Instruction {
   enum Opcode opcode;
   enum Operation function; /* of CALL and CALL_OF_TWO */
-  Place result;            /* in checks the number to return, in FACTOR and SOLVE the block */
+  Place result;            /* in checks the number to return, in FACTOR, SOLVE and LEAST_FORCES the block */
   Place operands[OPERAND_LIMIT];
 };
 

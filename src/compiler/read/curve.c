@@ -91,13 +91,17 @@ static void spline_slopes(struct Curve *curve) {
   free(rows);
 }
 
-void curve_interpolate(struct Curve *curve, enum Interpolation interpolation) {
+void curve_slopes(struct Curve *curve, enum Interpolation interpolation) {
   static void (*const slopes[])(struct Curve *) = {
       [LINEAR] = linear_slopes, [MONOTONE] = monotone_slopes, [SPLINE] = spline_slopes};
+  slopes[interpolation](curve);
+}
+
+void curve_interpolate(struct Curve *curve, enum Interpolation interpolation) {
   curve->b = allocate(curve->count, sizeof *curve->b);
   curve->c = allocate(curve->count, sizeof *curve->c);
   curve->d = allocate(curve->count, sizeof *curve->d);
-  slopes[interpolation](curve);
+  curve_slopes(curve, interpolation);
   for (size_t i = 0; i + 1 < curve->count && interpolation != LINEAR; i++) {
     double h = width(curve, i), line = secant(curve, i), left = curve->b[i], right = curve->b[i + 1];
     curve->c[i] = (3 * line - 2 * left - right) / h;

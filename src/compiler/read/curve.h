@@ -16,6 +16,9 @@ struct Curve {
   size_t count;
 };
 
+/* Fills b alone, which is there already. */
+void curve_slopes(struct Curve *curve, enum Interpolation interpolation);
+
 /* Fills b, c and d from x, which ascends strictly, and y of at least two points. */
 void curve_interpolate(struct Curve *curve, enum Interpolation interpolation);
 

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "algebra/differentiate.h"
-#include "algebra/rational.h"
 #include "mechanics/energies.h"
 #include "memory.h"
 #include "read/bodies.h"
+#include "read/constraint_reader.h"
 #include "read/forces.h"
 #include "read/frames.h"
 #include "read/includes.h"
@@ -273,7 +273,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
   else if (strcmp(element, "frame") == 0) declare_frame(reader, node);
   else if (strcmp(element, "table") == 0) read_table(reader, node);
-  else if (strcmp(element, "constraint") == 0) append_variable(&model->constraints, common_attributes(reader, node));
+  else if (strcmp(element, "constraint") == 0) declare_constraint(reader, node);
   else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
@@ -291,48 +291,6 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
   reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
   model->has_forces = true;
-}
-
-static bool is_linear_in_velocities(struct Graph *graph, Node node) {
-  struct Gradient slopes = gradient_by_kinds(graph, node, KIND(VELOCITY));
-  bool is_linear = true;
-  for (size_t i = 0; i < slopes.count; i++) is_linear &= !graph_depends_on(graph, slopes.values[i], VELOCITY);
-  gradient_free(&slopes);
-  return is_linear;
-}
-
-/* Whether it moves what it holds, also where all velocities are 0. */
-static bool is_moving(const struct Model *model, Node constraint) {
-  struct Graph *graph = model->graph;
-  if (!graph_depends_on(graph, constraint, VELOCITY)) return graph_depends_on(graph, constraint, TIME);
-  Node *at_rest = allocate(graph->symbol_count, sizeof *at_rest), value;
-  for (size_t i = 0; i < graph->symbol_count; i++)
-    at_rest[i] = graph->symbols[i].kind == VELOCITY ? ZERO : graph->symbols[i].node;
-  substitute(graph, &constraint, 1, at_rest, &value);
-  free(at_rest);
-  return simplify_fraction(graph, value) != ZERO;
-}
-
-/* They come in the order in which they were declared. */
-static void read_constraint(struct Reader *reader, xmlNodePtr node) {
-  struct Model *model = reader->model;
-  const struct Graph *graph = model->graph;
-  struct Variable *constraint = &model->constraints.items[reader->constraints_read++];
-  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
-  constraint->node = value.node;
-  if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
-  if (reader->diagnostics->errors > 0) return;
-  if (!graph_depends_on(graph, value.node, COORDINATE) && !graph_depends_on(graph, value.node, VELOCITY))
-    report_error(
-        reader->diagnostics, constraint->line,
-        "the constraint '%s' holds no coordinate; expected an expression of coordinates that is 0 at all times",
-        constraint->name);
-  else if (!is_linear_in_velocities(model->graph, value.node))
-    report_error(reader->diagnostics, constraint->line,
-                 "the constraint '%s' is not linear in the velocities; expected one of coordinates and time, or one "
-                 "linear in the velocities, as of rolling without slipping",
-                 constraint->name);
-  else if (is_moving(model, value.node)) model->moving_constraint = constraint;
 }
 
 static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {

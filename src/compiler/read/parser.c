@@ -286,9 +286,12 @@ static struct Quantity parse_derivative(struct Parser *parser) {
 }
 
 static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
-  struct Quantity argument = parse_sum(parser);
-  expect(parser, ')', "after the argument of a table");
-  return parser->failed ? nothing : table_at(parser, table, name, argument);
+  bool has_two = table_has_two_arguments(table);
+  struct Quantity arguments[2] = {parse_sum(parser), nothing};
+  if (has_two) expect(parser, ',', "between the two arguments of a table");
+  if (has_two && !parser->failed) arguments[1] = parse_sum(parser);
+  expect(parser, ')', has_two ? "after the two arguments of a table" : "after the argument of a table");
+  return parser->failed ? nothing : table_at(parser, table, name, arguments);
 }
 
 /* The table of a name as the file calls it; NULL where there is none. */

@@ -11,6 +11,7 @@
 #include "read/frames.h"
 #include "read/includes.h"
 #include "read/linearization_reader.h"
+#include "mechanics/massless.h"
 #include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
@@ -219,6 +220,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_children(reader, root, EXPRESSIONS);
   reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
+  if (reader->diagnostics->errors == 0) hold_massless_coordinates(reader->model);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
                  graph_limit(reader->model->graph));

@@ -1,144 +1,83 @@
 #include "read/tables.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "algebra/simplify.h"
 #include "memory.h"
-#include "read/curve.h"
-#include "read/includes.h"
+#include "read/grid_reader.h"
+#include "read/pieces.h"
+#include "read/table_lines.h"
 
 enum { POINT_LIMIT = 500 };
 
 struct Table {
-  struct Curve curve;
+  bool has_two_arguments;
+  struct Curve curve;     /* of one */
+  struct Surface surface; /* of two */
   bool is_constant_outside;
-  struct Dimension argument, value;
+  struct Dimension arguments[2], value;
 };
 
-/* The points as they are read; limit: more than that are told of once. */
+/* The points as they are read. */
 struct Points {
-  struct Reader *reader;
+  struct TableLines lines; /* the first member, from which take_line() comes to the others */
   struct Curve curve;
   size_t capacity_x, capacity_y;
-  long line; /* of the present one */
-  bool wrong;
 };
 
 static void append_point(struct Points *points, double x, double y) {
   struct Curve *curve = &points->curve;
-  struct Diagnostics *diagnostics = points->reader->diagnostics;
-  if (points->wrong) return;
-  points->wrong = true;
+  struct Diagnostics *diagnostics = points->lines.reader->diagnostics;
+  if (points->lines.wrong) return;
+  points->lines.wrong = true;
   if (!isfinite(x) || !isfinite(y)) {
-    report_error(diagnostics, points->line, "the point (%g, %g) is not finite; expected numbers below 1e308", x, y);
+    report_error(diagnostics, points->lines.line, "the point (%g, %g) is not finite; expected numbers below 1e308", x,
+                 y);
     return;
   }
   if (curve->count > 0 && !(x > curve->x[curve->count - 1])) {
-    report_error(diagnostics, points->line,
+    report_error(diagnostics, points->lines.line,
                  "the point at %g follows that at %g; expected points from left to right, each argument once", x,
                  curve->x[curve->count - 1]);
     return;
   }
   if (curve->count == POINT_LIMIT) {
-    report_error(diagnostics, points->line, "the table has more than %d points; expected fewer", POINT_LIMIT);
+    report_error(diagnostics, points->lines.line, "the table has more than %d points; expected fewer", POINT_LIMIT);
     return;
   }
-  points->wrong = false;
+  points->lines.wrong = false;
   curve->x = make_room(curve->x, curve->count, &points->capacity_x, sizeof *curve->x);
   curve->y = make_room(curve->y, curve->count, &points->capacity_y, sizeof *curve->y);
   curve->x[curve->count] = x;
   curve->y[curve->count++] = y;
 }
 
-/* "0.5, 2" or "0.5 2" or "0.5;2"; false where it is none of these. */
-static bool parse_line(const char *line, double *x, double *y) {
-  static const char blanks[] = " \t\r";
-  char *end;
-  *x = strtod(line, &end);
-  if (end == line) return false;
-  const char *next = end + strspn(end, blanks);
-  if (*next == ',' || *next == ';') next++;
-  else if (next == end) return false;
-  *y = strtod(next, &end);
-  return end != next && end[strspn(end, blanks)] == '\0';
-}
-
-/* Each line a point; what follows # is a comment, and the first line may be a heading. */
-static void read_lines(struct Points *points, const char *text, bool may_have_heading) {
-  bool is_first = may_have_heading;
-  while (*text != '\0' && !points->wrong) {
-    size_t length = strcspn(text, "\n"), used = 0;
-    char *line = format_text("%.*s", (int)length, text);
-    line[strcspn(line, "#")] = '\0';
-    double x, y;
-    used = strspn(line, " \t\r");
-    if (line[used] != '\0' && parse_line(line, &x, &y)) append_point(points, x, y);
-    else if (line[used] != '\0' && !is_first) {
-      report_error(points->reader->diagnostics, points->line,
-                   "'%.40s' is no point; expected two numbers, the argument and the value, such as 0.5 2", line + used);
-      points->wrong = true;
-    }
-    is_first = is_first && line[used] == '\0';
-    free(line);
-    text += length;
-    points->line += *text == '\n';
-    text += *text == '\n';
+static void take_line(struct TableLines *lines, const char *line) {
+  size_t count;
+  const char *rest;
+  double *numbers = table_numbers(line, &count, &rest);
+  if (count == 2 && *rest == '\0') append_point((struct Points *)lines, numbers[0], numbers[1]);
+  else if (!lines->is_heading) {
+    report_error(lines->reader->diagnostics, lines->line,
+                 "'%.40s' is no point; expected two numbers, the argument and the value, such as 0.5 2", line);
+    lines->wrong = true;
   }
+  free(numbers);
 }
 
-static char *text_of_file(const char *path) {
-  FILE *file = fopen(path, "r");
-  if (file == NULL) return NULL;
-  char *text = NULL;
-  size_t length = 0;
-  FILE *copy = open_text(&text, &length);
-  for (int c = getc(file); c != EOF && c != '\0'; c = getc(file)) putc(c, copy);
-  bool right = ferror(file) == 0;
-  fclose(file);
-  fclose(copy);
-  if (right) return text;
-  free(text);
-  return NULL;
-}
-
-/* Messages name the file and its lines while it is read. */
-static void read_file(struct Points *points, xmlNodePtr node, const char *name) {
-  struct Diagnostics *diagnostics = points->reader->diagnostics;
-  char *path = path_beside(points->reader, name), *text = text_of_file(path);
-  if (text == NULL) {
-    report_error(diagnostics, xmlGetLineNo(node),
-                 "the file '%s' cannot be read: %s; expected two columns of numbers, its path relative to this file",
-                 path, strerror(errno));
-    points->wrong = true;
-  } else {
-    const char *present = diagnostics->file;
-    diagnostics->file = path;
-    points->line = 1;
-    read_lines(points, text, true);
-    diagnostics->file = present;
-  }
-  free(text);
-  free(path);
-}
-
-/* <point x y/> or text; the line of a text is that of its end. */
+/* <point x y/> or text. */
 static void read_content(struct Points *points, xmlNodePtr node) {
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
-    points->line = xmlGetLineNo(part);
+    points->lines.line = xmlGetLineNo(part);
     if (part->type == XML_ELEMENT_NODE) {
       double x = NAN, y = NAN;
-      bool right = number_attribute(points->reader, part, "x", &x);
-      right = number_attribute(points->reader, part, "y", &y) && right;
+      bool right = number_attribute(points->lines.reader, part, "x", &x);
+      right = number_attribute(points->lines.reader, part, "y", &y) && right;
       if (right) append_point(points, x, y);
-      points->wrong |= !right;
-    } else if (part->type == XML_TEXT_NODE) {
-      const char *text = (const char *)part->content;
-      for (const char *c = text; *c != '\0'; c++) points->line -= *c == '\n';
-      read_lines(points, text, false);
-    }
+      points->lines.wrong |= !right;
+    } else if (part->type == XML_TEXT_NODE) table_lines_of_text(&points->lines, part);
   }
 }
 
@@ -149,35 +88,72 @@ static bool has_word(xmlNodePtr node, const char *name, const char *word) {
   return same;
 }
 
-static struct Table *create_table(struct Reader *reader, xmlNodePtr node, struct Curve curve) {
+static enum Interpolation interpolation_of(xmlNodePtr node) {
+  if (has_word(node, "interpolation", "spline")) return SPLINE;
+  return has_word(node, "interpolation", "linear") ? LINEAR : MONOTONE;
+}
+
+static struct Table *create_table(struct Reader *reader, xmlNodePtr node) {
   struct Table *table = allocate(1, sizeof *table);
-  enum Interpolation interpolation = has_word(node, "interpolation", "spline")   ? SPLINE
-                                     : has_word(node, "interpolation", "linear") ? LINEAR
-                                                                                 : MONOTONE;
-  *table = (struct Table){.curve = curve,
-                          .is_constant_outside = has_word(node, "extrapolation", "constant"),
-                          .argument = unit_attribute(reader, node, "argumentUnit"),
-                          .value = unit_attribute(reader, node, "unit")};
-  curve_interpolate(&table->curve, interpolation);
+  *table = (struct Table){
+      .is_constant_outside = has_word(node, "extrapolation", "constant"),
+      .arguments = {unit_attribute(reader, node, "argumentUnit"), unit_attribute(reader, node, "secondArgumentUnit")},
+      .value = unit_attribute(reader, node, "unit")};
   return table;
 }
 
-void read_table(struct Reader *reader, xmlNodePtr node) {
-  char *name = name_attribute(reader, node, "name"), *file = attribute(node, "file");
-  struct Points points = {.reader = reader};
-  if (file != NULL) read_file(&points, node, file);
+/* NULL after reporting what is wrong. */
+static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
+  struct Points points = {.lines = {.reader = reader, .take = take_line}};
+  if (file != NULL) table_lines_of_file(&points.lines, node, file);
   read_content(&points, node);
-  if (!points.wrong && points.curve.count < 2)
+  if (!points.lines.wrong && points.curve.count < 2)
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the table '%s' has %zu points; expected at least two, as <point x=\"0\" y=\"1\"/>, as lines of two "
                  "numbers, or in a file",
                  name, points.curve.count);
+  if (points.lines.wrong || points.curve.count < 2) {
+    curve_free(&points.curve);
+    return NULL;
+  }
+  struct Table *table = create_table(reader, node);
+  table->curve = points.curve;
+  curve_interpolate(&table->curve, interpolation_of(node));
+  return table;
+}
+
+static struct Table *read_surface(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
+  struct Surface surface = {0};
+  if (!read_grid(reader, node, name, file, &surface)) {
+    surface_free(&surface);
+    return NULL;
+  }
+  struct Table *table = create_table(reader, node);
+  table->has_two_arguments = true;
+  table->surface = surface;
+  surface_interpolate(&table->surface, interpolation_of(node));
+  return table;
+}
+
+static void table_free(struct Table *table) {
+  curve_free(&table->curve);
+  surface_free(&table->surface);
+}
+
+void read_table(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name"), *file = attribute(node, "file");
+  struct Table *table = NULL;
+  if (name != NULL)
+    table = has_word(node, "arguments", "2") ? read_surface(reader, node, name, file)
+                                             : read_curve(reader, node, name, file);
   /* A table is no value: its name alone cannot be used. */
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
-  bool is_right = name != NULL && !points.wrong && points.curve.count >= 2;
-  if (name != NULL && scope_define(reader->scope, name, word, xmlGetLineNo(node)) && is_right) {
-    names_set(reader->scope->tables, name, create_table(reader, node, points.curve));
-  } else curve_free(&points.curve);
+  bool is_new = name != NULL && scope_define(reader->scope, name, word, xmlGetLineNo(node));
+  if (is_new && table != NULL) names_set(reader->scope->tables, name, table);
+  else if (table != NULL) {
+    table_free(table);
+    free(table);
+  }
   free(file);
   free(name);
 }
@@ -186,24 +162,19 @@ const struct Table *table_named(const struct Scope *scope, const char *full_name
   return names_find(scope->tables, full_name);
 }
 
-static bool check_argument(struct Parser *parser, const struct Table *table, const char *name,
+bool table_has_two_arguments(const struct Table *table) {
+  return table->has_two_arguments;
+}
+
+static bool check_argument(struct Parser *parser, struct Dimension unit, const char *name, const char *which,
                            struct Quantity argument) {
-  if (argument.literal || scope_units_agree(parser->scope, argument.dimension, table->argument)) return true;
-  char *actual = unit_text(argument.dimension), *expected = unit_text(table->argument);
-  FAIL(parser, "%s: unit mismatch: the argument of '%s' has the unit %s, expected %s", parser->place.what, name, actual,
-       expected);
+  if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
+  char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
+  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s", parser->place.what, which,
+       name, actual, expected);
   free(actual);
   free(expected);
   return false;
-}
-
-/*
- * Where two pieces meet, min and max give the left operand's derivative: so the first piece to the right counts at a
- * point, and each point belongs to one piece.
- */
-static Node way_in(struct Graph *graph, const struct Curve *curve, size_t i, Node x) {
-  Node from_start = function(graph, MAXIMUM, subtract(graph, x, graph_constant(graph, curve->x[i])), ZERO);
-  return function(graph, MINIMUM, graph_constant(graph, curve->x[i + 1] - curve->x[i]), from_start);
 }
 
 static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i, Node s) {
@@ -212,27 +183,30 @@ static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i,
   return multiply(graph, s, inner);
 }
 
-struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name, struct Quantity argument) {
-  struct Graph *graph = parser->graph;
-  const struct Curve *curve = &table->curve;
+/* The first value and what each interval adds to it: its cubic of the way in it. */
+static Node curve_at(struct Graph *graph, const struct Curve *curve, bool is_constant_outside, Node x) {
   size_t last = curve->count - 1;
-  struct Quantity value = {.node = graph_constant(graph, curve->y[0]), .dimension = table->value};
-  if (!check_argument(parser, table, name, argument)) return value;
-  if (!table->is_constant_outside) {
-    Node before = subtract(graph, argument.node, graph_constant(graph, curve->x[0]));
-    value.node = add(graph, value.node, scale(graph, curve->b[0], function(graph, MINIMUM, ZERO, before)));
-  }
+  Node value = graph_constant(graph, curve->y[0]);
+  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], way_before(graph, x, curve->x[0])));
   for (size_t i = 0; i < last; i++)
-    value.node = add(graph, value.node, polynomial(graph, curve, i, way_in(graph, curve, i, argument.node)));
-  if (!table->is_constant_outside) {
-    Node after = subtract(graph, argument.node, graph_constant(graph, curve->x[last]));
-    value.node = add(graph, value.node, scale(graph, curve->b[last], function(graph, MAXIMUM, after, ZERO)));
-  }
+    value = add(graph, value, polynomial(graph, curve, i, way_in(graph, x, curve->x[i], curve->x[i + 1])));
+  if (is_constant_outside) return value;
+  return add(graph, value, scale(graph, curve->b[last], way_behind(graph, x, curve->x[last])));
+}
+
+struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name,
+                         const struct Quantity arguments[2]) {
+  struct Quantity value = {.node = ZERO, .dimension = table->value};
+  bool outside = table->is_constant_outside, has_two = table->has_two_arguments;
+  if (!check_argument(parser, table->arguments[0], name, has_two ? "first " : "", arguments[0])) return value;
+  if (has_two && !check_argument(parser, table->arguments[1], name, "second ", arguments[1])) return value;
+  value.node = has_two ? surface_at(parser->graph, &table->surface, outside, arguments[0].node, arguments[1].node)
+                       : curve_at(parser->graph, &table->curve, outside, arguments[0].node);
   return value;
 }
 
 void tables_free(struct Names *tables) {
   for (size_t i = 0; i < tables->capacity; i++)
-    if (tables->places[i].text != NULL) curve_free(&((struct Table *)tables->places[i].meaning)->curve);
+    if (tables->places[i].text != NULL) table_free(tables->places[i].meaning);
   names_free(tables);
 }

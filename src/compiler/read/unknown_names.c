@@ -91,8 +91,14 @@ void report_reserved(struct Parser *parser, const char *name) {
   for (size_t i = 0; special_functions[i] != NULL; i++) is_function |= strcmp(name, special_functions[i]) == 0;
   char *full_name = scope_full_name(parser->scope, name);
   bool is_table = table_named(parser->scope, full_name) != NULL;
+  char *force = format_text("%s.force", full_name);
+  bool is_constraint = scope_find(parser->scope, force) != NULL;
   free(full_name);
-  if (is_function || is_table)
+  free(force);
+  if (is_constraint)
+    FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
+         name, name);
+  else if (is_function || is_table)
     FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
          parser->place.what, name, is_table ? "table" : "function", name);
   else

@@ -5,6 +5,7 @@
 
 #include "memory.h"
 #include "write/c_text.h"
+#include "write/guides.h"
 #include "write/inertia_names.h"
 
 static void write_variables(FILE *file, const struct Interface *interface) {
@@ -100,6 +101,7 @@ static void write_constraint_names(FILE *file, const struct Program *program) {
   const struct VariableList *constraints = &program->model->constraints;
   if (constraints->count == 0) return;
   if (program->start_positions != NULL) write_fixed(file, program);
+  if (has_guides(program->model)) guides_write(file, program->model);
   fputs("static const char *const constraint_names[] = {", file);
   for (size_t i = 0; i < constraints->count; i++) {
     if (i > 0) fputs(", ", file);
@@ -115,6 +117,10 @@ static void write_constraints(FILE *file, const struct Program *program) {
           "    .accelerations = accelerations,\n    .accelerations_along = accelerations_along,\n"
           "    .correct_positions = correct_positions,\n    .correct_velocities = correct_velocities,\n",
           program->model->constraints.count);
+  if (has_guides(program->model))
+    fputs("    .constraint_inputs = constraint_inputs,\n    .guides = guides,\n"
+          "    .guide_count = sizeof guides / sizeof *guides,\n",
+          file);
   if (program->start_positions == NULL) return;
   fputs("    .coordinate_is_fixed = coordinate_is_fixed,\n    .start_positions = start_positions,\n"
         "    .start_velocities = start_velocities,\n",

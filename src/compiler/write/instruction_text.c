@@ -1,7 +1,5 @@
 #include "write/instruction_text.h"
 
-#include <string.h>
-
 #include "algebra/functions.h"
 #include "write/c_text.h"
 
@@ -56,13 +54,14 @@ static void write_expression(FILE *file, const struct Program *program, const st
   }
 }
 
-/* function(size, pattern of the block, its elements */
-static void write_block_call(FILE *file, const struct Program *program, const char *function, size_t number) {
+/* function(size, pattern of the block, its elements; with what the rows are, where the function takes it */
+static void write_block_call(FILE *file, const struct Program *program, const char *function, bool takes_rows,
+                             size_t number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   fprintf(file, "%s(%zu, ", function, looped->block->count);
   if (block_is_full(looped->block)) fputs("NULL, NULL", file);
   else fprintf(file, "start%zu, column%zu", number, number);
-  if (strcmp(function, "saddle_factor") == 0) fprintf(file, ", coordinate%zu", number);
+  if (takes_rows) fprintf(file, ", coordinate%zu", number);
   fprintf(file, ", mass + %zu", looped->first_mass);
 }
 
@@ -71,10 +70,12 @@ static void write_block_statement(FILE *file, const struct Program *program, con
   bool has_constraints = program->blocks.items[number].block->constraint_count > 0;
   if (instruction->opcode == FACTOR) {
     fprintf(file, "const size_t singular%u = ", number);
-    write_block_call(file, program, has_constraints ? "saddle_factor" : "ldlt_factor", number);
+    write_block_call(file, program, has_constraints ? "saddle_factor" : "ldlt_factor", has_constraints, number);
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
-    write_block_call(file, program, has_constraints ? "saddle_solve" : "ldlt_solve", number);
+    bool is_least = instruction->opcode == LEAST_FORCES;
+    const char *solve = has_constraints ? "saddle_solve" : "ldlt_solve";
+    write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least, number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
   }
 }

@@ -114,7 +114,8 @@ static void write_blocks(FILE *file, const struct Program *program) {
     if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
     else fprintf(file, "start%zu, column%zu, ", i, i);
     fprintf(file, "coordinate%zu, %s},\n", i,
-            looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve" : "NULL, NULL");
+            looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve, saddle_least_forces"
+                                                : "NULL, NULL, NULL");
   }
   fputs(program->blocks.count == 0 ? "    {0}};\n" : "};\n", file);
 }

@@ -50,6 +50,12 @@ static void solve(const struct Frame *frame, size_t number) {
   else ldlt_solve(block->count, block->start, block->column, mass, side);
 }
 
+static void take_least_forces(const struct Frame *frame, size_t number) {
+  const struct BlockTable *block = &frame->tables->blocks[number];
+  block->least_forces(block->count, block->start, block->column, block->coordinate,
+                      frame->base[SPACE_MASS] + block->first_mass, frame->base[SPACE_SIDE] + block->first_side);
+}
+
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
 
 /* The instructions of a run; R, A, B and C are the result and the operands. */
@@ -107,6 +113,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
       }
       break;
     case SOLVE: EACH(1, solve(frame, code[0]));
+    case LEAST_FORCES: EACH(1, take_least_forces(frame, code[0]));
     default: return -1; /* lagc writes no other */
     }
   }

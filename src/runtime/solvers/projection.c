@@ -20,6 +20,8 @@ static const double converged = 1e-9;      /* a change whose square is below rou
 static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
 static const double fulfilled = 1e-10;     /* what a constraint may lack, as a share of the scale of the state */
 static const double redundant_lack = 1e-8; /* the same of one that follows from others, before the last change */
+static const double largest_jump = 0.1;    /* of what an input moves, in units of the scale of the state */
+static const double noted_move = 1e-2;     /* the same where it moves as it should, from step to step */
 static const double vanishing = 1e-6;      /* the length of a row of J where a constraint holds, against that nearby */
 
 /* The parts of the workspace. */
@@ -149,12 +151,18 @@ static size_t find_without_value(const struct Work *work) {
   return j;
 }
 
-/* The constraint that lacks most, as a way in units of the state's scale; constraint_count where none lacks anything. */
+/* What a constraint lacks, as a way in units of the state's scale. */
+static double way_of(const struct Work *work, size_t constraint, double scale) {
+  double lack = work->lack[constraint];
+  return lack == 0.0 ? 0.0 : fabs(lack) / (work->slope[constraint] * scale);
+}
+
+/* The constraint that lacks most; constraint_count where none lacks anything. */
 static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
   size_t worst = lagrangian.constraint_count;
   double scale = largest_scale(state, first), most = fulfilled;
   for (size_t j = 0; j < lagrangian.constraint_count; j++) {
-    double way = work->lack[j] == 0.0 ? 0.0 : fabs(work->lack[j]) / (work->slope[j] * scale);
+    double way = way_of(work, j, scale);
     if (way > most) {
       most = way;
       worst = j;
@@ -197,12 +205,13 @@ static size_t approach_velocities(struct Instance *instance, double time, double
   return find_lacking(&work, state, lagrangian.coordinate_count);
 }
 
-static void log_moves(const struct Instance *instance, const double *before) {
+/* Those of more than a share of the scale. */
+static void log_moves(const struct Instance *instance, const double *before, double share) {
   char text[600] = "";
   int length = 0;
   for (size_t i = 0; i < 2 * lagrangian.coordinate_count && length < 500; i++) {
     double after = instance->state[i];
-    if (fabs(after - before[i]) <= instance->situation->tolerance * scale_of(before, i)) continue;
+    if (fabs(after - before[i]) <= share * scale_of(before, i)) continue;
     length += snprintf(text + length, sizeof text - (size_t)length, "%s%.60s from %.9g to %.9g", length > 0 ? ", " : "",
                        evaluate_state_name(i), before[i], after);
   }
@@ -214,9 +223,10 @@ static void log_moves(const struct Instance *instance, const double *before) {
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraint_count; j++)
     if (isinf(work->pivot[j]))
-      log_message(instance, STATUS_DONE,
-                  "time %g: the constraint '%s' follows from the others; they carry its load, and its force is 0",
-                  instance->situation->time, lagrangian.constraints[j]);
+      log_message(
+          instance, STATUS_DONE,
+          "time %g: the constraint '%s' follows from the others; their forces are the least that carry the load",
+          instance->situation->time, lagrangian.constraints[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what, const char *function) {
@@ -281,13 +291,13 @@ static bool keep_fixed(struct Instance *instance, const double *before, const ch
   return true;
 }
 
-static bool make_consistent(struct Instance *instance, bool is_start, const char *function) {
+static bool make_consistent(struct Instance *instance, const char *function) {
   struct Work work = work_of(instance);
   double time = instance->situation->time;
-  bool keeps_fixed = is_start && lagrangian.coordinate_is_fixed != NULL;
+  bool keeps_fixed = lagrangian.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
-  size_t vanishing_one = is_start ? find_vanishing(instance, time, instance->state) : lagrangian.constraint_count;
+  size_t vanishing_one = find_vanishing(instance, time, instance->state);
   if (vanishing_one < lagrangian.constraint_count) return refuse_vanishing(instance, vanishing_one, function);
   if (lacking < lagrangian.constraint_count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
@@ -296,10 +306,57 @@ static bool make_consistent(struct Instance *instance, bool is_start, const char
   }
   lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
   if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "velocities", function);
-  if (is_start) log_redundant(instance, &work);
+  log_redundant(instance, &work);
   if (keeps_fixed && !keep_fixed(instance, work.before, function)) return false;
-  log_moves(instance, work.before);
+  log_moves(instance, work.before, instance->situation->tolerance);
   return true;
+}
+
+/* A coordinate cannot follow an input that jumps. */
+static bool has_jumped(struct Instance *instance) {
+  struct Work work = work_of(instance);
+  double time = instance->situation->time, scale = largest_scale(instance->state, 0);
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  if (lagrangian.guide_count == 0 || !evaluate_lack(instance, time, instance->state, POSITIONS)) return false;
+  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
+    if (lagrangian.constraint_inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
+    log_message(instance, STATUS_DISCARD,
+                "time %g: the constraint '%s' is %g where 0 is expected: it depends on %s, and the coordinates cannot "
+                "follow a jump; expected inputs that move as their derivatives tell",
+                time, lagrangian.constraints[j], -work.lack[j], lagrangian.constraint_inputs[j]);
+    return true;
+  }
+  return false;
+}
+
+static void log_contradiction(struct Instance *instance, size_t constraint, const char *what) {
+  double time = instance->situation->time;
+  if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, time);
+  else
+    log_message(instance, STATUS_DISCARD,
+                "time %g: after a parameter or an input was set, no %s near the present ones fulfil the constraint "
+                "'%s' with the others: it is %g where 0 is expected; expected values for which there are some",
+                time, what, lagrangian.constraints[constraint], -work_of(instance).lack[constraint]);
+}
+
+static bool resume(struct Instance *instance) {
+  struct Work work = work_of(instance);
+  double time = instance->situation->time;
+  const char *what = "coordinates";
+  if (has_jumped(instance)) return false;
+  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
+  size_t lacking = approach_positions(instance, time, instance->state, POSITIONS);
+  if (lacking == lagrangian.constraint_count) {
+    what = "velocities";
+    lacking = approach_velocities(instance, time, instance->state, VELOCITIES);
+  }
+  if (lacking == lagrangian.constraint_count) {
+    log_moves(instance, work.before, lagrangian.guide_count > 0 ? noted_move : instance->situation->tolerance);
+    return true;
+  }
+  log_contradiction(instance, lacking, what);
+  memcpy(instance->state, work.before, lagrangian.state_count * sizeof *work.before);
+  return false;
 }
 
 static const char *weakest(struct Instance *instance, double time, const double *state) {
@@ -318,4 +375,4 @@ static const char *weakest(struct Instance *instance, double time, const double 
 }
 
 const struct Projection projection = {
-    .project = project, .drift = drift, .make_consistent = make_consistent, .weakest = weakest};
+    .project = project, .drift = drift, .make_consistent = make_consistent, .resume = resume, .weakest = weakest};

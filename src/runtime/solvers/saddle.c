@@ -18,6 +18,9 @@ static const double smallest_share = 1e-12;
 /* Solutions keep most of their digits where the weakest constraint has more than this share. */
 static const double weak_share = 1e-3;
 
+/* What is left of a projection, squared, when the rest is rounding. */
+static const double converged = 1e-31;
+
 static double positive(double value) {
   return value > 0.0 ? value : 0.0;
 }
@@ -65,4 +68,55 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const dou
   subtract_product(n, start, column, m + start[n], b, x, rest);
   ldlt_solve(n, start, column, m, rest);
   for (size_t i = 0; i < n; i++) x[i] += rest[i];
+}
+
+/*
+ * For each constraint r that follows from others, L^-T e_r holds forces that balance each other: a column of N, whose
+ * columns are all F with J^T F = 0.
+ */
+static bool is_redundant(const size_t *start, const double *m, size_t i) {
+  return isinf(m[start[i + 1] - 1]);
+}
+
+/* rest = N^T forces, in the rows of the constraints that follow; returns the square of its length. */
+static double project_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate,
+                             const double *m, const double *forces, double *rest) {
+  double square = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    rest[i] = coordinate[i] < 0 ? forces[i] : 0.0;
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) rest[i] -= m[k] * rest[column[k]];
+    if (is_redundant(start, m, i)) square += rest[i] * rest[i];
+  }
+  return square;
+}
+
+/* rest = N direction, in the rows of all constraints; returns the square of its length. */
+static double spread_direction(size_t n, const size_t *start, const size_t *column, const int *coordinate,
+                               const double *m, const double *direction, double *rest) {
+  double square = 0.0;
+  for (size_t i = 0; i < n; i++) rest[i] = is_redundant(start, m, i) ? direction[i] : 0.0;
+  for (size_t i = n; i-- > 0;) {
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) rest[column[k]] -= m[k] * rest[i];
+    if (coordinate[i] < 0) square += rest[i] * rest[i];
+  }
+  return square;
+}
+
+/* The conjugate gradient method for least squares |F - N y|: in exact numbers it takes a step a column at most. */
+void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                         double *x) {
+  double *direction = x + n, *rest = direction + n;
+  size_t steps = 0;
+  for (size_t i = 0; i < n; i++) steps += is_redundant(start, m, i) ? 3 : 0;
+  if (steps == 0) return;
+  double square = project_forces(n, start, column, coordinate, m, x, rest), first = square;
+  memcpy(direction, rest, n * sizeof *direction);
+  for (; steps > 0 && square > converged * first; steps--) {
+    double length = spread_direction(n, start, column, coordinate, m, direction, rest), share = square / length;
+    for (size_t i = 0; i < n; i++)
+      if (coordinate[i] < 0) x[i] -= share * rest[i];
+    double before = square;
+    square = project_forces(n, start, column, coordinate, m, x, rest);
+    for (size_t i = 0; i < n; i++) direction[i] = rest[i] + square / before * direction[i];
+  }
 }

@@ -1,0 +1,99 @@
+/*
+ * The forces of least norm are F = J w. Along a direction dF = dJ w + J dw: of some dF that solves the equations, the
+ * part dF - dJ w is to be one of least norm again.
+ */
+#include "program/least_forces.h"
+
+#include <stdlib.h>
+
+#include "memory.h"
+
+/* A constraint that is solved for at run time. */
+struct Row {
+  Place side, target, force;
+  Place turn; /* its element of dJ w */
+  bool turns; /* has one */
+};
+
+static struct Row *rows_create(const struct Program *program) {
+  size_t n = program->equations->count;
+  struct Row *rows = allocate(program->equations->constraints->count, sizeof *rows);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct LoopedBlock *looped = &program->blocks.items[b];
+    for (size_t i = 0; i < looped->block->count; i++) {
+      size_t row = looped->block->coordinates[i];
+      if (row >= n)
+        rows[row - n] = (struct Row){.side = place_in(SPACE_SIDE, looped->first_side + i),
+                                     .target = place_in(SPACE_TARGET, row),
+                                     .force = place_in(SPACE_ACCELERATION, row)};
+    }
+  }
+  return rows;
+}
+
+/* The side of the block holds w then: K (w; y) = (0; F). */
+static void append_origins(const struct Program *program, struct Values *values, size_t number,
+                           const struct Row *rows) {
+  const struct LoopedBlock *looped = &program->blocks.items[number];
+  size_t n = program->equations->count;
+  for (size_t i = 0; i < looped->block->count; i++) {
+    size_t row = looped->block->coordinates[i];
+    Place side = place_in(SPACE_SIDE, looped->first_side + i);
+    if (row < n) values_copy(values, side, ZERO);
+    else routine_append(values->routine, COPY, side, rows[row - n].force, 0, 0);
+  }
+  routine_append(values->routine, SOLVE, (Place)number, 0, 0, 0);
+}
+
+static Place side_of(const struct Program *program, size_t coordinate) {
+  const struct Inertia *inertia = program->equations->inertia;
+  for (size_t b = 0; b < program->blocks.count; b++)
+    if (program->blocks.items[b].block == inertia_block_of(inertia, coordinate))
+      return place_in(SPACE_SIDE, program->blocks.items[b].first_side + inertia->place_of[coordinate]);
+  return 0;
+}
+
+/* dJ w, in local variables. */
+static void append_turns(const struct Program *program, struct Values *values, struct Row *rows) {
+  const struct Elements *jacobian = &program->equations->constraints->jacobian;
+  const Node *along = program->expressions->constraints_along;
+  values_compute(values, along, jacobian->count, false);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    if (along[k] == ZERO) continue;
+    struct Row *row = &rows[jacobian->positions[k].row];
+    Place term = routine_local(values->routine), side = side_of(program, jacobian->positions[k].column);
+    routine_append(values->routine, PRODUCT, term, values_place(values, along[k]), side, 0);
+    Place sum = row->turns ? routine_local(values->routine) : term;
+    if (row->turns) routine_append(values->routine, SUM, sum, row->turn, term, 0);
+    row->turn = sum;
+    row->turns = true;
+  }
+}
+
+static bool any_turns(const struct Program *program) {
+  bool any = false;
+  for (size_t k = 0; k < program->equations->constraints->jacobian.count; k++)
+    any |= program->expressions->constraints_along[k] != ZERO;
+  return any;
+}
+
+void append_least_forces_along(const struct Program *program, struct Values *values) {
+  struct Row *rows = rows_create(program);
+  size_t count = program->equations->constraints->count;
+  const struct LoopedBlocks *blocks = &program->blocks;
+  bool turns = any_turns(program);
+  for (size_t b = 0; b < blocks->count; b++)
+    if (turns && blocks->items[b].block->constraint_count > 0) append_origins(program, values, b, rows);
+  append_turns(program, values, rows);
+  for (size_t j = 0; j < count; j++) {
+    if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].side, rows[j].target, rows[j].turn, 0);
+    else routine_append(values->routine, COPY, rows[j].side, rows[j].target, 0, 0);
+  }
+  for (size_t b = 0; b < blocks->count; b++)
+    if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Place)b, 0, 0, 0);
+  for (size_t j = 0; j < count; j++) {
+    if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].side, rows[j].turn, 0);
+    else routine_append(values->routine, COPY, rows[j].target, rows[j].side, 0, 0);
+  }
+  free(rows);
+}

@@ -1,0 +1,15 @@
+/* The inputs that stand in constraints, as C. */
+#ifndef WRITE_GUIDES_H
+#define WRITE_GUIDES_H
+
+#include <stdio.h>
+
+#include "mechanics/model.h"
+
+/* Whether some constraint holds an input. */
+bool has_guides(const struct Model *model);
+
+/* guides[] and constraint_inputs[] of include/lagrangian.h. */
+void guides_write(FILE *file, const struct Model *model);
+
+#endif
