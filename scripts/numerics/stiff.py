@@ -8,6 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from numerics.driver import POINTS, step
+from numerics.failures import failure
 from numerics.peers import impatient
 from numerics.plots import front
 from numerics.stiff_problems import PROBLEMS, QUICK, relative, right_states
@@ -19,6 +20,7 @@ LEVELS = [1e-6, 1e-10]  # errors at which times are compared
 GOAL = 1.3  # the time of auto, in units of the better one of its two methods
 PATIENCE = 10.0  # seconds
 SLOW = 20.0  # methods that take this many times the time of auto are left out
+LONG = 0.3  # seconds, from which on one run is enough: what disturbs it is a small part
 
 
 @dataclass
@@ -33,9 +35,10 @@ class Sample:
     evaluations: int = 0
 
 
-def sample(problem, way, method, tolerance, repeats, timeout):
+def sample(problem, way, method, tolerance, timeout):
+    """What a first run tells, whose time includes that of recording it."""
     steps, changing = problem.communication(way)
-    stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, repeats, timeout=timeout, changing=changing)
+    stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, 0, timeout=timeout, changing=changing)
     if stepped is None:
         return None
     states = stepped.columns(problem.states)
@@ -44,28 +47,42 @@ def sample(problem, way, method, tolerance, repeats, timeout):
     return Sample(problem.name, way, method, tolerance, stepped.seconds, error, stepped.steps, stepped.evaluations)
 
 
+def repeat(problem, way, sample):
+    """Runs again, without recording, as often as a fiftieth of a second has room for; the fastest counts."""
+    steps, changing = problem.communication(way)
+    repeats = int(min(max(0.02 / sample.seconds, 1), 500))
+    stepped = step(sample.method, problem.system, problem.values, problem.end, sample.tolerance, steps, repeats, 0, changing=changing)
+    if stepped is not None:
+        sample.seconds = min(sample.seconds, stepped.seconds)
+
+
+def first_samples(problem, way, tolerances):
+    """One that gives up or is far slower than auto is not tried at smaller tolerances."""
+    samples, given_up = [], set()
+    for tolerance in sorted(tolerances, reverse=True):
+        patience = PATIENCE
+        for method in METHODS:
+            if method in given_up:
+                continue
+            first = sample(problem, way, method, tolerance, patience)
+            if first is None:
+                given_up.add(method)
+                continue
+            samples.append(first)
+            if method == "auto":
+                patience = min(PATIENCE, 1 + SLOW * first.seconds)
+    return samples
+
+
 def sample_fmus(problem, way, tolerances, rounds):
-    """
-    The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts. One that
-    gives up or is far slower than auto is not tried at smaller tolerances.
-    """
-    samples, given_up = {}, set()
-    for turn in range(rounds):
-        for tolerance in sorted(tolerances, reverse=True):
-            for method in METHODS:
-                first, auto = samples.get((method, tolerance)), samples.get(("auto", tolerance))
-                if method in given_up or (turn > 0 and first is None):
-                    continue
-                timeout = PATIENCE if method == "auto" or auto is None else min(PATIENCE, 1 + 2 * SLOW * auto.seconds)
-                repeats = 1 if first is None else int(min(max(0.02 / first.seconds, 1), 500))
-                new = sample(problem, way, method, tolerance, repeats, timeout if first is None else 60)
-                if new is None:
-                    given_up.add(method)
-                elif first is None:
-                    samples[method, tolerance] = new
-                else:
-                    first.seconds = min(first.seconds, new.seconds)
-    return list(samples.values())
+    """The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts."""
+    right_states(problem, way)  # before anything runs in vain
+    samples = first_samples(problem, way, [t for t in tolerances if t >= problem.tightest])
+    for _ in range(rounds - 1):
+        for known in samples:
+            if known.seconds < LONG:
+                repeat(problem, way, known)
+    return samples
 
 
 def sample_peers(problem, tolerances):
@@ -79,12 +96,12 @@ def sample_peers(problem, tolerances):
     for peer, method in PEERS.items():
         for tolerance in tolerances:
             right_side = impatient(definition.right_side(lambda t: inputs, parameters), PATIENCE)
-            begin = time.perf_counter()
+            begin = time.process_time()
             try:
                 solution = solve_ivp(right_side, (0, problem.end), start, method=method, rtol=tolerance, atol=tolerance, t_eval=[problem.end])
             except (TimeoutError, ArithmeticError, ValueError, np.linalg.LinAlgError):
                 break
-            seconds = time.perf_counter() - begin
+            seconds = time.process_time() - begin
             if not solution.success or not np.all(np.isfinite(solution.y)):
                 break
             error = float(np.max(relative(solution.y[:, -1], exact)))
@@ -92,20 +109,34 @@ def sample_peers(problem, tolerances):
     return samples
 
 
+def problems(quick):
+    return QUICK if quick else PROBLEMS
+
+
 def plan(quick):
     """All (problem, way)."""
-    return [(problem, way) for problem in (QUICK if quick else PROBLEMS) for way in problem.ways]
+    return [(problem, way) for problem in problems(quick) for way in problem.ways]
 
 
-def collect(quick, progress):
-    samples = []
-    tolerances, rounds = (TOLERANCES[1::2], 2) if quick else (TOLERANCES, 4)
-    for problem, way in plan(quick):
+def sample_problem(problem, quick, progress):
+    tolerances, rounds, samples = TOLERANCES[1::2] if quick else TOLERANCES, 2 if quick else 4, []
+    for way in problem.ways:
         samples += sample_fmus(problem, way, tolerances, rounds)
         if way == "one step":
             samples += sample_peers(problem, [t for t in tolerances if t >= 1e-10])
         progress(f"{problem.name}, {way}")
     return samples
+
+
+def collect(quick, progress):
+    """(samples, a sentence about each problem that failed)."""
+    samples, failures = [], {}
+    for problem in problems(quick):
+        try:
+            samples += sample_problem(problem, quick, progress)
+        except Exception as error:
+            failures[problem.name] = failure(problem.name, error)
+    return samples, failures
 
 
 def time_to(points, level):
@@ -139,8 +170,11 @@ HEADER = ["problem", "communication", "seconds", *(f"{pair}, error {level:g}" fo
 
 
 def rows(samples, quick):
-    table = []
+    """Without those of problems that failed."""
+    table, sampled = [], {s.problem for s in samples}
     for problem, way in plan(quick):
+        if problem.name not in sampled:
+            continue
         compared = [value for level in LEVELS for value in ratios(samples, problem.name, way, level)]
         others = [s.error for s in samples if (s.problem, s.way) == (problem.name, way) and s.method in PEERS]
         table.append([problem.name, way, problem.end, *compared, min(others, default=math.nan), *right_states(problem, way)[1:]])
