@@ -103,10 +103,10 @@ def stiff_section(quick, progress):
     sentences = stiff.summary(rows)
     text = ("Ratios are of times to an equal error, between tolerances by powers; 0 and inf: one of the two never gets there. The methods take "
             "turns, and the fastest of several runs counts. The references are collocation of high order in extended precision, of "
-            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side.")  # fmt: skip
+            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side; exudyn's, with fixed steps, as mass points with springs, dampers, or a distance.")  # fmt: skip
     plots = "".join(paragraphs([failures[problem.name]]) if problem.name in failures else stiff_plot(samples, problem)
                     for problem in stiff.problems(quick))  # fmt: skip
-    content = paragraphs([*sentences, text]) + stiff_legend(stiff.PEERS) + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows)
+    content = paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text]) + stiff_legend(stiff.PEERS) + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows)
     return Section(sentences, content)
 
 
@@ -134,7 +134,7 @@ def mechanisms_section(quick, progress):
 
 def references_section(quick, progress):
     header = ["system", "seconds", "reference checked with", "largest difference"]
-    rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in work_precision.systems(quick)]
+    rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in work_precision.chosen(quick)]
     write_csv(FOLDER / "references.csv", header, rows)
     text = ("The reference of every system is a Taylor series of SymPy's equations with 30 digits in FLINT's arithmetic, which shares no "
             "code with the FMUs; its local error is 1e-20.")  # fmt: skip
@@ -160,8 +160,8 @@ def ratio_tables(samples):
     return content
 
 
-def missing_peers(samples):
-    absent = [peer for peer in PEERS if not any(s.method == peer for s in samples)]
+def missing_peers(samples, peers=PEERS):
+    absent = [peer for peer in peers if not any(s.method == peer for s in samples)]
     return [f"Not installed here, or without a result: {', '.join(absent)}."] if absent else []
 
 

@@ -58,7 +58,7 @@ def own_solver(name):
     return re.search(r"\.solver = &solver_([a-z]+)", code).group(1)
 
 
-def systems(quick):
+def chosen(quick):
     return QUICK if quick else list(SCENARIOS)
 
 
@@ -66,7 +66,7 @@ def plan(quick):
     """All (function, arguments) to sample."""
     tolerances = [10.0**-k for k in (range(4, 13, 2) if quick else range(3, 15))]
     tasks = []
-    for name in systems(quick):
+    for name in chosen(quick):
         end = SCENARIOS[name][1]
         for solver in ["shipped", *(s for s in SOLVERS if s != own_solver(name))]:
             for communication_step in [end, 0.01] if quick else [end, 0.1, 0.01, 0.001]:
