@@ -1,6 +1,6 @@
 """
 What it costs to make an FMU: lagc beside SymPy's LagrangesMethod with cse, whole FMUs with C compiler and packing, and a
-step of a large stiff system. All have a limit of time, and the table says so where it is reached.
+step of a large stiff system by each implicit method. All have a limit of time, and the table says so where it is reached.
 """
 
 import math
@@ -21,7 +21,7 @@ BUILD = ROOT / "build" / "cost"
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 CHAINS, LATTICES = (1, 2, 4, 8, 16, 32), (100, 1000, 10000)
 WHOLE = [("ChainPendulum", 8), ("ChainPendulum", 32), ("ChainPendulum", 128), ("Lattice", 100), ("Lattice", 1000), ("Arm7", None)]
-STIFF = (10, 30, 100, 300, 1000)
+STIFF, STIFF_METHODS = (10, 30, 100, 300, 1000), ("bdf", "radau", "auto")
 
 
 def seconds_of(words):
@@ -149,15 +149,21 @@ def compare_derivation(name, counts, argument=True):
             break
 
 
+def own_name(name, n, method=""):
+    return f"{name}{n or ''}{method}"
+
+
 def prepare_build(cases):
-    """A build of these systems, each as NAMEn, with all that they share built already."""
-    for name, n in cases:
-        own = f"{name}{n or ''}"
+    """A build of these systems, each as NAMEn, or as NAMEnMETHOD with another method, with all that they share built already."""
+    for name, n, *method in cases:
+        own = own_name(name, n, *method)
         folder = BUILD / "systems" / own
         folder.mkdir(parents=True, exist_ok=True)
         text = source(name).read_text().replace(f'system name="{name}"', f'system name="{own}"')
         if n:
             text = re.sub(r'(name="N" value=)"\d+"', rf'\1"{n}"', text)
+        if method:
+            text = re.sub(r'<solver method="\w+"', f'<solver method="{method[0]}"', text)
         (folder / "system.xml").write_text(text)
     subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, f"-DSYSTEMS={BUILD / 'systems'}", "--log-level=ERROR"],
                    check=True, stdout=subprocess.DEVNULL)  # fmt: skip
@@ -176,32 +182,40 @@ def build_fmu(name):
 def compare_whole_fmus():
     print("\nWhole FMUs, with the C compiler and packing\n\n| system | time | lagc alone | archive |\n| --- | ---: | ---: | ---: |")
     for name, n in WHOLE:
-        own = f"{name}{n or ''}"
+        own = own_name(name, n)
         taken, alone = build_fmu(own), lagc(name, n, 1)[0]
         size = "" if taken is None else f"{(BUILD / 'fmu' / f'{own}.fmu').stat().st_size / 1000:.0f} kB"
         print(f"| {own} | {in_seconds(taken)} | {in_seconds(alone)} | {size} |", flush=True)
 
 
-def compare_stiff_steps(end=1.0, tolerance=1e-6):
-    print("\nStiffLattice, bdf: 1 s at tolerance 1e-6\n\n| N | FMU | steps | a step | exponent |\n|" + " ---: |" * 5)
-    before = None
+def stiff_run(n, method, end=1.0, tolerance=1e-6):
+    """(the time of making the FMU or None, its run or None)"""
+    taken = build_fmu(own_name("StiffLattice", n, method))
+    return taken, step("cost", own_name("StiffLattice", n, method), {}, end, tolerance, 1, 3, 1, LIMIT) if taken is not None else None
+
+
+def compare_stiff_steps():
+    """The exponent is that of a step's time; a method that reaches the limit is not tried with more masses."""
+    print("\nStiffLattice: 1 s at tolerance 1e-6\n\n| N | method | FMU | steps | a step | exponent | in all |\n| ---: | --- |" + " ---: |" * 5)
+    before, slow = {}, set()
     for n in STIFF:
-        taken = build_fmu(f"StiffLattice{n}")
-        run = step("cost", f"StiffLattice{n}", {}, end, tolerance, 1, 3, 1, LIMIT) if taken is not None else None
-        if run is None:
-            print(f"| {n} | {in_seconds(taken)} | | {'' if taken is None else in_seconds(None)} | |", flush=True)
-            break
-        microseconds = 1e6 * run.seconds / run.steps
-        exponent = f"{math.log(microseconds / before[1]) / math.log(n / before[0]):.1f}" if before else ""
-        before = n, microseconds
-        print(f"| {n} | {in_seconds(taken)} | {run.steps} | {microseconds:.0f} us | {exponent} |", flush=True)
+        for method in (m for m in STIFF_METHODS if m not in slow):
+            taken, run = stiff_run(n, method)
+            if run is None:
+                slow.add(method)
+                print(f"| {n} | {method} | {in_seconds(taken)} | | {'' if taken is None else in_seconds(None)} | | |", flush=True)
+                continue
+            microseconds = 1e6 * run.seconds / run.steps
+            exponent = f"{math.log(microseconds / before[method][1]) / math.log(n / before[method][0]):.1f}" if method in before else ""
+            before[method] = n, microseconds
+            print(f"| {n} | {method} | {in_seconds(taken)} | {run.steps} | {microseconds:.0f} us | {exponent} | {in_seconds(run.seconds)} |", flush=True)
 
 
 def main():
     compare_derivation("ChainPendulum", CHAINS)
     compare_derivation("Lattice", LATTICES)
     compare_derivation("Arm7", [7], argument=False)
-    prepare_build([*WHOLE, *(("StiffLattice", n) for n in STIFF)])
+    prepare_build([*WHOLE, *(("StiffLattice", n, method) for n in STIFF for method in STIFF_METHODS)])
     compare_whole_fmus()
     compare_stiff_steps()
 

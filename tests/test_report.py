@@ -1,17 +1,21 @@
 """What the report of stiff systems stands on: its references, its models, its inputs and its ratios."""
 
+import importlib.util
 import math
+from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import fmu
 from fmu import ROOT
-from numerics import driver, stiff, stiff_problems
+from numerics import driver, stiff, stiff_peers, stiff_problems
 from numerics.collocation import trajectory
 from numerics.stiff import Sample
-from numerics.stiff_problems import DEFINITIONS, Problem, right_states
+from numerics.stiff_problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
+from test_rope import START, accelerations
 
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 
@@ -89,8 +93,54 @@ def test_ratios():
 
 
 def test_summary():
-    rows = [["A", "one step", 1.0, 1.1, 4.0, 1.2, 5.0], ["B", "many steps", 1.0, 1.5, 3.0, 1.25, math.inf],
-            ["C", "one step", 1.0, math.nan, math.nan, math.nan, math.nan]]  # fmt: skip
+    rows = [["A", "one step", 1.0, 1.1, 4.0, 1.2, 5.0, 20.0, math.nan], ["B", "many steps", 1.0, 1.5, 3.0, 1.25, math.inf, 30.0, math.nan],
+            ["C", "one step", 1.0, *[math.nan] * 6]]  # fmt: skip
     sentences = stiff.summary(rows)
     assert "1 of 2 cases; at worst 1.50 times (B, many steps)" in sentences[0] and "3.00 to 4.00 times" in sentences[1]
-    assert "2 of 2 cases; at worst 1.25 times (B, many steps)" in sentences[2] and "5.00 to infinitely many times" in sentences[3]
+    assert "20.00 to 30.00 times the time of auto, of 2 problems" in sentences[2]
+    assert "2 of 2 cases; at worst 1.25 times (B, many steps)" in sentences[3] and "5.00 to infinitely many times" in sentences[4]
+    assert len(sentences) == 5  # none of exudyn where it never ran
+
+
+def test_the_rope(monkeypatch, tmp_path):
+    """Its line of the report: the reference by two methods, here of the first moments, against forces written by hand."""
+    monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
+    monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
+    monkeypatch.setattr(stiff, "METHODS", ["auto"])
+    (rope,) = (replace(problem, end=0.004) for problem in PROBLEMS if problem.name == "Rope")
+    samples = stiff.sample_fmus(rope, "one step", [1e-6, 1e-12], 1)
+    assert [s.tolerance for s in samples] == [1e-6] and samples[0].error < 1e-7
+
+    def derivative(time, state):
+        places, velocities = state.reshape(2, -1, 2)
+        return np.stack([velocities, accelerations(START, places, velocities)]).ravel()
+
+    places = [[rope.all_values[f"{letter}[{i}]"] for letter in "xy"] for i in range(1, 201)]
+    start = np.stack([np.array(places), np.zeros((200, 2))]).ravel()
+    by_hand = solve_ivp(derivative, (0, rope.end), start, method="DOP853", rtol=1e-9, atol=1e-9).y[:, -1].reshape(2, 200, 2)
+    names = [f"{letter}[{i}]" for letter in ("x", "vx", "y", "vy") for i in range(1, 201)]
+    expected = dict(zip(names, np.concatenate([by_hand[0, :, 0], by_hand[1, :, 0], by_hand[0, :, 1], by_hand[1, :, 1]])))
+    states, text, difference = right_states(rope, "one step")
+    assert "radau" in text and "bdf" in text and difference < 1e-7
+    assert states[-1] == pytest.approx([expected[name] for name in rope.states], abs=1e-7)
+
+
+@pytest.mark.parametrize("peer", [name for name in stiff_peers.PEERS if name.startswith("exudyn")])
+@pytest.mark.parametrize("problem", [elastic(1e4, 0.1), damped_pendulum(1e2)], ids=lambda problem: problem.system)
+def test_exudyn(peer, problem, monkeypatch, tmp_path):
+    """It has the same system: its methods of order 2 converge to the reference."""
+    if importlib.util.find_spec("exudyn") is None:
+        pytest.skip("exudyn is not installed")
+    monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
+    monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
+    problem = replace(problem, end=1.0)
+    exact = right_states(problem, "one step")[0][-1]
+    rough, fine = (np.max(np.abs(stiff_peers.PEERS[peer][0](problem, steps)[1] - exact)) for steps in (1000, 4000))
+    assert fine < 0.15 * rough and fine < 1e-3
+
+
+def test_polar_coordinates():
+    """Of a point at length 2 and angle 0.3 that moves outwards by 0.5 and turns by -0.7."""
+    out, across = np.array([np.sin(0.3), -np.cos(0.3), 0.0]), np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    state = stiff_peers.polar(2 * out, 0.5 * out - 1.4 * across)
+    assert state == pytest.approx({"r": 2.0, "theta": 0.3, "vr": 0.5, "omega": -0.7})

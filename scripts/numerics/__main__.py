@@ -4,20 +4,29 @@ import argparse
 import importlib.metadata
 import os
 import platform
+import sys
+from typing import NamedTuple
 
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
 from numerics import energy, footprint, mechanisms, stiff, work_precision
-from numerics.plots import energy_plot, legend, mechanism_legend, mechanism_plot, stiff_legend, stiff_plot, work_precision_plot
+from numerics.failures import failure
 from numerics.peers import PEERS
+from numerics.plots import energy_plot, legend, mechanism_legend, mechanism_plot, stiff_legend, stiff_plot, work_precision_plot
 from numerics.scenarios import check_of_reference
 from progress import Progress
 
 FOLDER = ROOT / "build" / "report"
 
 
-def machine():
+class Section(NamedTuple):
+    summary: list  # for the first screen: sentences, and (sentence, items)
+    content: str  # HTML
+    wrong: int = 0  # how many wrong results of our FMUs it found
+
+
+def machine_section(quick, progress):
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
     packages = ["fmpy", "scipy", "heyoka", "mujoco", "exudyn", "sympy", "python-flint"]
     versions = []
@@ -26,8 +35,19 @@ def machine():
             versions.append(f"{package} {importlib.metadata.version(package)}")
         except importlib.metadata.PackageNotFoundError:
             versions.append(f"{package}: not installed here")
-    return [("machine", f"{model}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"),
+    rows = [("machine", f"{model}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"),
             ("Python", platform.python_version()), *(("package", v) for v in versions)]  # fmt: skip
+    return Section([], table(["", ""], rows))
+
+
+def error_section(quick, progress):
+    samples, failures, sentences = work_precision.collect(work_precision.plan(quick), progress)
+    work_precision.write_csv(samples, FOLDER / "work_precision.csv")
+    failed = [f"{count} runs of {method} gave up or took more than a minute." for method, count in failures.items()]
+    systems = list(dict.fromkeys(s.system for s in samples))
+    plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
+    content = paragraphs([*failed, *sentences, "Left is loose, right is accurate; low is fast."]) + legend() + plots
+    return Section([*work_precision.summary(samples), *missing_peers(samples)], content + ratio_tables(samples))
 
 
 def stability_rows(progress):
@@ -41,14 +61,15 @@ def stability_rows(progress):
     return rows
 
 
-def stability_section(rows):
+def stability_section(quick, progress):
+    rows = stability_rows(progress)
     header = ["case", "FMU", "what is right", "verdict", "model exchange", "error", "bound", "steps", "evaluations", "bound", "message"]
     write_csv(FOLDER / "stability.csv", header, rows)
     coloured = [[*row[:3], (row[3], row[3]), *row[4:]] for row in rows]
     counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "refused", "wrong")}
     text = (f"{len(rows)} cases: {counts['right']} right, {counts['refused']} refused with a message, {counts['wrong']} wrong. Each has a bound "
             "on its error and on the evaluations of the equations of motion; the same table is a test.")  # fmt: skip
-    return text, paragraphs([text]) + table(header, coloured)
+    return Section([text], paragraphs([text]) + table(header, coloured), counts["wrong"])
 
 
 def energy_section(quick, progress):
@@ -63,27 +84,34 @@ def energy_section(quick, progress):
             progress(f"energy, {name}")
         plots.append(energy_plot(name, curves, end))
     write_csv(FOLDER / "energy.csv", ["system", "method", "tolerance", "time", "drift"], rows)
-    return '<div class="plots">' + "".join(plots) + "</div>"
+    return Section([], '<div class="plots">' + "".join(plots) + "</div>")
+
+
+def left_out_section(quick, progress):
+    header = ["FMU", "form", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
+              "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
+    rows = footprint.rows()
+    write_csv(FOLDER / "left_out.csv", header, rows)
+    return Section([], table(header, rows))
 
 
 def stiff_section(quick, progress):
-    """(sentences for the first screen, the section)."""
-    samples = stiff.collect(quick, progress)
-    work_precision.write_csv(samples, FOLDER / "stiff.csv")
+    samples, failures = stiff.collect(quick, progress)
+    work_precision.write_csv(samples, FOLDER / "stiff.csv", stiff.Sample)
     rows = stiff.rows(samples, quick)
     write_csv(FOLDER / "stiff_ratios.csv", stiff.HEADER, rows)
     sentences = stiff.summary(rows)
     text = ("Ratios are of times to an equal error, between tolerances by powers; 0 and inf: one of the two never gets there. The methods take "
             "turns, and the fastest of several runs counts. The references are collocation of high order in extended precision, of "
-            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side.")  # fmt: skip
-    problems = list({problem.name: problem for problem, _ in stiff.plan(quick)}.values())
-    plots = '<div class="plots">' + "".join(stiff_plot(samples, problem) for problem in problems) + "</div>"
-    return sentences, paragraphs([*sentences, text]) + stiff_legend(stiff.PEERS) + plots + table(stiff.HEADER, rows)
+            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side; exudyn's, with fixed steps, as mass points with springs, dampers, or a distance.")  # fmt: skip
+    plots = "".join(paragraphs([failures[problem.name]]) if problem.name in failures else stiff_plot(samples, problem)
+                    for problem in stiff.problems(quick))  # fmt: skip
+    content = paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text]) + stiff_legend(stiff.PEERS) + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows)
+    return Section(sentences, content)
 
 
 def mechanisms_section(quick, progress):
-    """(sentences for the first screen, the section)."""
-    samples, missing = mechanisms.collect(quick, progress)
+    samples, missing, failures = mechanisms.collect(quick, progress)
     write_csv(FOLDER / "mechanisms.csv", mechanisms.SAMPLES_HEADER, mechanisms.sample_rows(samples))
     rows = mechanisms.rows(samples, missing)
     write_csv(FOLDER / "mechanism_ratios.csv", mechanisms.HEADER, rows)
@@ -91,6 +119,9 @@ def mechanisms_section(quick, progress):
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
     plots = ""
     for problem in mechanisms.PROBLEMS:
+        if problem.system in failures:
+            plots += paragraphs([failures[problem.system]])
+            continue
         measure = problem.levels[0][0]
         points = {method: mechanisms.points_of(samples, problem.system, method, measure) for method in mechanisms.METHODS}
         plots += mechanism_plot(problem.title, mechanisms.text_of(problem, measure), points)
@@ -98,16 +129,16 @@ def mechanisms_section(quick, progress):
     tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
               table(mechanisms.HEADER[level][:4] + mechanisms.HEADER[ratios], [row[level][:4] + row[ratios] for row in rows])]  # fmt: skip
     content = paragraphs([*sentences, *absent, *mechanisms.NOTES]) + mechanism_legend() + f'<div class="plots">{plots}</div>'
-    return sentences, content + "".join(tables)
+    return Section(sentences, content + "".join(tables))
 
 
-def references_section(systems):
+def references_section(quick, progress):
     header = ["system", "seconds", "reference checked with", "largest difference"]
-    rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in systems]
+    rows = [[name, work_precision.SCENARIOS[name][1], *check_of_reference(name)] for name in work_precision.chosen(quick)]
     write_csv(FOLDER / "references.csv", header, rows)
     text = ("The reference of every system is a Taylor series of SymPy's equations with 30 digits in FLINT's arithmetic, which shares no "
             "code with the FMUs; its local error is 1e-20.")  # fmt: skip
-    return paragraphs([text]) + table(header, rows)
+    return Section([], paragraphs([text]) + table(header, rows))
 
 
 def ratio_tables(samples):
@@ -129,53 +160,54 @@ def ratio_tables(samples):
     return content
 
 
-def missing_peers(samples):
-    absent = [peer for peer in PEERS if not any(s.method == peer for s in samples)]
+def missing_peers(samples, peers=PEERS):
+    absent = [peer for peer in peers if not any(s.method == peer for s in samples)]
     return [f"Not installed here, or without a result: {', '.join(absent)}."] if absent else []
 
 
-def main():
+SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
+            ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
+            ("References", references_section), ("Machine and versions", machine_section)]  # fmt: skip
+
+
+def attempt(title, section, quick, progress):
+    """What fails leaves a sentence in its place, and the sections before it on the disk."""
+    try:
+        return section(quick, progress)
+    except Exception as error:
+        sentence = failure(f"the section '{title}'", error)
+        return Section([sentence], paragraphs([sentence]))
+
+
+def write_page(sections):
+    """sections: by title, those that there are so far."""
+    times = ("Times are the processor's for the doStep loop alone, in a C program, the fastest of several runs; those of Python's packages "
+             "include Python, as their users see them, but no loading and no compilation.")  # fmt: skip
+    summary = [line for section in sections.values() for line in section.summary]
+    first = "".join(paragraphs([line]) if isinstance(line, str) else paragraphs([line[0]]) + bullets(line[1]) for line in [*summary, times])
+    others = [(title, section.content) for title, section in sections.items()]
+    (FOLDER / "index.html").write_text(page([("lagrange-fmu: error against run time, stability, footprint", first), *others]))
+
+
+def main(words=None):
+    """1 where an FMU gave a wrong result; what others' programs or a reference lack is a sentence in the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="five systems, few tolerances: under two minutes")
-    quick = parser.parse_args().quick
+    quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
-    tasks = work_precision.plan(quick)
-    progress = Progress(len(tasks) + len(CASES) + len(energy.RUNS) * len(energy.METHODS) + len(stiff.plan(quick)) + len(mechanisms.PROBLEMS))
-    samples, failures = work_precision.collect(tasks, progress)
-    work_precision.write_csv(samples, FOLDER / "work_precision.csv")
-    systems = list(dict.fromkeys(s.system for s in samples))
-    verdicts, stability = stability_section(stability_rows(progress))
-    stiff_sentences, stiff_content = stiff_section(quick, progress)
-    mechanism_sentences, mechanism_content = mechanisms_section(quick, progress)
-    energies = energy_section(quick, progress)
-    left_out_header = ["FMU", "form", "archive [B]", "library [B]", "equations [B]", "runtime [B]", "SUNDIALS [B]", "instance [B]",
-                       "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
-    left_out = footprint.rows()
-    write_csv(FOLDER / "left_out.csv", left_out_header, left_out)
-    failed = [f"{count} runs of {method} gave up or took more than a minute." for method, count in failures.items()]
-    summary = work_precision.summary(samples)
-    first = [verdicts, *stiff_sentences, *mechanism_sentences, *missing_peers(samples),
-             "Times are those of the doStep loop alone, measured in a C program, the fastest of several runs; those of Python's "
-             "packages include Python, as their users see them, but no loading and no compilation."]  # fmt: skip
-    plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
-    sections = [
-        ("lagrange-fmu: error against run time, stability, footprint",
-         "".join(paragraphs([text]) + bullets(items) for text, items in summary) + paragraphs(first)),
-        ("Error against run time", paragraphs([*failed, "Left is loose, right is accurate; low is fast."]) + legend() + plots + ratio_tables(samples)),
-        ("Stiff systems", stiff_content),
-        ("Mechanisms", mechanism_content),
-        ("Stiff and extreme cases", stability),
-        ("Energy over long runs", energies),
-        ("Left out", table(left_out_header, left_out)),
-        ("References", references_section(systems)),
-        ("Machine and versions", table(["", ""], machine())),
-    ]
-    (FOLDER / "index.html").write_text(page(sections))
-    for text, items in summary:
-        print(text, *items, sep="\n  ")
-    print(verdicts, *stiff_sentences, *mechanism_sentences, sep="\n")
+    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.PROBLEMS)
+    progress, sections = Progress(count + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
+    for title, section in SECTIONS:
+        sections[title] = attempt(title, section, quick, progress)
+        write_page(sections)
+        for line in sections[title].summary:
+            print(*([line] if isinstance(line, str) else [line[0], *line[1]]), sep="\n  ")
     print(f"report  {FOLDER / 'index.html'}")
+    wrong = sum(section.wrong for section in sections.values())
+    if wrong:
+        print(f"scripts/report: {wrong} results are wrong, see 'Stiff and extreme cases'", file=sys.stderr)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

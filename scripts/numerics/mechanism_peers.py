@@ -27,6 +27,7 @@ class Exudyn:
         for joint in self.planar.joints:
             self.add_joint(joint)
         self.add_motor_and_spring()
+        self.add_drag()
         self.system.Assemble()
         self.solver = getattr(exudyn.DynamicSolverType, solver)
         self.settings = self.fixed_steps(exudyn, steps)
@@ -82,7 +83,14 @@ class Exudyn:
         if self.planar.spring is not None:
             body, point, fixed, stiffness, length = self.planar.spring
             markers = [self.marker(GROUND, fixed), self.marker(body, point)]
-            self.system.AddObject(items.ObjectConnectorSpringDamper(markerNumbers=markers, stiffness=stiffness, referenceLength=length))
+            self.system.AddObject(items.ObjectConnectorSpringDamper(markerNumbers=markers, stiffness=stiffness, referenceLength=length,
+                                                                     damping=self.planar.damping))  # fmt: skip
+
+    def add_drag(self):
+        if self.planar.drag != 0.0:
+            markers = [self.marker(GROUND, np.zeros(2)), self.marker(0, self.planar.bodies[0].centre)]
+            damping = [self.planar.drag, self.planar.drag, 0.0]
+            self.system.AddObject(self.items.ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping))
 
     def solve(self, period):
         self.settings.solution.sensors.writePeriod = period
@@ -91,12 +99,16 @@ class Exudyn:
     def run(self):
         self.solve(self.problem.end)
 
+    def recorded(self, points):
+        """Rows of (x, y, angle) and their rates for each body, at the last points of those that were written."""
+        coordinates = [[self.system.GetSensorStoredData(sensor)[-points:, 1:] for sensor in pair] for pair in self.sensors]
+        positions, velocities = (np.hstack([self.padded(pair[i]) for pair in coordinates]) for i in (0, 1))
+        return positions + np.concatenate([[*body.centre, 0.0] for body in self.planar.bodies]), velocities
+
     def record(self):
         """(energies, what is compared) at the communication points."""
         self.solve(self.problem.end / POINTS)
-        coordinates = [[self.system.GetSensorStoredData(sensor)[-POINTS:, 1:] for sensor in pair] for pair in self.sensors]
-        positions, velocities = (np.hstack([self.padded(pair[i]) for pair in coordinates]) for i in (0, 1))
-        positions = positions + np.concatenate([[*body.centre, 0.0] for body in self.planar.bodies])
+        positions, velocities = self.recorded(POINTS)
         compared = None if self.problem.from_bodies is None else self.problem.from_bodies(positions)
         return self.planar.energy(positions, velocities), compared
 

@@ -40,6 +40,8 @@ class Planar:
     gravity: float = GRAVITY
     torque: tuple = (0, 0.0)  # (body, N m)
     spring: tuple | None = None  # (body, its point at the start, point of the ground, stiffness, length at rest)
+    damping: float = 0.0  # of the spring [N s/m]
+    drag: float = 0.0  # of a single mass point [N s/m]
 
     def energy(self, positions, velocities):
         """Of rows of (x, y, angle) and their rates for each body; without springs."""

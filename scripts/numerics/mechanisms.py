@@ -10,16 +10,17 @@ from statistics import median
 import numpy as np
 
 from numerics.driver import POINTS, step
+from numerics.failures import failure
 from numerics.mechanism_peers import PEERS
 from numerics.mechanism_problems import PROBLEMS
 from numerics.peers import silence
 from numerics.stiff import ratio, time_to
 
 NOTES = [
-    "All programs take turns in one run, and the fastest of five rounds (of two with --quick) counts; the medians and all samples are in "
+    "All programs take turns in one run, and the fastest of five rounds (of two with --quick, or above half a second) counts; the medians and all samples are in "
     "the CSV files. An error is the largest at 100 communication points (Andrews' mechanism: at the end), relative where values are above 1.",
-    "The FMU does 100 communication steps in a C program, by the clock. exudyn and MuJoCo get one call from Python, of which the processor time "
-    "counts, and are recorded in another run. Models are built, and the FMU is initialized, before that.",
+    "The FMU does 100 communication steps in a C program. exudyn and MuJoCo get one call from Python, and are recorded in another run. "
+    "The processor time counts. Models are built, and the FMU is initialized, before that.",
     "exudyn has planar bodies with revolute joints (a distance for the pendulum), modified Newton, one thread, and sparse matrices for the large "
     "system; its explicit methods refuse constraints. MuJoCo has a tree of hinges, so that the pendulum has one angle and no constraint, and "
     "closes loops with soft constraints, as stiff as it allows: a time constant of two steps, an impedance of 0.9999. That softness is in its errors.",
@@ -32,6 +33,7 @@ SOLVERS = ["taylor", "radau"]  # each has a build of all systems
 METHODS = [*SOLVERS, *PEERS]
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10]
 PATIENCE = 10.0  # seconds of a run; longer ones are not tried
+LONG = 0.5  # seconds, from which on two rounds are enough
 
 
 @dataclass
@@ -56,12 +58,12 @@ class Fmu:
 
     def run(self):
         """The fastest of several repeats, whose loop alone is timed."""
-        stepped = step(*self.words, self.repeats, timeout=10 * PATIENCE)
+        stepped = step(*self.words, self.repeats, 0, timeout=10 * PATIENCE)
         self.repeats = int(min(max(0.02 / stepped.seconds, 1), 500))
         return stepped.seconds
 
     def record(self):
-        stepped = step(*self.words, 1, timeout=self.patience)
+        stepped = step(*self.words, 0, timeout=self.patience)
         if stepped is None:
             raise TimeoutError
         return stepped.columns(["totalEnergy"])[:, 0], stepped.columns(self.problem.compared)
@@ -131,19 +133,24 @@ def sample_problem(problem, quick):
     """(samples, methods that are not installed): all take turns, so that what disturbs the machine disturbs all."""
     with silence(), contextlib.redirect_stdout(io.StringIO()):
         runners, missing = runners_of(problem, quick)
-        for _ in range(2 if quick else 5):
+        for turn in range(2 if quick else 5):
             for runner, sample in runners:
-                sample.times.append(runner.run())
+                if turn < 2 or min(sample.times) < LONG:
+                    sample.times.append(runner.run())
     return [sample for _, sample in runners], missing
 
 
 def collect(quick, progress):
-    samples, missing = [], set()
+    """(samples, methods that are not installed, a sentence about each system that failed)."""
+    samples, missing, failures = [], set(), {}
     for problem in PROBLEMS:
-        some, absent = sample_problem(problem, quick)
-        samples, missing = samples + some, missing | absent
+        try:
+            some, absent = sample_problem(problem, quick)
+            samples, missing = samples + some, missing | absent
+        except Exception as error:
+            failures[problem.system] = failure(problem.title, error)
         progress(f"mechanisms, {problem.system}")
-    return samples, missing
+    return samples, missing, failures
 
 
 SAMPLES_HEADER = ["system", "method", "tolerance or steps", "fastest [s]", "median [s]", "drift [J]", "error"]
@@ -179,7 +186,9 @@ def row(samples, missing, problem, measure, level, whose):
 
 
 def rows(samples, missing):
-    return [row(samples, missing, problem, *level) for problem in PROBLEMS for level in problem.levels]
+    """Without those of systems that failed."""
+    sampled = {s.system for s in samples}
+    return [row(samples, missing, problem, *level) for problem in PROBLEMS if problem.system in sampled for level in problem.levels]
 
 
 def factor(value):

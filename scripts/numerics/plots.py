@@ -13,6 +13,7 @@ MARKERS = {"SciPy DOP853": "s", "SciPy LSODA": "v", "SciPy Radau": "^", "FMPy CV
            "heyoka": "*", "MuJoCo RK4": "P", "MuJoCo Euler": "X"}  # fmt: skip
 MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#8338ec", "o"), "exudyn generalized-alpha": ("#2a6f97", "s"),
                     "exudyn trapezoidal, index 2": ("#2a6f97", "v"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
+PEER_STYLES = {peer: ("#999", marker) for peer, marker in MARKERS.items()} | MECHANISM_STYLES
 LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk": "built with erk", "bdf": "built with bdf"}
 
 def front(points):
@@ -69,12 +70,12 @@ def legend():
 def stiff_plot(samples, problem):
     """All methods and ways of communication on a problem of numerics.stiff_problems."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
-    colours = STIFF_COLOURS | dict.fromkeys(MARKERS, "#999")
+    methods = PEER_STYLES | {method: (colour, "o") for method, colour in STIFF_COLOURS.items()}
     for way, style in zip(problem.ways, STYLES):
-        for method, colour in colours.items():
+        for method, (colour, marker) in methods.items():
             points = front([(s.seconds, max(s.error, 1e-17)) for s in samples if (s.problem, s.way, s.method) == (problem.name, way, method)])
             if len(points):
-                axes.loglog(points[:, 1], points[:, 0], style, color=colour, marker=MARKERS.get(method, "o"), markersize=4,
+                axes.loglog(points[:, 1], points[:, 0], style, color=colour, marker=marker, markersize=4,
                             linewidth=2 if method == "auto" else 1)  # fmt: skip
     axes.set_xlabel("largest error at the communication points")
     axes.set_ylabel("run time [s]")
@@ -91,7 +92,8 @@ def stiff_legend(peers):
     for method, colour in STIFF_COLOURS.items():
         axes.plot([], [], color=colour, marker="o", markersize=3, label=method)
     for method in peers:
-        axes.plot([], [], color="#999", marker=MARKERS[method], label=method)
+        colour, marker = PEER_STYLES[method]
+        axes.plot([], [], color=colour, marker=marker, label=method)
     for style, way in zip(STYLES, ("one step", "many steps", "an input that changes at every step")):
         axes.plot([], [], style, color="#444", label=way)
     axes.axis("off")

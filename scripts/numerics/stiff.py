@@ -1,24 +1,24 @@
-"""Error against run time of stiff problems: the solver that chooses beside those it chooses from, SUNDIALS' and SciPy's."""
+"""Error against run time of stiff problems: the solver that chooses beside those it chooses from, SUNDIALS', SciPy's and exudyn's."""
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from numerics.driver import POINTS, step
-from numerics.peers import impatient
+from numerics.failures import failure
 from numerics.plots import front
+from numerics.stiff_peers import PATIENCE as PEERS_PATIENCE
+from numerics.stiff_peers import PEERS, can_express
 from numerics.stiff_problems import PROBLEMS, QUICK, relative, right_states
 
 METHODS = ["auto", "radau", "taylor", "bdf"]  # each has a build of all systems
-PEERS = {"SciPy Radau": "Radau", "SciPy LSODA": "LSODA"}
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 LEVELS = [1e-6, 1e-10]  # errors at which times are compared
 GOAL = 1.3  # the time of auto, in units of the better one of its two methods
 PATIENCE = 10.0  # seconds
 SLOW = 20.0  # methods that take this many times the time of auto are left out
+LONG = 0.3  # seconds, from which on one run is enough: what disturbs it is a small part
 
 
 @dataclass
@@ -26,16 +26,17 @@ class Sample:
     problem: str
     way: str  # of communication
     method: str
-    tolerance: float
+    tolerance: float  # or the number of steps, of methods with fixed steps
     seconds: float
     error: float  # the largest over the recorded communication points
     steps: int = 0
     evaluations: int = 0
 
 
-def sample(problem, way, method, tolerance, repeats, timeout):
+def sample(problem, way, method, tolerance, timeout):
+    """What a first run tells, whose time includes that of recording it."""
     steps, changing = problem.communication(way)
-    stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, repeats, timeout=timeout, changing=changing)
+    stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, 0, timeout=timeout, changing=changing)
     if stepped is None:
         return None
     states = stepped.columns(problem.states)
@@ -44,68 +45,92 @@ def sample(problem, way, method, tolerance, repeats, timeout):
     return Sample(problem.name, way, method, tolerance, stepped.seconds, error, stepped.steps, stepped.evaluations)
 
 
-def sample_fmus(problem, way, tolerances, rounds):
-    """
-    The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts. One that
-    gives up or is far slower than auto is not tried at smaller tolerances.
-    """
-    samples, given_up = {}, set()
-    for turn in range(rounds):
-        for tolerance in sorted(tolerances, reverse=True):
-            for method in METHODS:
-                first, auto = samples.get((method, tolerance)), samples.get(("auto", tolerance))
-                if method in given_up or (turn > 0 and first is None):
-                    continue
-                timeout = PATIENCE if method == "auto" or auto is None else min(PATIENCE, 1 + 2 * SLOW * auto.seconds)
-                repeats = 1 if first is None else int(min(max(0.02 / first.seconds, 1), 500))
-                new = sample(problem, way, method, tolerance, repeats, timeout if first is None else 60)
-                if new is None:
-                    given_up.add(method)
-                elif first is None:
-                    samples[method, tolerance] = new
-                else:
-                    first.seconds = min(first.seconds, new.seconds)
-    return list(samples.values())
+def repeat(problem, way, sample):
+    """Runs again, without recording, as often as a fiftieth of a second has room for; the fastest counts."""
+    steps, changing = problem.communication(way)
+    repeats = int(min(max(0.02 / sample.seconds, 1), 500))
+    stepped = step(sample.method, problem.system, problem.values, problem.end, sample.tolerance, steps, repeats, 0, changing=changing)
+    if stepped is not None:
+        sample.seconds = min(sample.seconds, stepped.seconds)
 
 
-def sample_peers(problem, tolerances):
-    """With the right side that SymPy writes for NumPy, a run each in one step."""
-    samples, definition, values = [], problem.definition, problem.all_values
-    if definition is None:
-        return samples
-    inputs, parameters = [values[u.name] for u in definition.inputs], [values[p.name] for p in definition.parameters]
-    start = [values[state] for state in problem.states]
-    exact = right_states(problem, "one step")[0][-1]
-    for peer, method in PEERS.items():
-        for tolerance in tolerances:
-            right_side = impatient(definition.right_side(lambda t: inputs, parameters), PATIENCE)
-            begin = time.perf_counter()
-            try:
-                solution = solve_ivp(right_side, (0, problem.end), start, method=method, rtol=tolerance, atol=tolerance, t_eval=[problem.end])
-            except (TimeoutError, ArithmeticError, ValueError, np.linalg.LinAlgError):
-                break
-            seconds = time.perf_counter() - begin
-            if not solution.success or not np.all(np.isfinite(solution.y)):
-                break
-            error = float(np.max(relative(solution.y[:, -1], exact)))
-            samples.append(Sample(problem.name, "one step", peer, tolerance, seconds, error))
+def first_samples(problem, way, tolerances):
+    """One that gives up or is far slower than auto is not tried at smaller tolerances."""
+    samples, given_up = [], set()
+    for tolerance in sorted(tolerances, reverse=True):
+        patience = PATIENCE
+        for method in METHODS:
+            if method in given_up:
+                continue
+            first = sample(problem, way, method, tolerance, patience)
+            if first is None:
+                given_up.add(method)
+                continue
+            samples.append(first)
+            if method == "auto":
+                patience = min(PATIENCE, 1 + SLOW * first.seconds)
     return samples
+
+
+def sample_fmus(problem, way, tolerances, rounds):
+    """The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts."""
+    right_states(problem, way)  # before anything runs in vain
+    samples = first_samples(problem, way, [t for t in tolerances if t >= problem.tightest])
+    for _ in range(rounds - 1):
+        for known in samples:
+            if known.seconds < LONG:
+                repeat(problem, way, known)
+    return samples
+
+
+def sample_peers(problem, quick):
+    """A run each in one step, from rough to fine until one is too long; programs of others fail in ways of their own."""
+    samples, exact = [], right_states(problem, "one step")[0][-1]
+    for peer, (function, settings, _) in PEERS.items():
+        for setting in settings[1::2] if quick else settings:
+            try:
+                result = function(problem, setting) if can_express(peer, problem) else None
+            except TimeoutError:
+                break
+            except Exception:
+                continue
+            if result is None or not np.all(np.isfinite(result[1])):
+                continue
+            error = float(np.max(relative(result[1], exact)))
+            samples.append(Sample(problem.name, "one step", peer, setting, result[0], error))
+            if result[0] > PEERS_PATIENCE:
+                break
+    return samples
+
+
+def problems(quick):
+    return QUICK if quick else PROBLEMS
 
 
 def plan(quick):
     """All (problem, way)."""
-    return [(problem, way) for problem in (QUICK if quick else PROBLEMS) for way in problem.ways]
+    return [(problem, way) for problem in problems(quick) for way in problem.ways]
+
+
+def sample_problem(problem, quick, progress):
+    tolerances, rounds, samples = TOLERANCES[1::2] if quick else TOLERANCES, 2 if quick else 4, []
+    for way in problem.ways:
+        samples += sample_fmus(problem, way, tolerances, rounds)
+        if way == "one step":
+            samples += sample_peers(problem, quick)
+        progress(f"{problem.name}, {way}")
+    return samples
 
 
 def collect(quick, progress):
-    samples = []
-    tolerances, rounds = (TOLERANCES[1::2], 2) if quick else (TOLERANCES, 4)
-    for problem, way in plan(quick):
-        samples += sample_fmus(problem, way, tolerances, rounds)
-        if way == "one step":
-            samples += sample_peers(problem, [t for t in tolerances if t >= 1e-10])
-        progress(f"{problem.name}, {way}")
-    return samples
+    """(samples, a sentence about each problem that failed)."""
+    samples, failures = [], {}
+    for problem in problems(quick):
+        try:
+            samples += sample_problem(problem, quick, progress)
+        except Exception as error:
+            failures[problem.name] = failure(problem.name, error)
+    return samples, failures
 
 
 def time_to(points, level):
@@ -134,16 +159,32 @@ def ratios(samples, problem, way, level):
     return ratio(seconds["auto"], min(seconds["taylor"], seconds["radau"])), ratio(seconds["bdf"], seconds["radau"])
 
 
+def exudyn_ratio(samples, problem, way, level):
+    """The faster one of its methods to auto: infinite where it never gets there, not a number where it has no such problem."""
+    times = [seconds_to(samples, problem.name, way, peer, level) for peer in PEERS if peer.startswith("exudyn")]
+    tried = not math.isnan(smallest_error(samples, problem.name, way, "exudyn"))
+    return ratio(min(times), seconds_to(samples, problem.name, way, "auto", level)) if tried else math.nan
+
+
+def smallest_error(samples, problem, way, program):
+    return min((s.error for s in samples if (s.problem, s.way) == (problem, way) and s.method.startswith(program)), default=math.nan)
+
+
 HEADER = ["problem", "communication", "seconds", *(f"{pair}, error {level:g}" for level in LEVELS for pair in ("auto / better of taylor, radau", "bdf / radau")),
-          "smallest error of SciPy", "reference checked with", "largest difference"]  # fmt: skip
+          *(f"exudyn / auto, error {level:g}" for level in LEVELS), "smallest error of SciPy", "smallest error of exudyn", "reference checked with", "largest difference"]  # fmt: skip
+EXUDYN = 3 + 2 * len(LEVELS)  # the first of its columns
 
 
 def rows(samples, quick):
-    table = []
+    """Without those of problems that failed."""
+    table, sampled = [], {s.problem for s in samples}
     for problem, way in plan(quick):
+        if problem.name not in sampled:
+            continue
         compared = [value for level in LEVELS for value in ratios(samples, problem.name, way, level)]
-        others = [s.error for s in samples if (s.problem, s.way) == (problem.name, way) and s.method in PEERS]
-        table.append([problem.name, way, problem.end, *compared, min(others, default=math.nan), *right_states(problem, way)[1:]])
+        beside = [exudyn_ratio(samples, problem, way, level) for level in LEVELS]
+        others = [smallest_error(samples, problem.name, way, program) for program in ("SciPy", "exudyn")]
+        table.append([problem.name, way, problem.end, *compared, *beside, *others, *right_states(problem, way)[1:]])
     return table
 
 
@@ -168,4 +209,8 @@ def summary(table):
         others = [row[4 + 2 * i] for row in table if not math.isnan(row[4 + 2 * i])]
         slower, faster = max(others, default=math.nan), min(others, default=math.nan)
         sentences.append(f"bdf takes {factor(faster)} to {factor(slower)} times the time of radau (infinitely many: it never gets there).")
+        beside = [row[EXUDYN + i] for row in table if not math.isnan(row[EXUDYN + i])]
+        if beside:
+            sentences.append(f"exudyn's implicit methods take {factor(min(beside))} to {factor(max(beside))} times the time of auto, "
+                             f"of {len(beside)} problems in one communication step.")  # fmt: skip
     return sentences

@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass, fields
 import numpy as np
 
 from numerics.driver import SOLVERS, folder_of, step_repeatedly
+from numerics.failures import failure
 from numerics.peers import PEERS
-from numerics.scenarios import QUICK, SCENARIOS, error_at_end, errors, states_of
+from numerics.scenarios import QUICK, SCENARIOS, error_at_end, errors, reference, states_of
 
 LEVELS = [1e-6, 1e-10]  # errors at which the summary compares
 
@@ -39,10 +40,11 @@ def sample_fmu(name, solver, tolerance, communication_step):
 
 
 def sample_peer(name, peer, tolerance):
+    """None where the peer is not installed or does not come to the end: programs of others fail in ways of their own."""
     function, _, _ = PEERS[peer]
     try:
         result = function(name, tolerance)
-    except (ImportError, TimeoutError):
+    except Exception:
         return None
     if result is None or not np.all(np.isfinite(result[1])):
         return None
@@ -56,11 +58,15 @@ def own_solver(name):
     return re.search(r"\.solver = &solver_([a-z]+)", code).group(1)
 
 
+def chosen(quick):
+    return QUICK if quick else list(SCENARIOS)
+
+
 def plan(quick):
     """All (function, arguments) to sample."""
     tolerances = [10.0**-k for k in (range(4, 13, 2) if quick else range(3, 15))]
     tasks = []
-    for name in QUICK if quick else SCENARIOS:
+    for name in chosen(quick):
         end = SCENARIOS[name][1]
         for solver in ["shipped", *(s for s in SOLVERS if s != own_solver(name))]:
             for communication_step in [end, 0.01] if quick else [end, 0.1, 0.01, 0.001]:
@@ -72,21 +78,27 @@ def plan(quick):
 
 
 def collect(tasks, progress):
-    """Samples of the tasks; those that fail are counted in the second result, by method."""
-    samples, failures = [], {}
+    """(samples, how often each method failed, sentences about systems that have no reference)."""
+    samples, failures, without = [], {}, {}
+    for name in dict.fromkeys(arguments[0] for _, arguments in tasks):
+        try:
+            reference(name)
+        except Exception as error:
+            without[name] = failure(f"{name}, which has no reference", error)
     for function, arguments in tasks:
-        sample = function(*arguments)
-        if sample is None:
-            failures[arguments[1]] = failures.get(arguments[1], 0) + 1
-        else:
+        name, method = arguments[:2]
+        sample = None if name in without else function(*arguments)
+        if sample is not None:
             samples.append(sample)
-        progress(f"{arguments[0]}, {arguments[1]}")
-    return samples, failures
+        elif name not in without:
+            failures[method] = failures.get(method, 0) + 1
+        progress(f"{name}, {method}")
+    return samples, failures, list(without.values())
 
 
-def write_csv(samples, path):
+def write_csv(samples, path, type_of_samples=Sample):
     with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(samples[0])])
+        writer = csv.DictWriter(file, [field.name for field in fields(type_of_samples)])
         writer.writeheader()
         writer.writerows(asdict(sample) for sample in samples)
 
