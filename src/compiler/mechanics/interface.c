@@ -79,24 +79,10 @@ static void append_result(struct Interface *interface, const char *name, const c
   variable->node = node;
 }
 
-static void append_bodies(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
-  static const char *const axes[] = {"x", "y", "z"};
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
-    const struct Placement *placement = &equations->placements[i];
-    for (int axis = 0; axis < 3; axis++) {
-      if (!body->has_position[axis]) continue;
-      char *name = format_text("%s.%s", body->name, axes[axis]);
-      char *text = format_text("%s position of %s", axes[axis], body->name);
-      append_result(interface, name, "m", placement->position[axis], text);
-      free(name);
-      free(text);
-    }
-    if (!body->has_angle) continue;
-    char *name = format_text("%s.angle", body->name), *text = format_text("angle of %s", body->name);
-    append_result(interface, name, "rad", placement->angle, text);
-    free(name);
-    free(text);
+static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
+  for (size_t i = 0; i < model->places.count; i++) {
+    const struct Variable *source = &model->places.items[i];
+    append_result(interface, source->name, source->unit, equations->places[i], source->description);
   }
 }
 
@@ -154,10 +140,7 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
   for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
-  for (size_t i = 0; i < model->body_count; i++) {
-    for (int axis = 0; axis < 3; axis++) uses |= graph_depends_on(graph, equations->placements[i].position[axis], TIME);
-    uses |= graph_depends_on(graph, equations->placements[i].angle, TIME);
-  }
+  for (size_t i = 0; i < model->places.count; i++) uses |= graph_depends_on(graph, equations->places[i], TIME);
   return uses;
 }
 
@@ -248,7 +231,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->result_count = model->outputs.count;
   append_calculated(interface, model);
   if (n == 0) return interface;
-  append_bodies(interface, model, equations);
+  append_places(interface, model, equations);
   append_reactions(interface, model, equations);
   append_constraint_forces(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");

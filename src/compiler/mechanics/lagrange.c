@@ -8,6 +8,7 @@
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/energies.h"
+#include "mechanics/inertial_forces.h"
 #include "mechanics/reactions.h"
 #include "mechanics/time_derivative.h"
 #include "memory.h"
@@ -20,42 +21,6 @@ static Node *generalized_forces(const struct Model *model) {
   gradient_of(graph, model->dissipation.node, VELOCITY, n, force);
   for (size_t i = 0; i < n; i++) force[i] = subtract(graph, model->forces[i].node, force[i]);
   return force;
-}
-
-/* Everything that moves with an inertia: coordinates of positions with masses, angles with moments of inertia. */
-struct Motions {
-  Node *position, *inertia;
-  size_t count;
-};
-
-static void append_motion(struct Motions *motions, Node position, Node inertia) {
-  if (position == ZERO) return;
-  motions->position[motions->count] = position;
-  motions->inertia[motions->count++] = inertia;
-}
-
-static struct Motions motions_of(const struct Model *model) {
-  struct Motions motions = {.position = allocate(4 * model->body_count, sizeof(Node)),
-                            .inertia = allocate(4 * model->body_count, sizeof(Node))};
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
-    for (int axis = 0; axis < 3; axis++) append_motion(&motions, body->position[axis].node, body->mass.node);
-    append_motion(&motions, body->angle.node, body->inertia.node);
-  }
-  return motions;
-}
-
-/* sum m (d2r/dt2) . dr/dq_i, with the accelerations or with 0 for them. */
-static void inertial_forces(const struct Model *model, const struct Motions *motions, bool with_accelerations,
-                            Node *force) {
-  struct Graph *graph = model->graph;
-  Node *seeds = time_seeds(model, with_accelerations), *weight = allocate(motions->count, sizeof *weight);
-  derivative_along(graph, motions->position, motions->count, seeds, weight);
-  derivative_along(graph, weight, motions->count, seeds, weight);
-  for (size_t k = 0; k < motions->count; k++) weight[k] = multiply(graph, motions->inertia[k], weight[k]);
-  weighted_gradient_of(graph, motions->position, weight, motions->count, COORDINATE, model->coordinates.count, force);
-  free(weight);
-  free(seeds);
 }
 
 /* Takes the elements of a block out of an array over all coordinates; back: puts them there. */
@@ -117,19 +82,19 @@ static void give_motion(const struct Model *model, struct Equations *equations, 
 static void derive_motion(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
-  struct Motions motions = motions_of(model);
   Node lagrangian = subtract(graph, model->explicit_kinetic.node, model->potential.node);
   Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
-  Node *rate = allocate(n, sizeof *rate), *inertial = allocate(n, sizeof *inertial);
+  Node *rate = allocate(n, sizeof *rate);
   Node *left[2] = {allocate(row_count(equations), sizeof(Node)), allocate(row_count(equations), sizeof(Node))};
   gradient_of(graph, lagrangian, VELOCITY, n, momentum);
   gradient_of(graph, lagrangian, COORDINATE, n, gradient);
   for (int with_accelerations = 0; with_accelerations <= 1; with_accelerations++) {
     Node *seeds = time_seeds(model, with_accelerations == 1);
+    Node *inertial = inertial_forces(model, seeds, COORDINATE, n);
     derivative_along(graph, momentum, n, seeds, rate);
-    inertial_forces(model, &motions, with_accelerations == 1, inertial);
     for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
     free(seeds);
+    free(inertial);
   }
   shorten_inertial_forces(model, equations->inertia, left);
   for (size_t i = 0; i < n; i++) {
@@ -138,12 +103,9 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     equations->residual[i] = subtract(graph, left[1][i], right);
     if (model->drives[i].given) give_motion(model, equations, i);
   }
-  free(motions.position);
-  free(motions.inertia);
   free(momentum);
   free(gradient);
   free(rate);
-  free(inertial);
   free(left[0]);
   free(left[1]);
 }
@@ -215,18 +177,14 @@ struct Equations *equations_create(const struct Model *model) {
                                   .acceleration = allocate(rows, sizeof(Node)),
                                   .reactions = allocate(model->reactions.count, sizeof(Node)),
                                   .outputs = allocate(model->outputs.count, sizeof(Node)),
-                                  .placements = allocate(model->body_count, sizeof(struct Placement))};
+                                  .places = allocate(model->places.count, sizeof(Node))};
   return equations;
 }
 
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->outputs.count; i++)
     equations->outputs[i] = with_reactions(model, equations->reactions, model->outputs.items[i].node);
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
-    for (int axis = 0; axis < 3; axis++) equations->placements[i].position[axis] = body->position[axis].node;
-    equations->placements[i].angle = body->angle.node;
-  }
+  for (size_t i = 0; i < model->places.count; i++) equations->places[i] = model->places.items[i].node;
 }
 
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics) {
@@ -235,7 +193,8 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   int errors = diagnostics->errors;
   struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
-  gradient_of(graph, subtract(graph, model->kinetic.node, model->potential.node), VELOCITY, n, momentum);
+  Node kinetic = add(graph, model->kinetic.node, energy_of_stillness(model));
+  gradient_of(graph, subtract(graph, kinetic, model->potential.node), VELOCITY, n, momentum);
   equations->has_work = model->work_line > 0;
   equations->inertia = inertia_derive(model, momentum, equations->constraints, diagnostics);
   if (equations->inertia != NULL) {
@@ -298,7 +257,7 @@ void equations_free(struct Equations *equations) {
   free(equations->acceleration);
   free(equations->outputs);
   free(equations->reactions);
-  free(equations->placements);
+  free(equations->places);
   free(equations);
 }
 

@@ -3,18 +3,12 @@
  *
  *   M a = Q + dL/dq - (d2L/dv dq) v - d2L/dv dt,     M = d2L/dv dv
  *
- * For the bodies' share of K the left side is the same as d'Alembert's sum m (d2r/dt2) . dr/dq_i. This form is used
- * for it, because the general one makes terms that only cancel each other.
+ * For the bodies' share of K the left side is that of inertial_forces.h.
  */
 #ifndef LAGRANGE_H
 #define LAGRANGE_H
 
 #include "mechanics/inertia.h"
-
-/* Where a body is, as functions of coordinates and time. */
-struct Placement {
-  Node position[3], angle;
-};
 
 /* What follows from a model. Its stages make new ones; they do not change the model. */
 struct Equations {
@@ -35,7 +29,7 @@ struct Equations {
   Node kinetic, potential, total; /* energies, see energies.h */
   Node *outputs;                  /* of the model */
   Node *reactions;                /* of the model; they may hold the acceleration symbols */
-  struct Placement *placements;   /* of its bodies */
+  Node *places;                   /* of the model; they too */
 };
 
 /* Derives the equations of motion; NULL after reporting errors (a coordinate without inertia, ...). */

@@ -261,11 +261,8 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->reactions[i] = without_forces(model, linear, expand(expansion, equations->reactions[i]));
   for (size_t i = 0; i < model->outputs.count; i++)
     linear->outputs[i] = without_forces(model, linear, expand(expansion, equations->outputs[i]));
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Placement *from = &equations->placements[i];
-    for (int axis = 0; axis < 3; axis++) linear->placements[i].position[axis] = expand(expansion, from->position[axis]);
-    linear->placements[i].angle = expand(expansion, from->angle);
-  }
+  for (size_t i = 0; i < model->places.count; i++)
+    linear->places[i] = without_forces(model, linear, expand(expansion, equations->places[i]));
   linear->power = linear->stated_power = equations->power;
   linear->kinetic = expand_twice(expansion, equations->kinetic);
   linear->potential = expand_twice(expansion, equations->potential);

@@ -28,7 +28,12 @@ void model_free(struct Model *model) {
   free_variables(&model->displacements);
   free_variables(&model->reactions);
   free_variables(&model->constraints);
+  free_variables(&model->places);
   for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
+  for (size_t i = 0; i < model->frame_count; i++) free(model->frames[i].name);
+  free(model->frames);
+  free(model->stillnesses);
+  free(model->torques);
   free(model->bodies);
   free(model->accelerations);
   free(model->constraint_forces);

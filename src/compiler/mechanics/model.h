@@ -4,6 +4,7 @@
 
 #include "algebra/quantity.h"
 #include "diagnostics.h"
+#include "mechanics/kinematics.h"
 #include "mechanics/methods.h"
 #include "variable_type.h"
 
@@ -24,19 +25,45 @@ struct VariableList {
   size_t count;
 };
 
-/* A particle or a planar rigid body. Components that were not given are ZERO and not present. */
+/* A particle or a rigid body. Components that were not given are ZERO and not present. */
 struct Body {
   char *name;
   struct Quantity mass, inertia;
   struct Quantity position[3], angle;
   Node displaced[4]; /* x, y, z and angle as functions of displacements too */
   bool has_position[3], has_angle;
+  bool is_in_frame; /* has the following in place of an angle and its inertia */
+  size_t frame;     /* among the model's */
+  struct Vector offset; /* m, of the centre of mass along the frame's axes */
+  struct Matrix tensor; /* kg.m2, about the centre of mass along the frame's axes */
+  /* m/s of the centre of mass and rad/s, along the frame's axes; also as functions of displacements and their rates. */
+  struct Vector velocity, angular_velocity, displaced_velocity, displaced_angular_velocity;
   long line;
+};
+
+/* Axes that are moved and turned, as functions of displacements too. The first one is the base. */
+struct ReferenceFrame {
+  char *name;
+  size_t parent; /* among the model's */
+  struct Pose pose;
 };
 
 /* A Cartesian force along a component of a position, which is a function of displacements too. */
 struct PointForce {
   Node position, force;
+};
+
+/* A torque and the angular velocity of what it turns, a function of displacements too, along the same axes. */
+struct Torque {
+  struct Vector torque, angular_velocity;
+};
+
+/*
+ * What has an inertia without energy, since it rests: the rate of a holonomic constraint. Adding its inertia to M, which may be
+ * singular without it, changes neither the motion nor the forces.
+ */
+struct Stillness {
+  Node position, inertia;
 };
 
 /* How a coordinate moves that is driven: in a given way. */
@@ -66,6 +93,11 @@ struct Model {
   size_t drive_count;            /* of those that are given */
   struct Body *bodies;
   size_t body_count;
+  struct ReferenceFrame *frames;
+  size_t frame_count;
+  struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
+  struct Stillness *stillnesses;
+  size_t stillness_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */
   /* Each is 0 at all times: of coordinates and time, or also linear in the velocities. */
   struct VariableList constraints;
@@ -82,6 +114,8 @@ struct Model {
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
   struct PointForce *point_forces;
   size_t point_force_count;
+  struct Torque *torques;
+  size_t torque_count;
   struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
   bool has_forces;              /* some force, dissipation or drive was given */
   long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */

@@ -5,6 +5,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/shorten.h"
 #include "algebra/simplify.h"
+#include "mechanics/inertial_forces.h"
 #include "mechanics/time_derivative.h"
 #include "memory.h"
 
@@ -31,23 +32,19 @@ static Node *work_along(struct Graph *graph, struct Work *work, enum SymbolKind 
   return force;
 }
 
-/* sum m (d2r/dt2) . dr/ds */
-static Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count) {
+/* What torques do along the rates of the symbols, which follow these. */
+static void add_torques(const struct Model *model, enum SymbolKind kind, size_t count, Node *force) {
   struct Graph *graph = model->graph;
-  struct Work work = work_create(4 * model->body_count);
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
-    for (int component = 0; component < 4; component++) {
-      Node displaced = body->displaced[component];
-      Node inertia = component < 3 ? body->mass.node : body->inertia.node;
-      if (inertia == ZERO || !graph_depends_on(graph, displaced, kind)) continue;
-      Node rate = component < 3 ? body->position[component].node : body->angle.node;
-      derivative_along(graph, &rate, 1, seeds, &rate);
-      derivative_along(graph, &rate, 1, seeds, &rate);
-      append_work(&work, displaced, multiply(graph, inertia, rate));
+  struct Work work = work_create(3 * model->torque_count);
+  for (size_t i = 0; i < model->torque_count; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      const struct Torque *torque = &model->torques[i];
+      if (graph_depends_on(graph, torque->angular_velocity.along[axis], kind))
+        append_work(&work, torque->angular_velocity.along[axis], torque->torque.along[axis]);
     }
-  }
-  return work_along(graph, &work, kind, count);
+  Node *along = work_along(graph, &work, kind, count);
+  for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
+  free(along);
 }
 
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
@@ -55,7 +52,9 @@ static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_
   for (size_t i = 0; i < model->point_force_count; i++)
     if (graph_depends_on(model->graph, model->point_forces[i].position, kind))
       append_work(&work, model->point_forces[i].position, model->point_forces[i].force);
-  return work_along(model->graph, &work, kind, count);
+  Node *force = work_along(model->graph, &work, kind, count);
+  add_torques(model, kind, count, force);
+  return force;
 }
 
 /* R + Q for each symbol of the kind but the last; that of its rate follows it. */

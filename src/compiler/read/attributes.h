@@ -22,7 +22,9 @@ struct Reader {
   struct Scope *scope;
   struct Definitions *definitions;
   size_t started_coordinates; /* those whose start values were read */
-  struct Names *bodies;       /* name -> struct NamedBody */
+  struct Names *bodies;         /* name -> struct NamedBody */
+  struct Names *frames;         /* name -> size_t, its place among the model's */
+  struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
   struct Source *source;      /* the file being read */
   struct Includes *includes;  /* all files that are included */
   struct Diagnostics *diagnostics;

@@ -157,7 +157,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     size_t requirement_count = requirements->count;
     definitions->waiting = 0;
     bind(reader->scope, definition->loop, false);
-    struct Quantity value = read_named_expression(reader, &definition->expression);
+    struct Quantity value = read_named_expression(reader, &definition->expression, definition->name);
     bind(reader->scope, definition->loop, true);
     if (definitions->waiting > 0) {
       requirements->count = requirement_count;

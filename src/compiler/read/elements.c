@@ -8,6 +8,9 @@
 #include "algebra/rational.h"
 #include "mechanics/energies.h"
 #include "memory.h"
+#include "read/bodies.h"
+#include "read/forces.h"
+#include "read/frames.h"
 #include "read/includes.h"
 #include "read/named_expressions.h"
 #include "algebra/simplify.h"
@@ -15,8 +18,6 @@
 #include "read/similar.h"
 #include "read/start_expressions.h"
 #include "read/tables.h"
-
-static const char *const axes[3] = {"x", "y", "z"};
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
   list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
@@ -141,127 +142,6 @@ static void add_term(struct Model *model, struct Quantity *sum, Node term) {
   sum->node = add(model->graph, sum->node, term);
 }
 
-/* 1/2 inertia rate^2 */
-static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node inertia, Node position) {
-  struct Graph *graph = model->graph;
-  Node rate = total_time_derivative(scope, position);
-  Node energy = scale(graph, 0.5, multiply(graph, inertia, power_number(graph, rate, 2.0)));
-  add_term(model, &model->kinetic, energy);
-  add_term(model, &model->kinetic_energy, energy);
-  model->driven |= graph_depends_on(graph, position, TIME);
-}
-
-/* Where the body of a name is: its place among the model's, and the line of its own file. */
-struct NamedBody {
-  size_t place;
-  long line;
-};
-
-static const struct Body *find_body(const struct Reader *reader, const char *name) {
-  const struct NamedBody *named = names_find(reader->bodies, name);
-  return named != NULL ? &reader->model->bodies[named->place] : NULL;
-}
-
-/* Of several bodies of one name, which is reported, the first keeps it. */
-static void append_body(struct Reader *reader, struct Body body) {
-  struct Model *model = reader->model;
-  struct NamedBody *named = allocate(1, sizeof *named);
-  *named = (struct NamedBody){model->body_count, body.line};
-  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
-  else free(named);
-  body.line = scope_line(reader->scope, body.line);
-  reader->source->body_count++;
-  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
-  model->bodies[model->body_count++] = body;
-}
-
-/* A component that definitions.h has read; true where it is given. */
-static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
-                           struct Quantity *value, Node *displaced) {
-  if (!xmlHasProp(node, (const xmlChar *)component)) return false;
-  char *name = format_text("%s.%s", body->name, component);
-  const struct Quantity *known = scope_find(reader->scope, name);
-  if (known != NULL) *value = *known;
-  *displaced = value->node;
-  reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
-  value->node = without_displacements(reader, body->line, name, value->node);
-  free(name);
-  return true;
-}
-
-/*
- * Where mass joins or leaves, the equations depend on the momentum that it has, which a mass alone does not say:
- * d(m v)/dt = F + dm/dt w. Lagrange's equation of m(t) v^2/2 is that of w = 0, and of m(q) v^2/2 that of w = v/2.
- */
-static void require_fixed(const struct Reader *reader, long line, const char *what, struct Quantity inertia,
-                          const char *symbol, const char *rate) {
-  const struct Graph *graph = reader->model->graph;
-  if (graph_depends_on(graph, inertia.node, COORDINATE))
-    report_error(
-        reader->diagnostics, line,
-        "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
-        "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
-        "besides where it is mass that joins or leaves with the velocity w",
-        what, what, symbol, rate, rate, symbol, rate);
-  else if (graph_depends_on(graph, inertia.node, TIME))
-    report_error(reader->diagnostics, line,
-                 "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
-                 "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
-                 "it has the velocity w, as for thrust",
-                 what, what, symbol, rate, symbol, rate, symbol);
-  else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
-    report_error(reader->diagnostics, line,
-                 "the %s cannot depend on displacements; expected them in positions and angles", what);
-}
-
-/* A mass feels the second derivatives of the inputs that its position depends on; a mere point does not. */
-static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
-  const struct Model *model = reader->model;
-  struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
-  for (size_t i = 0; i < levers.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
-    size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
-    Node rate = model->input_rates[input];
-    if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
-    report_error(reader->diagnostics, body->line,
-                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
-                 "mass=\"0\" for a mere point",
-                 body->name, model->inputs.items[input].name,
-                 is_input_rate(model, input) ? "the <input> itself in place of its derivative"
-                                             : "derivatives=\"2\" of this <input>");
-  }
-  gradient_free(&levers);
-}
-
-static void read_body(struct Reader *reader, xmlNodePtr node) {
-  struct Model *model = reader->model;
-  struct Body body = {.name = name_attribute(reader, node, "name"), .line = xmlGetLineNo(node)};
-  if (body.name == NULL) body.name = format_text("%sbody%zu", reader->source->prefix, reader->source->body_count + 1);
-  const struct Body *other = find_body(reader, body.name);
-  if (other != NULL)
-    report_error(reader->diagnostics, body.line,
-                 "a particle or body named '%s' is already defined on line %ld; expected another name", body.name,
-                 ((struct NamedBody *)names_find(reader->bodies, body.name))->line);
-  expression_attribute(reader, node, "mass", IN_INERTIA, &body.mass);
-  require_fixed(reader, body.line, "mass", body.mass, "m", "v");
-  require_unit(reader, body.line, "the mass", body.mass, unit_of("kg"));
-  for (int axis = 0; axis < 3 && other == NULL; axis++)
-    body.has_position[axis] =
-        take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
-  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
-  if (body.has_angle) {
-    expression_attribute(reader, node, "inertia", IN_INERTIA, &body.inertia);
-    require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
-    require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
-  }
-  if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
-    report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
-  for (int component = 0; component < 4; component++) require_accelerations(reader, &body, component);
-  for (int axis = 0; axis < 3; axis++)
-    add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
-  add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
-  append_body(reader, body);
-}
-
 /* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
 static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
                         const char *what, unsigned kinds, const char *unit) {
@@ -284,58 +164,6 @@ static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   model->driven |= driven;
 }
 
-/* A search through all names is for messages that are shown. */
-static bool are_shown(const struct Reader *reader) {
-  return reader->diagnostics->errors < ERROR_LIMIT;
-}
-
-/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. Free with free(). */
-static char *meant_coordinate(const struct Reader *reader, const char *name) {
-  const struct Model *model = reader->model;
-  struct Similar similar = {.wanted = name};
-  for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
-    const char *known = model->coordinates.items[i].name;
-    if (strcmp(name, model->velocities.items[i].name) == 0)
-      return format_text("did you mean '%s', whose velocity it is?", known);
-    similar_consider(&similar, known);
-  }
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
-                              : copy_text("expected the name of a <coordinate>");
-}
-
-static char *meant_body(const struct Reader *reader, const char *name) {
-  struct Similar similar = {.wanted = name};
-  for (size_t i = 0; i < reader->bodies->capacity && are_shown(reader); i++)
-    if (reader->bodies->places[i].text != NULL) similar_consider(&similar, reader->bodies->places[i].text);
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
-}
-
-/* The coordinate of this name, NULL where there is none. */
-static const struct Symbol *find_coordinate(const struct Reader *reader, const char *name) {
-  const struct Graph *graph = reader->model->graph;
-  const struct Quantity *quantity = scope_find(reader->scope, name);
-  if (quantity == NULL || graph->vertices[quantity->node].operation != SYMBOL) return NULL;
-  const struct Symbol *symbol = graph_symbol_of(graph, quantity->node);
-  return symbol->kind == COORDINATE && strcmp(symbol->name, name) == 0 ? symbol : NULL;
-}
-
-static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
-  struct Model *model = reader->model;
-  const struct Symbol *symbol = find_coordinate(reader, coordinate);
-  if (symbol == NULL) {
-    char *meant = meant_coordinate(reader, coordinate);
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; %s", coordinate,
-                 meant);
-    free(meant);
-    return;
-  }
-  int index = symbol->index;
-  struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
-  require_unit(reader, xmlGetLineNo(node), "the force", force,
-               dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
-}
-
 /* The acceleration of a driven coordinate. */
 static void read_drive(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
@@ -350,71 +178,6 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
     require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
                  dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
   model->drives[symbol->index].acceleration = acceleration.node;
-}
-
-/* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
-static void add_force(struct Model *model, Node position, Node force) {
-  struct Graph *graph = model->graph;
-  struct Gradient levers = gradient_by_kinds(graph, position, KIND(COORDINATE) | KIND(TIME));
-  for (size_t i = 0; i < levers.count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
-    struct Quantity *sum = symbol->kind == TIME ? &model->driven_power : &model->forces[symbol->index];
-    add_term(model, sum, multiply(graph, force, levers.values[i]));
-  }
-  gradient_free(&levers);
-}
-
-static void append_point_force(struct Model *model, Node position, Node force) {
-  model->point_forces = reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
-  model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
-}
-
-static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
-  struct Model *model = reader->model;
-  const struct Body *body = find_body(reader, name);
-  if (body == NULL) {
-    char *meant = meant_body(reader, name);
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no particle or body '%s' for this force; %s", name,
-                 meant);
-    free(meant);
-    return;
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    struct Quantity force;
-    if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &force)) continue;
-    require_unit(reader, xmlGetLineNo(node), axes[axis], force, unit_of("N"));
-    if (!body->has_position[axis])
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
-                   axes[axis]);
-    force.node = without_displacements(reader, xmlGetLineNo(node), axes[axis], force.node);
-    add_force(model, body->position[axis].node, force.node);
-    append_point_force(model, body->displaced[axis], force.node);
-  }
-}
-
-static bool is_blank(xmlNodePtr node) {
-  xmlChar *text = xmlNodeGetContent(node);
-  bool blank = text == NULL || strspn((const char *)text, " \t\r\n") == strlen((const char *)text);
-  xmlFree(text);
-  return blank;
-}
-
-static void read_force(struct Reader *reader, xmlNodePtr node) {
-  char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
-  reader->model->has_forces = true;
-  bool has_components = false;
-  for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
-  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
-  else if (on != NULL && !is_blank(node))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
-  else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
-  else add_cartesian_force(reader, node, on);
-  free(coordinate);
-  free(on);
 }
 
 static void read_output(struct Reader *reader, xmlNodePtr node) {
@@ -508,6 +271,7 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "input") == 0) read_input(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
   else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
+  else if (strcmp(element, "frame") == 0) declare_frame(reader, node);
   else if (strcmp(element, "table") == 0) read_table(reader, node);
   else if (strcmp(element, "constraint") == 0) append_variable(&model->constraints, common_attributes(reader, node));
   else if (reader->source->outer != NULL) return;
@@ -579,6 +343,9 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_drive(reader, node);
   else if (strcmp(element, "force") == 0) read_force(reader, node);
+  else if (strcmp(element, "torque") == 0) read_torque(reader, node);
+  else if (strcmp(element, "gravity") == 0) read_gravity(reader, node);
+  else if (strcmp(element, "frame") == 0) add_stillness_of_norm(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);
   else if (strcmp(element, "constraint") == 0) read_constraint(reader, node);
 }
@@ -589,5 +356,6 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   else if (pass == EXPRESSIONS) read_expression(reader, node, element);
   else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
   else if (strcmp(element, "coordinate") == 0) read_start_expressions(reader, node);
-  else if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) read_body(reader, node);
+  else if (is_spatial(node) || strcmp(element, "particle") == 0 || strcmp(element, "body") == 0)
+    read_body(reader, node);
 }

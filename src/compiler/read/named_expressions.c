@@ -6,6 +6,7 @@
 #include "memory.h"
 #include "read/definitions.h"
 #include "read/elements.h"
+#include "read/frames.h"
 
 static bool is_element(xmlNodePtr node, const char *name) {
   return xmlStrEqual(node->name, (const xmlChar *)name);
@@ -41,13 +42,16 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   return value;
 }
 
-struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression) {
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
+                                      const char *name) {
   struct Quantity value = {.node = ZERO};
   xmlNodePtr node = expression->node;
   const struct Given *given = expression->given;
   bool is_parameter = is_element(node, "parameter"), is_input = is_element(node, "input");
   struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
-  if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
+    value = read_spatial(reader, node, name, expression->attribute);
+  else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
   else if (is_parameter || is_input)
     expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
                          is_parameter ? IN_MASS : IN_OUTPUT, &value);
@@ -69,22 +73,28 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
   append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);
 }
 
-/* Of several bodies of one name, which is reported later, the first one has the components. */
-static void collect_components(struct Reader *reader, xmlNodePtr node) {
+static void collect_planar(struct Reader *reader, xmlNodePtr node, const char *body) {
   static const char *const components[] = {"x", "y", "z", "angle"};
-  char *body = name_attribute(reader, node, "name");
-  size_t number = ++reader->source->named_bodies;
-  if (body == NULL) body = format_text("%sbody%zu", reader->source->prefix, number);
   for (size_t i = 0; i < sizeof components / sizeof *components; i++)
     if (xmlHasProp(node, (const xmlChar *)components[i]))
       definitions_add(reader->definitions, format_text("%s.%s", body, components[i]),
                       &(struct NamedExpression){node, components[i], reader->source, NULL});
-  free(body);
+  if (is_element(node, "body")) collect_frame(reader, node, body);
+}
+
+/* Of several bodies of one name, which is reported later, the first one has the components. */
+static void collect_components(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  bool is_body = is_element(node, "body") || is_element(node, "particle");
+  if (is_body) reader->source->named_bodies++;
+  if (name == NULL && is_body) name = format_text("%sbody%zu", reader->source->prefix, reader->source->named_bodies);
+  if (name != NULL && is_spatial(node)) collect_spatial(reader, node, name);
+  else if (name != NULL) collect_planar(reader, node, name);
+  free(name);
 }
 
 void collect_named_expressions(struct Reader *reader, xmlNodePtr node) {
-  const char *element = (const char *)node->name;
-  if (strcmp(element, "particle") == 0 || strcmp(element, "body") == 0) collect_components(reader, node);
+  if (is_spatial(node) || is_element(node, "particle") || is_element(node, "body")) collect_components(reader, node);
   bool is_definition = is_element(node, "define");
   if (!is_definition && !is_element(node, "parameter") && !is_element(node, "input")) return;
   char *name = name_attribute(reader, node, "name");

@@ -18,8 +18,9 @@ bool has_value(xmlNodePtr node, const struct Given *given);
 /* Collects the named expressions of an element, if it has any. */
 void collect_named_expressions(struct Reader *reader, xmlNodePtr node);
 
-/* Its value. */
-struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression);
+/* Its value; name: its own. */
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
+                                      const char *name);
 
 /*
  * Enters the value of a <define>, <parameter> or <input> into the model, under its name; bodies enter their components.

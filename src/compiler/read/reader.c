@@ -8,6 +8,7 @@
 #include "read/checks.h"
 #include "read/definitions.h"
 #include "read/elements.h"
+#include "read/frames.h"
 #include "read/includes.h"
 #include "read/linearization_reader.h"
 #include "mechanics/reactions.h"
@@ -248,7 +249,9 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     reader.bodies = names_create();
     reader.definitions = (*scope)->definitions = definitions_create();
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
+    frames_begin(&reader);
     read_system(&reader, root);
+    frames_end(&reader);
     free(reader.definition_used);
     free(reader.dissipations);
     free(reader.undisplaced);

@@ -1,0 +1,118 @@
+#include "mechanics/inertial_forces.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "mechanics/time_derivative.h"
+#include "memory.h"
+
+/* What moves, and the forces of inertia along it. */
+struct Motions {
+  Node *moved, *force;
+  size_t count;
+};
+
+static struct Motions motions_create(size_t capacity) {
+  return (struct Motions){.moved = allocate(capacity, sizeof(Node)), .force = allocate(capacity, sizeof(Node))};
+}
+
+static void append(struct Motions *motions, Node moved, Node force) {
+  if (moved == ZERO || force == ZERO) return;
+  motions->moved[motions->count] = moved;
+  motions->force[motions->count++] = force;
+}
+
+static void motions_free(struct Motions *motions) {
+  free(motions->moved);
+  free(motions->force);
+}
+
+/* Positions and angles of planar bodies. A weight of ZERO is that of a mere point. */
+static struct Motions motions_of_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
+  struct Graph *graph = model->graph;
+  struct Motions motions = motions_create(4 * model->body_count + model->stillness_count);
+  Node *rate = allocate(4 * model->body_count, sizeof *rate);
+  for (size_t i = 0; i < model->body_count; i++)
+    for (int component = 0; component < 4 && !model->bodies[i].is_in_frame; component++)
+      rate[4 * i + (size_t)component] =
+          component < 3 ? model->bodies[i].position[component].node : model->bodies[i].angle.node;
+  derivative_along(graph, rate, 4 * model->body_count, seeds, rate);
+  derivative_along(graph, rate, 4 * model->body_count, seeds, rate);
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    for (int component = 0; component < 4 && !body->is_in_frame; component++) {
+      Node inertia = component < 3 ? body->mass.node : body->inertia.node, position = body->displaced[component];
+      if (kind == COORDINATE) position = component < 3 ? body->position[component].node : body->angle.node;
+      append(&motions, position, multiply(graph, inertia, rate[4 * i + (size_t)component]));
+    }
+  }
+  for (size_t i = 0; i < model->stillness_count && kind == COORDINATE; i++) {
+    Node moved = model->stillnesses[i].position, acceleration = moved;
+    derivative_along(graph, &acceleration, 1, seeds, &acceleration);
+    derivative_along(graph, &acceleration, 1, seeds, &acceleration);
+    append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
+  }
+  free(rate);
+  return motions;
+}
+
+/* v' + omega x v */
+static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struct Vector spin, struct Vector vector) {
+  struct Vector carried = vector_cross(graph, spin, vector);
+  derivative_along(graph, vector.along, 3, seeds, vector.along);
+  return vector_add(graph, vector, carried);
+}
+
+static struct Motions motions_of_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
+  struct Graph *graph = model->graph;
+  struct Motions motions = motions_create(6 * model->body_count);
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    if (!body->is_in_frame) continue;
+    bool displaced = kind != COORDINATE;
+    struct Vector velocity = displaced ? body->displaced_velocity : body->velocity;
+    struct Vector spin = displaced ? body->displaced_angular_velocity : body->angular_velocity;
+    struct Vector momentum = matrix_apply(graph, &body->tensor, body->angular_velocity);
+    struct Vector force = {{ZERO, ZERO, ZERO}}, torque = force;
+    if (body->mass.node != ZERO)
+      force = vector_scale(graph, body->mass.node, rate_in_frame(graph, seeds, body->angular_velocity, body->velocity));
+    torque = rate_in_frame(graph, seeds, body->angular_velocity, momentum);
+    for (int axis = 0; axis < 3; axis++) {
+      append(&motions, velocity.along[axis], force.along[axis]);
+      append(&motions, spin.along[axis], torque.along[axis]);
+    }
+  }
+  return motions;
+}
+
+Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count) {
+  struct Graph *graph = model->graph;
+  struct Motions positions = motions_of_positions(model, seeds, kind);
+  struct Motions velocities = motions_of_velocities(model, seeds, kind);
+  Node *force = allocate(count, sizeof *force), *along = allocate(count, sizeof *along);
+  weighted_gradient_of(graph, positions.moved, positions.force, positions.count, kind, count, force);
+  weighted_gradient_of(graph, velocities.moved, velocities.force, velocities.count, kind == COORDINATE ? VELOCITY : kind,
+                       count, along);
+  if (kind == COORDINATE)
+    for (size_t i = 0; i < count; i++) force[i] = add(graph, force[i], along[i]);
+  else
+    for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
+  motions_free(&positions);
+  motions_free(&velocities);
+  free(along);
+  return force;
+}
+
+Node energy_of_stillness(const struct Model *model) {
+  struct Graph *graph = model->graph;
+  Node *seeds = time_seeds(model, false), energy = ZERO;
+  for (size_t i = 0; i < model->stillness_count; i++) {
+    Node rate = model->stillnesses[i].position;
+    derivative_along(graph, &rate, 1, seeds, &rate);
+    Node term = multiply(graph, model->stillnesses[i].inertia, power_number(graph, rate, 2.0));
+    energy = add(graph, energy, scale(graph, 0.5, term));
+  }
+  free(seeds);
+  return energy;
+}
