@@ -40,22 +40,30 @@ struct Motion {
   char *velocity, *ratio;
 };
 
-/*
- * The position of what mimics another joint is an output, with no coordinate behind it. Where one of the two turns and the other
- * slides, the ratio is a parameter, which has a unit.
- */
+/* What the leader's position is multiplied by: where one of the two turns and the other slides a parameter, which has a unit. */
+static char *ratio_of(const struct Joint *joint) {
+  bool has_unit = is_sliding(joint) != is_sliding(joint->leader);
+  return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
+}
+
+/* Free with free(). */
+static char *position_of(const struct Joint *joint) {
+  if (joint->leader == joint) return copy_text(joint->symbol);
+  char *ratio = ratio_of(joint), *shift = number(fabs(joint->shift));
+  char *position = format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
+  free(ratio);
+  free(shift);
+  return position;
+}
+
+/* The position of what mimics another joint is an output, with no coordinate behind it. */
 static struct Motion write_follower(const struct Writer *writer, const struct Joint *joint, const char *description) {
   const char *name = joint->symbol, *leader = joint->leader->symbol;
-  char *ratio = number(joint->ratio), *shift = number(fabs(joint->shift));
-  if (is_sliding(joint) != is_sliding(joint->leader)) {
-    free(ratio);
-    ratio = format_text("%s_ratio", name);
-    write_parameter(writer, copy_text(ratio), joint->ratio, is_sliding(joint) ? "m/rad" : "rad/m",
+  if (is_sliding(joint) != is_sliding(joint->leader))
+    write_parameter(writer, ratio_of(joint), joint->ratio, is_sliding(joint) ? "m/rad" : "rad/m",
                     format_text("velocity of %s over that of %s", name, leader));
-  }
-  write_output(writer, copy_text(name), unit_of_joint(joint),
-               format_text("%s*%s %c %s", ratio, leader, joint->shift < 0 ? '-' : '+', shift), copy_text(description));
-  free(shift);
+  write_output(writer, copy_text(name), unit_of_joint(joint), position_of(joint), copy_text(description));
+  char *ratio = ratio_of(joint);
   return (struct Motion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
 }
 
@@ -188,6 +196,10 @@ void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char
 void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
   if (joint->type == FLOATING) write_free_motion(writer, frame, joint->symbol);
   else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);
-  else if (is_sliding(joint)) write_slide(writer, frame, joint->axis, joint->symbol);
-  else if (joint_is_single(joint)) write_turn(writer, frame, joint->axis, joint->symbol);
+  else if (joint_is_single(joint)) {
+    char *position = position_of(joint);
+    if (is_sliding(joint)) write_slide(writer, frame, joint->axis, position);
+    else write_turn(writer, frame, joint->axis, position);
+    free(position);
+  }
 }
