@@ -36,6 +36,7 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
   const struct RigidBody *body = &link->carried;
   if (!body_has_inertia(body)) return;
   xmlNodePtr node = write_element(writer, "body");
+  set_attribute(node, "name", format_text("%s_body", link->symbol));
   set_attribute(node, "in", copy_text(link->symbol));
   set_attribute(node, "mass", number(body->mass));
   for (int i = 0; i < 3; i++) set_number(node, positions[i], body->center[i]);
