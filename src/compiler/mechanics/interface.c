@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "memory.h"
 #include "algebra/kinks.h"
@@ -79,10 +80,20 @@ static void append_result(struct Interface *interface, const char *name, const c
   variable->node = node;
 }
 
+/* Whether two components are of one thing, and both or neither rest on accelerations, which cannot always be had. */
+static bool belong_together(const struct Graph *graph, const struct InterfaceVariable *a,
+                            const struct InterfaceVariable *b) {
+  const char *end = strrchr(a->entry.name, '.');
+  return end != NULL && strncmp(a->entry.name, b->entry.name, (size_t)(end - a->entry.name) + 1) == 0 &&
+         graph_depends_on(graph, a->node, ACCELERATION) == graph_depends_on(graph, b->node, ACCELERATION);
+}
+
 static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   for (size_t i = 0; i < model->places.count; i++) {
     const struct Variable *source = &model->places.items[i];
     append_result(interface, source->name, source->unit, equations->places[i], source->description);
+    struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
+    variable->is_continued = i > 0 && belong_together(model->graph, variable - 1, variable);
   }
 }
 

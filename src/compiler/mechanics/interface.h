@@ -15,6 +15,7 @@ struct InterfaceVariable {
   Node node;                   /* the value; ZERO for statistics */
   Node start;                  /* of a state whose start value follows from parameters; else ZERO */
   bool is_moved_at_start;      /* a state that constraints may move as initialization ends */
+  bool is_continued;           /* a result that is computed together with the one before: components of one thing */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */

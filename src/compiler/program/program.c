@@ -7,10 +7,10 @@
 
 /*
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
- * table takes a fraction of one. The series of the motion may be as long by itself: as statements, it takes three
- * quarters of the time.
+ * table takes a fraction of one. The derivatives and the series of the motion may be as long by themselves: as statements,
+ * they take a fifth and three quarters of the time.
  */
-enum { STATEMENT_LIMIT = 6000, SERIES_STATEMENT_LIMIT = 8000 };
+enum { STATEMENT_LIMIT = 6000, SERIES_STATEMENT_LIMIT = 8000, DERIVATIVES_STATEMENT_LIMIT = 20000 };
 
 static Place target(size_t index) {
   return place_in(SPACE_TARGET, index);
@@ -213,10 +213,10 @@ static struct Routine *accelerations_along_routine(const struct Program *program
   return routine;
 }
 
-static struct Routine *result_routine(struct Values *values, Node node) {
+static struct Routine *result_routine(struct Values *values, const Node *nodes, size_t count) {
   struct Routine *routine = values_begin(values);
-  values_compute(values, &node, 1, false);
-  values_copy(values, target(0), node);
+  values_compute(values, nodes, count, false);
+  for (size_t i = 0; i < count; i++) values_copy(values, target(i), nodes[i]);
   return routine;
 }
 
@@ -224,12 +224,17 @@ static void create_results(struct Program *program, struct Values *values) {
   const struct Interface *interface = program->interface;
   program->result = allocate(interface->result_count, sizeof(struct Routine *));
   program->result_along = allocate(interface->result_count, sizeof(struct Routine *));
+  program->leader = allocate(interface->result_count, sizeof(size_t));
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (entry->kind != VARIABLE_RESULT) continue;
-    program->result[entry->index] = result_routine(values, program->expressions->result[entry->index]);
+    size_t index = entry->index, count = 1;
+    bool is_leader = !interface->variables[i].is_continued;
+    program->leader[index] = is_leader ? index : program->leader[index - 1];
+    while (i + count < interface->count && interface->variables[i + count].is_continued) count++;
+    if (is_leader) program->result[index] = result_routine(values, &program->expressions->result[index], count);
     if (is_unknown(entry))
-      program->result_along[entry->index] = result_routine(values, program->expressions->result_along[entry->index]);
+      program->result_along[index] = result_routine(values, &program->expressions->result_along[index], 1);
   }
 }
 
@@ -267,6 +272,8 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
   program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
   program->series_is_table = form == TABLES || (program->is_table && length > SERIES_STATEMENT_LIMIT);
+  program->derivatives_are_table =
+      form == TABLES || (program->is_table && count_of(program->derivatives) > DERIVATIVES_STATEMENT_LIMIT);
 }
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {
@@ -325,6 +332,7 @@ void program_free(struct Program *program) {
     routine_free(program->result_along[i]);
   }
   free(program->result);
+  free(program->leader);
   free(program->result_along);
   series_program_free(program->series);
   series_program_free(program->output_series);

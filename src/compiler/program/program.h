@@ -23,10 +23,13 @@ struct Program {
   struct Routine *accelerations, *accelerations_along;    /* of all rows of K; NULL without constraints, as are */
   struct Routine *correct_positions, *correct_velocities; /* corrections.h */
   struct Routine *start_positions, *start_velocities;     /* where some coordinates are fixed at the start */
-  struct Routine **result, **result_along;                /* of each result; along is NULL unless it is an output */
+  /* Of each result, or of it and those that it is continued by; along is NULL unless it is an output. */
+  struct Routine **result, **result_along;
+  size_t *leader; /* of each result: the first of those that are computed together */
   struct SeriesProgram *series, *output_series;
-  bool is_table;        /* as a whole too large for statements, which a C compiler takes long for */
-  bool series_is_table; /* so is the series of the motion, where a simulation spends its time */
+  bool is_table; /* as a whole too large for statements, which a C compiler takes long for */
+  /* So are the derivatives and the series of the motion, where a simulation spends its time. */
+  bool derivatives_are_table, series_is_table;
 };
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);

@@ -95,7 +95,8 @@ static void write_routines(FILE *file, const struct Program *program, const stru
                    {&start_velocities_text, program->start_velocities}};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
     if (functions[i].routine == NULL) continue;
-    if (tables != NULL) tables_function(file, tables, functions[i].text, functions[i].routine);
+    bool is_table = tables != NULL && (functions[i].text != &derivatives_text || program->derivatives_are_table);
+    if (is_table) tables_function(file, tables, functions[i].text, functions[i].routine);
     else statements_function(file, program, functions[i].text, "", functions[i].routine);
   }
 }

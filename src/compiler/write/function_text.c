@@ -77,6 +77,12 @@ const struct FunctionText start_velocities_text = {
     RETURNS_STATUS,          IN_WORKSPACE};
 const struct FunctionText result_text = {
     "A computed variable", "result", "const struct Point *point, const double *a", NULL, RETURNS_VALUE, IN_ARGUMENT};
+const struct FunctionText results_text = {"Computed variables of one thing",
+                                          "results",
+                                          "const struct Point *point, const double *a, double *value",
+                                          "value",
+                                          RETURNS_NOTHING,
+                                          IN_ARGUMENT};
 const struct FunctionText result_along_text = {
     "An output along a direction",
     "result_along",

@@ -59,30 +59,60 @@ void statements_function(FILE *file, const struct Program *program, const struct
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
 }
 
-/* One function that chooses among those of the results. */
-static void write_choice(FILE *file, const struct FunctionText *text, const char *passed,
-                         struct Routine *const *routines, size_t count) {
+/* How many results are computed together with the first of them. */
+static size_t size_of_group(const struct Program *program, size_t first) {
+  size_t end = first + 1;
+  while (end < program->interface->result_count && program->leader[end] == first) end++;
+  return end - first;
+}
+
+/* The same in one function, which tells one of them. */
+static void write_group(FILE *file, const struct Program *program, size_t first, size_t size, const char *suffix) {
+  statements_function(file, program, &results_text, suffix, program->result[first]);
+  fprintf(file,
+          "static double result%s(const struct Point *point, const double *a, size_t place) {\n  double value[%zu];\n"
+          "  results%s(point, a, value);\n  return value[place];\n}\n\n",
+          suffix, size, suffix);
+}
+
+static void write_result(FILE *file, const struct Program *program, size_t first) {
+  size_t size = size_of_group(program, first);
+  char *suffix = format_text("%zu", first);
+  if (size > 1) write_group(file, program, first, size, suffix);
+  else statements_function(file, program, &result_text, suffix, program->result[first]);
+  free(suffix);
+}
+
+static void begin_choice(FILE *file, const struct FunctionText *text) {
   fprintf(file, "static double %s(%s, size_t result) {\n  switch (result) {\n", text->name, text->arguments);
-  for (size_t i = 0; i < count; i++)
-    if (routines[i] != NULL) fprintf(file, "  case %zu: return %s%zu(%s);\n", i, text->name, i, passed);
+}
+
+static void end_choice(FILE *file) {
   fputs("  default: return NAN;\n  }\n}\n\n", file);
 }
 
+/* A function for each, and one that chooses among them. */
 void statements_results(FILE *file, const struct Program *program) {
   size_t count = program->interface->result_count;
-  const struct {
-    const struct FunctionText *text;
-    struct Routine *const *routines;
-    const char *passed;
-  } kinds[] = {{&result_text, program->result, "point, a"},
-               {&result_along_text, program->result_along, "point, seed, a, da"}};
-  for (int kind = 0; kind < 2 && count > 0; kind++) {
-    for (size_t i = 0; i < count; i++) {
-      if (kinds[kind].routines[i] == NULL) continue;
-      char *suffix = format_text("%zu", i);
-      statements_function(file, program, kinds[kind].text, suffix, kinds[kind].routines[i]);
-      free(suffix);
-    }
-    write_choice(file, kinds[kind].text, kinds[kind].passed, kinds[kind].routines, count);
+  if (count == 0) return;
+  for (size_t i = 0; i < count; i++)
+    if (program->leader[i] == i) write_result(file, program, i);
+  begin_choice(file, &result_text);
+  for (size_t i = 0; i < count; i++) {
+    size_t first = program->leader[i];
+    fprintf(file, "  case %zu: return result%zu(point, a", i, first);
+    if (size_of_group(program, first) > 1) fprintf(file, ", %zu", i - first);
+    fputs(");\n", file);
   }
+  end_choice(file);
+  for (size_t i = 0; i < count; i++) {
+    if (program->result_along[i] == NULL) continue;
+    char *suffix = format_text("%zu", i);
+    statements_function(file, program, &result_along_text, suffix, program->result_along[i]);
+    free(suffix);
+  }
+  begin_choice(file, &result_along_text);
+  for (size_t i = 0; i < count; i++)
+    if (program->result_along[i] != NULL) fprintf(file, "  case %zu: return result_along%zu(point, seed, a, da);\n", i, i);
+  end_choice(file);
 }

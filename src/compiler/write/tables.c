@@ -228,13 +228,16 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
           text->name);
 }
 
+/* leader: of each result, the first of those that one routine computes, whose places follow from it. */
 static void write_results(FILE *file, const struct TableContext *context, const struct FunctionText *text,
-                          struct Routine *const *routines, size_t count) {
+                          struct Routine *const *routines, const size_t *leader, size_t count) {
   struct CodeLine line = {.file = file};
-  size_t *start = allocate(count, sizeof *start), operations = 0;
+  size_t *start = allocate(count, sizeof *start), *place = allocate(count, sizeof *place), operations = 0, largest = 0;
   fprintf(file, "static const uint32_t %s_code[] = {\n", text->name);
   for (size_t i = 0; i < count; i++) {
-    start[i] = line.count;
+    start[i] = leader[i] < i ? start[leader[i]] : line.count;
+    place[i] = i - leader[i];
+    if (place[i] > largest) largest = place[i];
     if (routines[i] == NULL) continue;
     write_code(&line, context, routines[i]);
     operations += routines[i]->operation_count;
@@ -244,23 +247,30 @@ static void write_results(FILE *file, const struct TableContext *context, const 
   char *name = format_text("%s_start", text->name);
   write_sizes(file, "uint32_t", name, start, count);
   free(name);
+  name = format_text("%s_place", text->name);
+  write_sizes(file, "unsigned char", name, place, count);
+  free(name);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
           operations, text->name, text->arguments);
   begin_frame(file, text == &result_along_text);
-  fputs("  double value = NAN;\n", file);
-  set_base(file, "TARGET", "&value");
+  fprintf(file, "  double value[%zu] = {NAN};\n", largest + 1);
+  set_base(file, "TARGET", "value");
   set_base(file, "ACCELERATION", "(double *)a");
   if (text == &result_along_text) set_base(file, "SEED_ACCELERATION", "(double *)da");
-  fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value;\n}\n\n", text->name,
-          text->name);
+  fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
+          text->name, text->name, text->name);
   free(start);
+  free(place);
 }
 
 void tables_results(FILE *file, const struct TableContext *context) {
   size_t count = context->program->interface->result_count;
   if (count == 0) return;
-  write_results(file, context, &result_text, context->program->result, count);
-  write_results(file, context, &result_along_text, context->program->result_along, count);
+  size_t *alone = allocate(count, sizeof *alone);
+  for (size_t i = 0; i < count; i++) alone[i] = i;
+  write_results(file, context, &result_text, context->program->result, context->program->leader, count);
+  write_results(file, context, &result_along_text, context->program->result_along, alone, count);
+  free(alone);
 }
 
 static void set_rows(FILE *file) {
