@@ -3,6 +3,7 @@ Accelerations of robots from their URDF with mpmath: links are placed as the for
 difference quotients of high precision, and from these Lagrange's equation. Quaternions are left to others.
 """
 
+import functools
 import xml.etree.ElementTree as ET
 
 import mpmath as mp
@@ -21,8 +22,9 @@ def turn(axis, angle):
     return mp.eye(3) + mp.sin(angle) * cross + (1 - mp.cos(angle)) * cross * cross
 
 
+@functools.cache
 def place(element):
-    """Translation and rotation of an <origin>."""
+    """Translation and rotation of an <origin>, to the digits in force when it is asked for first."""
     origin = element.find("origin")
     roll, pitch, yaw = numbers(origin, "rpy", "0 0 0")
     rotation = turn((0, 0, 1), yaw) * turn((0, 1, 0), pitch) * turn((1, 0, 0), roll)
@@ -97,35 +99,34 @@ class Robot:
             tensor = mp.matrix([[get("i" + "".join(sorted(a + b))) for b in "xyz"] for a in "xyz"])
             yield mp.mpf(inertial.find("mass").get("value")), tensor, position + rotation * shift, rotation * turned
 
-    def kinetic_energy(self, q, v, h=mp.mpf(10) ** -20):
-        before, after = ([*self.masses([a + s * h * b for a, b in zip(q, v)])] for s in (-1, 1))
-        energy = mp.mpf(0)
-        for (mass, tensor, p0, r0), (_, _, p1, r1), (_, _, _, axes) in zip(before, after, self.masses(q)):
-            velocity, spin = (p1 - p0) / (2 * h), axes.T * (r1 - r0) / (2 * h)
-            omega = mp.matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
-            energy += (mass * (velocity.T * velocity)[0] + (omega.T * tensor * omega)[0]) / 2
-        return energy
-
     def potential_energy(self, q):
         return sum(mass * mp.mpf("9.81") * position[2] for mass, _, position, _ in self.masses(q))
 
-    def mass_matrix(self, q):
-        unit = [[mp.mpf(i == j) for j in range(self.count)] for i in range(self.count)]
-        alone = [self.kinetic_energy(q, e) for e in unit]
-        return mp.matrix(
-            [
-                [self.kinetic_energy(q, [a + b for a, b in zip(e, f)]) - alone[i] - alone[j] for j, f in enumerate(unit)]
-                for i, e in enumerate(unit)
-            ]
-        )
+    def mass_matrix(self, q, h=mp.mpf(10) ** -20):
+        """From the velocities, and angular velocities along the axes of the tensor, that each coordinate gives to each body."""
+        rates = []
+        for i in range(self.count):
+            before, after = ([*self.masses([x + s * h * (i == j) for j, x in enumerate(q)])] for s in (-1, 1))
+            rates.append([((p1 - p0) / (2 * h), (r1 - r0) / (2 * h)) for (_, _, p0, r0), (_, _, p1, r1) in zip(before, after)])
+        matrix = mp.zeros(self.count)
+        for body, (mass, tensor, _, axes) in enumerate(self.masses(q)):
+            velocities, spins = [], []
+            for rate in rates:
+                velocity, spin = rate[body][0], axes.T * rate[body][1]
+                velocities.append(velocity)
+                spins.append(mp.matrix([spin[2, 1], spin[0, 2], spin[1, 0]]))
+            for i in range(self.count):
+                for j in range(self.count):
+                    matrix[i, j] += mass * (velocities[i].T * velocities[j])[0] + (spins[i].T * tensor * spins[j])[0]
+        return matrix
 
     def accelerations(self, q, v, forces, h=mp.mpf(10) ** -10):
         """M a = Q + dL/dq - d(M v)/dq v"""
         q, v = [mp.mpf(x) for x in q], mp.matrix([mp.mpf(x) for x in v])
-        moved = lambda direction, s: [a + s * h * b for a, b in zip(q, direction)]
-        lagrangian = lambda at: self.kinetic_energy(at, v) - self.potential_energy(at)
-        right = mp.matrix(forces) - (self.mass_matrix(moved(v, 1)) - self.mass_matrix(moved(v, -1))) * v / (2 * h)
+        slope = lambda function, way: (function(1, way) - function(-1, way)) / (2 * h)
+        at = lambda s, way: [x + s * h * w for x, w in zip(q, way)]
+        lagrangian = lambda s, way: (v.T * self.mass_matrix(at(s, way)) * v)[0] / 2 - self.potential_energy(at(s, way))
+        right = mp.matrix(forces) - slope(lambda s, way: self.mass_matrix(at(s, way)) * v, v)
         for i in range(self.count):
-            along = [mp.mpf(i == j) for j in range(self.count)]
-            right[i] += (lagrangian(moved(along, 1)) - lagrangian(moved(along, -1))) / (2 * h)
+            right[i] += slope(lagrangian, [mp.mpf(i == j) for j in range(self.count)])
         return [float(a) for a in mp.lu_solve(self.mass_matrix(q), right)]

@@ -1,11 +1,13 @@
 """Robots from URDF files, against energies with many digits, closed forms, and formulas by hand."""
 
+import subprocess
+
 import mpmath as mp
 import numpy as np
 import pytest
 
 import fmu
-from fmu import build_systems
+from fmu import ROOT, bring_up_to_date, build_systems
 from robots_by_energies import Robot
 
 TENSOR = '<inertia ixx="0.021" ixy="0.002" ixz="-0.003" iyy="0.026" iyz="0.004" izz="0.013"/>'
@@ -119,10 +121,10 @@ def test_accelerations(name, open_fmu):
     robot, instance, random = Robot(SYSTEMS[name]), open_fmu(name), np.random.default_rng(1)
     assert fmu.names_of(name, "input") == inputs
     assert fmu.states_of(name) == [*coordinates, *[f"{c}_velocity" for c in coordinates]]
-    for _ in range(5):
+    for _ in range(3):
         values = random_state(random, coordinates, inputs)
         instance.reset().initialize(values)
-        with mp.workdps(60):
+        with mp.workdps(45):
             state = list(values.values())
             n = len(coordinates)
             expected = robot.accelerations(state[:n], state[n : 2 * n], state[2 * n :])
@@ -210,3 +212,12 @@ def test_names_of_joints_and_links_are_apart():
     names = {v.name for v in fmu.description("RobotCart").modelVariables}
     assert {"base_.x", "cart.x"} <= names
     assert {"wheel", "wheel.x"} <= {v.name for v in fmu.description("RobotArm").modelVariables}
+
+
+def test_a_file_of_any_name_makes_an_fmu(tmp_path):
+    """The FMU is named as the robot, in letters of C."""
+    bring_up_to_date(ROOT / "build")
+    (tmp_path / "arm.urdf").write_text('<?xml version="1.0"?>\n' + ROD.replace("RobotRod", "2nd arm-6.x"))
+    words = [f"-DSYSTEMS={tmp_path / 'arm.urdf'}", f"-DTOOLS={ROOT / 'build'}"]
+    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", *words], check=True)
+    assert [path.name for path in (tmp_path / "build" / "fmu").iterdir()] == ["_2nd_arm_6_x.fmu"]
