@@ -167,7 +167,7 @@ static void read_link(struct Urdf *urdf, xmlNodePtr node) {
   leave_out_others(urdf, node, known);
   xmlNodePtr inertial = child_of(urdf, node, "inertial");
   if (inertial != NULL) read_inertial(urdf, inertial, link);
-  robot->links = make_room(robot->links, robot->link_count, &urdf->link_capacity, sizeof *robot->links);
+  robot->links = make_room(robot->links, robot->link_count, &urdf->link_capacity, sizeof(struct Link *));
   robot->links[robot->link_count++] = link;
 }
 
@@ -259,7 +259,7 @@ static void read_joint(struct Urdf *urdf, xmlNodePtr node) {
   read_dynamics(urdf, node, joint);
   read_mimic(urdf, node, joint);
   leave_out_others(urdf, node, known);
-  robot->joints = make_room(robot->joints, robot->joint_count, &urdf->joint_capacity, sizeof *robot->joints);
+  robot->joints = make_room(robot->joints, robot->joint_count, &urdf->joint_capacity, sizeof(struct Joint *));
   robot->joints[robot->joint_count++] = joint;
 }
 
