@@ -10,7 +10,7 @@ import pytest
 from fmpy.fmi2 import FMU2Model
 
 import fmu
-from fmu import build_systems
+from fmu import build_systems, lagc
 
 ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots"
 # The file, and whether the robot flies.
@@ -148,3 +148,11 @@ def test_accelerations(name, open_fmu):
         np.testing.assert_array_equal(derivatives[: len(names)], velocity)
         error = np.max(np.abs(derivatives[len(names) :] - expected))
         assert error < 1e-10 * np.max(np.abs(expected)), error / np.max(np.abs(expected))
+
+
+@pytest.mark.parametrize("path", ["talos_data/robots/talos_full_v2.urdf", "centauro_description/urdf/centauro.urdf", "tiago_description/robots/tiago_dual.urdf"])
+def test_robots_of_forty_joints_and_more_are_derived(path, tmp_path):
+    """Their mass matrices have a thousand elements, which are not to be expanded each from the beginning."""
+    (tmp_path / "system.xml").write_text(f'<system name="R"><include file="{ROBOTS / path}" as="robot" base="floating"/></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr

@@ -205,6 +205,19 @@ static bool is_large(const struct Graph *graph, const struct Cone *cone) {
   return false;
 }
 
+/* Steps that it takes to convert the node of this place: products and quotients look at all pairs of terms. */
+static size_t work_of(const struct Graph *graph, const struct Fraction *known, size_t place) {
+  const struct Cone *cone = graph->cone;
+  const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+  const struct Fraction *result = &known[place];
+  size_t terms = result->above.count + result->below.count;
+  if (result->below.count > 1 || vertex->operation == POWER) return terms * terms;
+  if (vertex->operation != MULTIPLY) return terms;
+  const struct Fraction *left = &known[cone_place(cone, vertex->left)],
+                        *right = &known[cone_place(cone, vertex->right)];
+  return terms + left->above.count * right->above.count;
+}
+
 /* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
 static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
   struct Cone *cone = converter->graph->cone;
@@ -213,8 +226,7 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
   struct Fraction *known = allocate(cone->count, sizeof *known);
   for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
     known[place] = convert(converter, cone->nodes[place], known);
-    size_t terms = known[place].above.count + known[place].below.count;
-    graph_work(converter->graph, terms * terms); /* products and quotients look at all pairs */
+    graph_work(converter->graph, work_of(converter->graph, known, place));
     if (!is_usable(&known[place])) {
       note_large(converter->graph, cone->nodes[place]);
       converter->overflow = true;

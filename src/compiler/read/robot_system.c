@@ -118,7 +118,9 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
   bool moves = floats;
   for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
   if (!moves)
-    report_error(diagnostics, robot->line, "no joint of the robot moves; expected one of another type than fixed");
+    report_error(
+        diagnostics, robot->line,
+        "no joint of the robot moves; expected one of another type than fixed, or base=\"floating\" in an <include>");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
