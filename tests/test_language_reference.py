@@ -11,7 +11,7 @@ from fmu import ROOT, Instance, build_systems, lagc
 REFERENCE = (ROOT / "fmu" / "README.md").read_text()
 EXAMPLES = {
     re.search(r' name="(\w+)"', text).group(1): text
-    for text in re.findall(r"```xml\n(<(?:system|linearization) .*?)```", REFERENCE, re.S)
+    for text in re.findall(r"```xml\n(<(?:system|robot|linearization) .*?)```", REFERENCE, re.S)
 }
 
 
@@ -112,6 +112,16 @@ def beam_on_three(t):
     return {"s": 0.5 * t - 1, "left.force": share - lever, "middle.force": share, "right.force": share + lever, "z": 0.0}
 
 
+def swing(t):
+    """Released as it hangs, where it stays; the limits are not reached."""
+    return {"hinge": 0, "tool_z": 1, "tool_x": 0, "hinge_beyond": 0}
+
+
+def swing_in_orbit(t):
+    theta = 0.5 * np.cos(2 * t)
+    return {"robot.hinge": theta, "reach": np.sin(theta), "robot.tool_z": 2}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -145,6 +155,8 @@ MOTIONS = {
     "SlidingBlock": (block, 1e-4),
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),
+    "Swing": (swing, 0.0),
+    "SwingInOrbit": (swing_in_orbit, 1e-6),
     "LimitedGain": (lambda t: {"F": -4.0}, 0.0),
     "StiffDamper": (stiff, 1e-5),
     "LinearPendulum": (lambda t: {"theta": np.pi + (1 - np.pi) * np.cosh(np.sqrt(9.81 / 0.5) * t)}, 1e-8),
@@ -176,6 +188,16 @@ def test_limited_gain_at_its_limits(open_fmu):
     for value, expected in [(3.0, -10.0), (-3.0, 10.0), (0.25, -1.0)]:
         instance.set(e=value)
         assert instance.get("F") == expected
+
+
+def test_robot_swings_from_elsewhere(open_fmu):
+    """J theta'' = tau - 1.5 g sin(theta), and where the tool is then."""
+    instance = open_fmu("Swing").initialize({"hinge": 1.0, "hinge_torque": 2.0})
+    assert instance.get("der(hinge_velocity)") == pytest.approx(2 - 1.5 * 9.81 * np.sin(1), rel=1e-14)
+    assert instance.get("tool_x", "tool_z") == pytest.approx([np.sin(1), 2 - np.cos(1)])
+    instance.reset().initialize({"hinge": 1.0})
+    instance.step(0.7)
+    assert instance.get("hinge") == pytest.approx(pendulum_angle(1, np.sqrt(1.5 * 9.81), 0.7), abs=1e-6)
 
 
 def test_every_element_and_attribute_is_described():

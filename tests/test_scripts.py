@@ -153,6 +153,17 @@ def test_a_folder_of_ones_own(word, ready, tmp_path):
     assert ready.calls()[-1] == "python scripts/simulate.py build/own/fmu/Bead.fmu theta=1"
 
 
+def test_a_robot(ready, tmp_path):
+    """CMake tells what the FMU of a file is named, which lagc takes from what is in it."""
+    (tmp_path / "arm.urdf").write_text('<robot name="arm 6"/>')
+    (ready.folder / "build" / "own").mkdir()
+    (ready.folder / "build" / "own" / "system_names").write_text("arm_6\n")
+    status, text = ready.run("run", "arm.urdf", "elbow=1", cwd=tmp_path)
+    assert status == 0, text
+    assert any(f"-DSYSTEMS={tmp_path}/arm.urdf" in call for call in ready.calls())
+    assert ready.calls()[-1] == "python scripts/simulate.py build/own/fmu/arm_6.fmu elbow=1"
+
+
 @pytest.mark.parametrize("word", ["Pendulum", "fmu/Pendulum", "fmu/Pendulum/system.xml"])
 def test_a_system_of_the_clone(word, ready):
     add(ready.folder / "fmu" / "Pendulum")

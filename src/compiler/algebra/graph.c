@@ -40,6 +40,7 @@ void graph_free(struct Graph *graph) {
   free(graph->vertices);
   free(graph->buckets);
   cone_free(graph->cone);
+  free(graph->is_large);
   free(graph);
 }
 

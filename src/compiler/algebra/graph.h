@@ -85,8 +85,10 @@ struct Graph {
   struct Symbol *symbols;
   size_t symbol_count;
   struct Cone *cone; /* workspace of the sweeps in algebra/, each of which collects anew */
-  bool overflow;     /* more than NODE_LIMIT nodes were asked for */
-  bool not_finite;   /* a constant that is no finite number was asked for, since this was last set to false */
+  bool *is_large;    /* of the first large_count nodes: known to be too large for expanding, see rational.h */
+  size_t large_count;
+  bool overflow;   /* more than NODE_LIMIT nodes were asked for */
+  bool not_finite; /* a constant that is no finite number was asked for, since this was last set to false */
 };
 
 enum { NODE_LIMIT = 4000000, WORK_LIMIT = 100000000, ZERO = 0, ONE = 1 };

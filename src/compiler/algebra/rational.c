@@ -180,16 +180,57 @@ static bool is_usable(const struct Fraction *fraction) {
   return !fraction->above.overflow && !fraction->below.overflow && fraction->below.count > 0;
 }
 
+static void note_large(struct Graph *graph, Node node) {
+  size_t count = graph->large_count;
+  if (node >= count) {
+    graph->large_count = graph->capacity;
+    graph->is_large = reallocate(graph->is_large, graph->large_count, sizeof *graph->is_large);
+    memset(graph->is_large + count, 0, (graph->large_count - count) * sizeof *graph->is_large);
+  }
+  graph->is_large[node] = true;
+}
+
+/*
+ * Whether the nodes of the cone are too large, for what can be told without expanding them: one of them was before, or symbols and
+ * functions alone are more atoms than there may be.
+ */
+static bool is_large(const struct Graph *graph, const struct Cone *cone) {
+  int atoms = 0;
+  for (size_t place = 0; place < cone->count; place++) {
+    Node node = cone->nodes[place];
+    enum Operation operation = graph->vertices[node].operation;
+    atoms += operation != CONSTANT && operation != ADD && operation != MULTIPLY && operation != POWER;
+    if (atoms > ATOM_LIMIT || (node < graph->large_count && graph->is_large[node])) return true;
+  }
+  return false;
+}
+
+/* Steps that it takes to convert the node of this place: products and quotients look at all pairs of terms. */
+static size_t work_of(const struct Graph *graph, const struct Fraction *known, size_t place) {
+  const struct Cone *cone = graph->cone;
+  const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+  const struct Fraction *result = &known[place];
+  size_t terms = result->above.count + result->below.count;
+  if (result->below.count > 1 || vertex->operation == POWER) return terms * terms;
+  if (vertex->operation != MULTIPLY) return terms;
+  const struct Fraction *left = &known[cone_place(cone, vertex->left)],
+                        *right = &known[cone_place(cone, vertex->right)];
+  return terms + left->above.count * right->above.count;
+}
+
 /* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
 static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
   struct Cone *cone = converter->graph->cone;
   cone_collect(cone, converter->graph, nodes, count, NULL);
+  if (is_large(converter->graph, cone)) return false;
   struct Fraction *known = allocate(cone->count, sizeof *known);
   for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
     known[place] = convert(converter, cone->nodes[place], known);
-    size_t terms = known[place].above.count + known[place].below.count;
-    graph_work(converter->graph, terms * terms); /* products and quotients look at all pairs */
-    converter->overflow = converter->overflow || !is_usable(&known[place]);
+    graph_work(converter->graph, work_of(converter->graph, known, place));
+    if (!is_usable(&known[place])) {
+      note_large(converter->graph, cone->nodes[place]);
+      converter->overflow = true;
+    }
   }
   for (size_t i = 0; i < count && !converter->overflow; i++)
     fractions[i] = fraction_copy(&known[cone_place(cone, nodes[i])]);

@@ -5,11 +5,12 @@
 #include <string.h>
 
 #include "memory.h"
+#include "read/robot_system.h"
 #include "read/xml.h"
 
 struct Includes {
   struct Names *sources;   /* prefix -> struct Source */
-  struct Names *documents; /* canonical path -> struct Document */
+  struct Names *documents; /* canonical path, and what is said of a robot -> struct Document */
   struct Names *given;     /* full name -> struct Given */
 };
 
@@ -85,22 +86,39 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
   return false;
 }
 
-/* The document of a source, read once for all that include it. */
+/* The <system> in the file of a source, or that its robot is with what the <include> says of it; NULL after reporting why not. */
+static xmlDocPtr load_system(const struct Source *source, const struct RobotOptions *options,
+                             struct Diagnostics *diagnostics) {
+  xmlDocPtr document = xml_load(source->file, diagnostics);
+  if (document == NULL) return NULL;
+  if (is_robot(document)) return system_of_robot(document, options, diagnostics);
+  xmlNodePtr root = xmlDocGetRootElement(document);
+  if (!xmlStrEqual(root->name, (const xmlChar *)"system"))
+    report_error(diagnostics, xmlGetLineNo(root),
+                 "a <%s> cannot be included; expected the file of a <system> or <robot>", (const char *)root->name);
+  else if (options->base != NULL || options->tool != NULL)
+    report_error(diagnostics, xmlGetLineNo(root),
+                 "base=\"...\" and tool=\"...\" of <include> are for robots; expected a file that begins with <robot>");
+  if (diagnostics->errors == 0) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
+
+/* The document of a source, read once for all that include it in the same way. */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
-  struct Document *known = names_find(reader->includes->documents, source->canonical_path);
-  if (known != NULL) return known->document;
-  struct Diagnostics local = {.file = source->file, .origin = source->origin};
-  known = allocate(1, sizeof *known);
-  known->document = xml_load(source->file, &local);
-  xmlNodePtr root = known->document != NULL ? xmlDocGetRootElement(known->document) : NULL;
-  if (root != NULL && !xmlStrEqual(root->name, (const xmlChar *)"system")) {
-    report_error(&local, xmlGetLineNo(root), "a <%s> cannot be included; expected the file of a <system>",
-                 (const char *)root->name);
-    xmlFreeDoc(known->document);
-    known->document = NULL;
+  char *base = attribute(source->include, "base"), *tool = attribute(source->include, "tool");
+  char *key = format_text("%s\n%s\n%s", source->canonical_path, base != NULL ? base : "", tool != NULL ? tool : "");
+  struct Document *known = names_find(reader->includes->documents, key);
+  if (known == NULL) {
+    struct Diagnostics local = {.file = source->file, .origin = source->origin};
+    known = allocate(1, sizeof *known);
+    known->document = load_system(source, &(struct RobotOptions){.base = base, .tool = tool}, &local);
+    reader->diagnostics->errors += local.errors;
+    names_set(reader->includes->documents, key, known);
   }
-  reader->diagnostics->errors += local.errors;
-  names_set(reader->includes->documents, source->canonical_path, known);
+  free(key);
+  free(base);
+  free(tool);
   return known->document;
 }
 

@@ -15,6 +15,7 @@
 #include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
+#include "read/robot_system.h"
 #include "read/start_expressions.h"
 #include "read/xml.h"
 
@@ -232,6 +233,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   struct Diagnostics local = {.file = path};
   struct Model *model = NULL;
   xmlDocPtr document = xml_load(path, &local);
+  if (document != NULL && is_robot(document)) document = system_of_robot(document, &(struct RobotOptions){0}, &local);
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
   if (root != NULL && xmlStrEqual(root->name, (const xmlChar *)"linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;

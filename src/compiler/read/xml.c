@@ -6,6 +6,7 @@
 #include <libxml/parser.h>
 
 #include "memory.h"
+#include "read/robot_system.h"
 #include "read/schema.h"
 
 /* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. Free with free(). */
@@ -107,7 +108,7 @@ xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
   xmlSetStructuredErrorFunc(NULL, NULL);
-  if (document != NULL) schema_check(document, diagnostics);
+  if (document != NULL && !is_robot(document)) schema_check(document, diagnostics);
   if (diagnostics->errors == 0) return document;
   xmlFreeDoc(document);
   return NULL;

@@ -7,7 +7,7 @@
 #include "diagnostics.h"
 
 /*
- * Reads the file and holds it against the schema, reporting every mistake. NULL where there is one: what else it means for
+ * Reads the file and holds it against the schema, unless it is that of a robot, reporting every mistake. NULL where there is one: what else it means for
  * names and expressions would hide it among messages that follow from it.
  */
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics);

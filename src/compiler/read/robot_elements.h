@@ -1,0 +1,37 @@
+/* Elements of the <system> that a robot becomes. Texts that are handed over are taken over: they are freed. */
+#ifndef ROBOT_ELEMENTS_H
+#define ROBOT_ELEMENTS_H
+
+#include <libxml/tree.h>
+
+/* The system as it is written. */
+struct Writer {
+  xmlNodePtr system;
+  long line; /* of the link or joint in the file of which the elements tell */
+};
+
+xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);
+xmlNodePtr write_element(const struct Writer *writer, const char *name);
+
+void set_attribute(xmlNodePtr node, const char *attribute, char *value);
+void set_content(xmlNodePtr node, char *text);
+
+/* Leaves a 0 out, which is what a missing attribute means. */
+void set_number(xmlNodePtr node, const char *attribute, double value);
+
+void write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description);
+void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description);
+
+/* A coordinate and NAME_velocity. */
+xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);
+
+/* The same with the input NAME_force, or NAME_torque for an angle. */
+void write_motor(const struct Writer *writer, const char *name, const char *unit, const char *description);
+
+/* The number in short. Free with free(). */
+char *number(double value);
+
+/* "factor*name" in short. Free with free(). */
+char *term(double factor, const char *name);
+
+#endif

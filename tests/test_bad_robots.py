@@ -1,0 +1,179 @@
+"""Broken URDF files: each must give this line and this message, and leave no output."""
+
+import re
+
+import pytest
+
+from fmu import lagc
+
+# A right robot; the cases below replace one line of it (counted from 1).
+RIGHT = """\
+<robot name="arm">
+  <link name="stand"/>
+  <link name="upper">
+    <inertial><origin xyz="0 0 -0.5"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.01"/></inertial>
+  </link>
+  <link name="lower">
+    <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.01"/></inertial>
+  </link>
+  <joint name="shoulder" type="revolute">
+    <parent link="stand"/><child link="upper"/><axis xyz="0 1 0"/><limit lower="-1" upper="1"/>
+  </joint>
+  <joint name="elbow" type="continuous">
+    <parent link="upper"/><child link="lower"/><origin xyz="0 0 -1" rpy="0 0 0"/><axis xyz="0 1 0"/>
+  </joint>
+</robot>
+"""
+INERTIA = '<inertia ixx="{}" ixy="{}" ixz="0" iyy="{}" iyz="0" izz="{}"/>'
+
+
+def inertial(mass="2", tensor=("0.1", "0", "0.1", "0.01")):
+    return f'<inertial><mass value="{mass}"/>{INERTIA.format(*tensor)}</inertial>'
+
+
+def elbow(between='<parent link="upper"/><child link="lower"/>', origin='<origin xyz="0 0 -1"/>', axis='<axis xyz="0 1 0"/>', more=""):
+    return between + origin + axis + more
+
+
+# What is wrong, the line replaced, its new text, the line and message expected.
+CASES = [
+    ("no name", 1, "<robot>", 1, "<robot> needs the attribute 'name'"),
+    ("link without name", 2, "<link/>", 2, "<link> needs the attribute 'name'"),
+    ("two links of one name", 2, '<link name="stand"/><link name="upper"/>', 3, "the link 'upper' is there on line 2 already"),
+    ("links alike", 2, '<link name="stand"/><link name="upper.arm"/><link name="upper-arm"/>', 2,
+     "the link 'upper-arm' and 'upper.arm' on line 2 both become 'upper_arm'; expected names that differ"),
+    ("two joints of one name", 12, '<joint name="shoulder" type="continuous">', 12, "the joint 'shoulder' is there on line 9 already"),
+    ("joint without type", 12, '<joint name="elbow">', 12, "<joint> needs the attribute 'type'"),
+    ("unknown type", 12, '<joint name="elbow" type="hinge">', 12,
+     'type="hinge" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar'),
+    ("no parent", 13, elbow('<child link="lower"/>'), 12, "<joint> has no <parent>; expected one in it"),
+    ("no child", 13, elbow('<parent link="upper"/>'), 12, "<joint> has no <child>; expected one in it"),
+    ("two parents in a joint", 13, elbow('<parent link="upper"/><parent link="stand"/><child link="lower"/>'), 13, "a second <parent> in <joint>"),
+    ("unknown parent", 13, elbow('<parent link="uper"/><child link="lower"/>'), 12,
+     "there is no link 'uper' for the parent of the joint 'elbow'; did you mean 'upper'"),
+    ("unknown child", 13, elbow('<parent link="upper"/><child link="hand"/>'), 12,
+     "there is no link 'hand' for the child of the joint 'elbow'; expected one of the file"),
+    ("two parents", 13, elbow('<parent link="lower"/><child link="upper"/>'), 12,
+     "the link 'upper' is the child of the joint 'elbow' and of 'shoulder' on line 9; expected a tree"),
+    ("loop", 10, '<parent link="lower"/><child link="upper"/><axis xyz="0 1 0"/>', 9, "the link 'upper' is its own ancestor, or hangs on one"),
+    ("own parent", 13, elbow('<parent link="lower"/><child link="lower"/>'), 12, "the link 'lower' is its own ancestor"),
+    ("two roots", 2, '<link name="stand"/><link name="other"/>', 2, "no joint has the link 'other' as its child, nor 'stand' on line 2"),
+    ("axis of zero", 13, elbow(axis='<axis xyz="0 0 0"/>'), 13, "the <axis> of the joint 'elbow' has the length 0; expected a direction"),
+    ("axis of two", 13, elbow(axis='<axis xyz="0 1"/>'), 13, 'xyz="0 1" of <axis>; expected three numbers such as 0 0.5 -1e-3'),
+    ("a word for a number", 13, elbow(origin='<origin xyz="0 0 one"/>'), 13, 'xyz="0 0 one" of <origin>; expected three numbers'),
+    ("nan", 13, elbow(origin='<origin rpy="0 0 nan"/>'), 13, 'rpy="0 0 nan" of <origin>; expected three numbers'),
+    ("numbers in a row", 13, elbow(origin='<origin xyz="0 0 1 2"/>'), 13, 'xyz="0 0 1 2" of <origin>; expected three numbers'),
+    ("comma", 13, elbow(origin='<origin xyz="0,0,1"/>'), 13, 'xyz="0,0,1" of <origin>; expected three numbers'),
+    ("limits exchanged", 10, '<parent link="stand"/><child link="upper"/><limit lower="1" upper="-1"/>', 10,
+     'lower="1" of <limit> is above upper="-1"'),
+    ("negative damping", 13, elbow(more='<dynamics damping="-1"/>'), 13, 'damping="-1" of <dynamics> is negative; expected 0 or more'),
+    ("mass missing", 7, f"<inertial>{INERTIA.format(1, 0, 1, 1)}</inertial>", 7, "<inertial> has no <mass>"),
+    ("mass without value", 7, f"<inertial><mass/>{INERTIA.format(1, 0, 1, 1)}</inertial>", 7, "<mass> needs the attribute 'value'"),
+    ("tensor missing", 7, '<inertial><mass value="1"/></inertial>', 7, "<inertial> has no <inertia>"),
+    ("tensor with a gap", 7, '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"/></inertial>', 7,
+     "<inertia> needs the attribute 'iyz'"),
+    ("negative mass", 7, inertial(mass="-2"), 7, "the mass -2 of the link 'lower' is negative; expected 0 or more"),
+    ("nothing to move", 7, "", 12, "the joint 'elbow' moves no inertia: neither the link 'lower' nor what hangs on it has a mass"),
+    ("mimic of an unknown joint", 13, elbow(more='<mimic joint="sholder"/>'), 12, "there is no joint 'sholder' for a <mimic>; did you mean 'shoulder'"),
+    ("mimic of itself", 13, elbow(more='<mimic joint="elbow"/>'), 12, "the joint 'elbow' mimics itself"),
+    ("xacro macro", 2, '<link name="stand"/><xacro:wheel xmlns:xacro="http://www.ros.org/wiki/xacro" name="w"/>', 2,
+     "<wheel> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it"),
+    ("xacro expression", 13, elbow(origin='<origin xyz="0 0 ${-length}"/>'), 13, "<origin> has macros or expressions of xacro"),
+]  # fmt: skip
+
+
+def compile_robot(text, folder):
+    (folder / "robot.urdf").write_text(text)
+    return lagc("robot.urdf", "-o", "out", cwd=folder)
+
+
+@pytest.mark.parametrize("line, text, at, message", [case[1:] for case in CASES], ids=[case[0] for case in CASES])
+def test_message(line, text, at, message, tmp_path):
+    lines = RIGHT.splitlines()
+    lines[line - 1] = text
+    result = compile_robot("\n".join(lines), tmp_path)
+    assert result.returncode == 1
+    assert re.search(f"^robot.urdf:{at}: .*{re.escape(message)}", result.stderr, re.M), result.stderr
+    assert len(result.stderr.splitlines()) == 1, result.stderr
+    assert not (tmp_path / "out" / "system.c").exists()
+
+
+def test_circle_of_mimics(tmp_path):
+    lines = RIGHT.splitlines()
+    lines[9] += '<mimic joint="elbow"/>'
+    lines[12] += '<mimic joint="shoulder"/>'
+    result = compile_robot("\n".join(lines), tmp_path)
+    assert "robot.urdf:9: the joint 'shoulder' mimics itself, or joints that mimic each other" in result.stderr
+
+
+def test_nothing_moves(tmp_path):
+    result = compile_robot(RIGHT.replace("continuous", "fixed").replace("revolute", "fixed"), tmp_path)
+    assert result.stderr.startswith("robot.urdf:1: no joint of the robot moves"), result.stderr
+
+
+def test_right_one(tmp_path):
+    result = compile_robot(RIGHT, tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+NO_BODY = "is that of no body: a principal moment is negative, or larger than the other two together"
+
+
+@pytest.mark.parametrize(
+    "tensor", [("0.1", "0", "0.1", "0.3"), ("-0.1", "0", "0.1", "0.1"), ("0.1", "0.2", "0.1", "0.1"), ("0.1", "0.06", "0.1", "0.03")]
+)
+def test_tensor_of_no_body(tensor, tmp_path):
+    """Many robots have one, and their equations hold all the same."""
+    lines = RIGHT.splitlines()
+    lines[3] = inertial(tensor=tensor)
+    result = compile_robot("\n".join(lines), tmp_path)
+    assert (result.returncode, result.stderr) == (0, f"robot.urdf:4: warning: the <inertia> of the link 'upper' {NO_BODY}\n")
+
+
+@pytest.mark.parametrize("tensor", [("0.1", "0", "0.2", "0.302"), ("0", "0", "0", "0"), ("0.1", "0.05", "0.1", "0.1")])
+def test_tensor_of_a_body(tensor, tmp_path):
+    lines = RIGHT.splitlines()
+    lines[3] = inertial(tensor=tensor)
+    assert compile_robot("\n".join(lines), tmp_path).stderr == ""
+
+
+def test_left_out(tmp_path):
+    text = RIGHT.replace('upper="1"', 'upper="1" effort="5" velocity="2"')
+    text = text.replace('<link name="stand"/>', '<link name="stand"><visual/><collision/></link><gazebo/><material name="red"/>')
+    result = compile_robot(text, tmp_path)
+    assert result.returncode == 0
+    assert result.stderr == (
+        "robot.urdf: warning: left out, being no part of the equations: visual, collision, effort of limit, velocity of limit, gazebo, "
+        "material\n"
+    )
+
+
+INCLUDE = '<system name="Cell">\n  <include file="robot.urdf" as="left" {}/>\n</system>'
+
+
+@pytest.mark.parametrize(
+    "attributes, message",
+    [
+        ('base="loose"', "cell.xml:2: base=\"loose\" of <include> is not known; expected fixed or floating"),
+        ('tool="loewr"', "robot.urdf: there is no link 'loewr' for the tool; did you mean 'lower'? (included as 'left' on line 2 of cell.xml)"),
+    ],
+)  # fmt: skip
+def test_bad_include(attributes, message, tmp_path):
+    (tmp_path / "robot.urdf").write_text(RIGHT)
+    (tmp_path / "cell.xml").write_text(INCLUDE.format(attributes))
+    result = lagc("cell.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and result.stderr == message + "\n", result.stderr
+
+
+def test_base_of_what_is_no_robot(tmp_path):
+    (tmp_path / "robot.urdf").write_text('<system name="Ball"/>')
+    (tmp_path / "cell.xml").write_text(INCLUDE.format('base="floating"'))
+    result = lagc("cell.xml", "-o", "out", cwd=tmp_path)
+    assert 'robot.urdf:1: base="..." and tool="..." of <include> are for robots' in result.stderr
+
+
+def test_robot_without_mass_on_floating_base(tmp_path):
+    (tmp_path / "robot.urdf").write_text('<robot name="ghost"><link name="body"/></robot>')
+    (tmp_path / "cell.xml").write_text(INCLUDE.format('base="floating"'))
+    result = lagc("cell.xml", "-o", "out", cwd=tmp_path)
+    assert "robot.urdf:1: no link of the robot has a mass" in result.stderr

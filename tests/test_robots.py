@@ -1,0 +1,223 @@
+"""Robots from URDF files, against energies with many digits, closed forms, and formulas by hand."""
+
+import subprocess
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import fmu
+from fmu import ROOT, bring_up_to_date, build_systems
+from robots_by_energies import Robot
+
+TENSOR = '<inertia ixx="0.021" ixy="0.002" ixz="-0.003" iyy="0.026" iyz="0.004" izz="0.013"/>'
+BALL = '<inertia ixx="0.004" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="0.004"/>'
+
+# Each joint type but floating, origins that turn, axes between those of coordinates, a part that is fixed to a moving one, and joints
+# that mimic others: a turn a slide, and through another.
+ARM = f"""<robot name="RobotArm">
+  <link name="world"/>
+  <link name="stand"><inertial><mass value="7"/>{TENSOR}</inertial></link>
+  <joint name="on floor" type="fixed"><origin xyz="0.1 0.2 0.3" rpy="0.1 0 1.57079632679"/><parent link="world"/><child link="stand"/></joint>
+  <link name="upper"><inertial><origin xyz="0.1 -0.2 0.3" rpy="0.4 -0.5 0.6"/><mass value="1.5"/>{TENSOR}</inertial></link>
+  <joint name="shoulder" type="revolute">
+    <origin xyz="0 0.1 0.2" rpy="0.3 0.2 -0.7"/><parent link="stand"/><child link="upper"/><axis xyz="1 2 -2"/>
+    <limit lower="-1.2" upper="0.8" effort="10" velocity="1"/>
+  </joint>
+  <link name="camera"><inertial><origin xyz="0 0 0.05"/><mass value="0.4"/>{BALL}</inertial></link>
+  <joint name="mount" type="fixed"><origin xyz="0.2 0 0" rpy="0 1.5707963 0.2"/><parent link="upper"/><child link="camera"/></joint>
+  <link name="rail"><inertial><origin rpy="1 0 0"/><mass value="0.8"/>{TENSOR}</inertial></link>
+  <joint name="slide-1" type="prismatic">
+    <origin xyz="0.3 0.1 0" rpy="-1.57079632679 0 0.1"/><parent link="camera"/><child link="rail"/><axis xyz="0 0.6 0.8"/>
+    <limit effort="10" velocity="1"/>
+  </joint>
+  <link name="wheel"><inertial><origin xyz="0.02 0 0.01"/><mass value="0.6"/>{TENSOR}</inertial></link>
+  <joint name="wheel" type="continuous"><parent link="rail"/><child link="wheel"/><axis xyz="0 0 -1"/></joint>
+  <link name="finger"><inertial><origin xyz="0 0.1 0"/><mass value="0.3"/>{BALL}</inertial></link>
+  <joint name="grip" type="prismatic"><origin xyz="0 0 0.1"/><parent link="rail"/><child link="finger"/><mimic joint="wheel" multiplier="0.5" offset="-0.1"/></joint>
+  <link name="thumb"><inertial><origin xyz="0.1 0 0"/><mass value="0.2"/>{BALL}</inertial></link>
+  <joint name="close" type="revolute"><parent link="finger"/><child link="thumb"/><axis xyz="0 1 0"/><mimic joint="grip" multiplier="3"/></joint>
+</robot>
+"""
+# On its side, so that the plane is not that of x and y.
+CART = f"""<robot name="RobotCart">
+  <link name="base"/>
+  <link name="cart"><inertial><origin xyz="0.1 0 0.2"/><mass value="4"/>{TENSOR}</inertial></link>
+  <joint name="roll" type="planar"><origin xyz="0 0 1" rpy="0.2 0 0"/><parent link="base"/><child link="cart"/><axis xyz="0 -1 0"/></joint>
+  <link name="pole"><inertial><origin xyz="0 0 0.5"/><mass value="1"/>{BALL}</inertial></link>
+  <joint name="hinge" type="revolute"><origin xyz="0 0 0.2"/><parent link="cart"/><child link="pole"/><axis xyz="1 0 0"/><limit lower="-1"/></joint>
+</robot>
+"""
+# A block on a slope of 0.6 in 0.8 with losses, and a disk with losses that a mimicking one adds to.
+LOSSES = f"""<robot name="RobotLosses">
+  <link name="floor"/>
+  <link name="block"><inertial><mass value="2"/>{BALL}</inertial></link>
+  <joint name="x" type="prismatic"><parent link="floor"/><child link="block"/><axis xyz="0.8 0 0.6"/><dynamics damping="3" friction="0.5"/></joint>
+  <link name="disk"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="phi" type="continuous"><parent link="floor"/><child link="disk"/><axis xyz="0 0 1"/><dynamics damping="0.01"/></joint>
+  <link name="follower"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="psi" type="continuous">
+    <parent link="floor"/><child link="follower"/><axis xyz="0 0 1"/><mimic joint="phi" multiplier="-2"/><dynamics damping="0.02" friction="0.03"/>
+  </joint>
+</robot>
+"""
+# A box with a balanced wheel in its centre of mass, in a fixed world and as it stands.
+ROTOR = f"""<robot name="RobotRotor">
+  <link name="box">
+    <inertial><origin xyz="0 0 0.5"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.15"/></inertial>
+  </link>
+  <link name="wheel"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="spin" type="continuous"><origin xyz="0 0 0.5"/><parent link="box"/><child link="wheel"/><axis xyz="0 1 0"/></joint>
+</robot>
+"""
+FLYING = ROTOR.replace("RobotRotor", "RobotFlying").replace("</robot>", """  <link name="sky"/>
+  <joint name="flight" type="floating"><parent link="sky"/><child link="box"/></joint>
+</robot>""")
+FREE = '<system name="RobotFree"><include file="../RobotRotor/system.xml" as="rotor" base="floating" tool="box"/></system>'
+# A rod of mass m and length l at a hinge, in the air at the end of another.
+ROD = """<robot name="RobotRod">
+  <link name="wall"><inertial><mass value="50"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="rod">
+    <inertial><origin xyz="0 0 -0.5"/><mass value="3"/><inertia ixx="0.25" ixy="0" ixz="0" iyy="0.25" iyz="0" izz="0"/></inertial>
+  </link>
+  <link name="end"/>
+  <joint name="tip" type="fixed"><origin xyz="0 0 -1"/><parent link="rod"/><child link="end"/></joint>
+  <joint name="hinge" type="continuous"><parent link="wall"/><child link="rod"/><axis xyz="0 -1 0"/></joint>
+</robot>
+"""
+PAIR = """<system name="RobotPair" description="two of them, which a spring between their ends couples">
+  <parameter name="k" start="40" unit="N/m"/>
+  <include file="../RobotRod/system.xml" as="left" tool="end"/>
+  <include file="../RobotRod/system.xml" as="right" base="fixed"><coordinate name="hinge" start="0.3"/></include>
+  <define name="stretch" unit="m">right.tool.x - left.tool.x</define>
+  <force on="left.end" x="k*stretch"/>
+  <force on="right.tool" x="-k*stretch"/>
+</system>
+"""
+SYSTEMS = {"RobotArm": ARM, "RobotCart": CART, "RobotLosses": LOSSES, "RobotRotor": ROTOR, "RobotFlying": FLYING,
+           "RobotFree": FREE, "RobotRod": ROD, "RobotPair": PAIR}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def robots():
+    build_systems("robots", SYSTEMS)
+
+
+def random_state(random, coordinates, inputs):
+    names = [*coordinates, *[f"{c}_velocity" for c in coordinates], *inputs]
+    return dict(zip(names, random.uniform(-1.5, 1.5, len(names))))
+
+
+MOTORS = {
+    "RobotArm": (["shoulder", "slide_1", "wheel"], ["shoulder_torque", "slide_1_force", "wheel_torque"]),
+    "RobotCart": (["roll_x", "roll_y", "roll_angle", "hinge"],
+                  ["roll_x_force", "roll_y_force", "roll_angle_torque", "hinge_torque"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MOTORS)
+def test_accelerations(name, open_fmu):
+    coordinates, inputs = MOTORS[name]
+    robot, instance, random = Robot(SYSTEMS[name]), open_fmu(name), np.random.default_rng(1)
+    assert fmu.names_of(name, "input") == inputs
+    assert fmu.states_of(name) == [*coordinates, *[f"{c}_velocity" for c in coordinates]]
+    for _ in range(3):
+        values = random_state(random, coordinates, inputs)
+        instance.reset().initialize(values)
+        with mp.workdps(45):
+            state = list(values.values())
+            n = len(coordinates)
+            expected = robot.accelerations(state[:n], state[n : 2 * n], state[2 * n :])
+        ours = instance.get(*[f"der({c}_velocity)" for c in coordinates])
+        # Angles of 1.57079632679 are pi/2 here, which is 5e-12 away.
+        np.testing.assert_allclose(ours, expected, rtol=1e-9)
+
+
+def test_places(open_fmu):
+    """Origins and axes of frames, also of what is fixed, and the positions of what mimics."""
+    robot, instance = Robot(ARM), open_fmu("RobotArm")
+    coordinates, inputs = MOTORS["RobotArm"]
+    values = random_state(np.random.default_rng(2), coordinates, inputs)
+    instance.initialize(values)
+    for link, (position, rotation) in robot.poses([mp.mpf(values[c]) for c in coordinates]).items():
+        names = [f"{link}.{axis}" for axis in "xyz"] + [f"{link}.R{i}{j}" for i in "123" for j in "123"]
+        np.testing.assert_allclose(instance.get(*names), [float(x) for x in [*position, *rotation]], atol=1e-10)
+    assert instance.get("grip") == pytest.approx(0.5 * values["wheel"] - 0.1, rel=1e-15)
+    assert instance.get("close") == pytest.approx(3 * instance.get("grip"), rel=1e-15)
+
+
+def test_limits(open_fmu):
+    instance = open_fmu("RobotArm")
+    for angle, beyond in [(-1.5, -0.3), (-1.2, 0), (0.3, 0), (0.8, 0), (1, 0.2)]:
+        instance.reset().initialize({"shoulder": angle})
+        assert instance.get("shoulder_beyond") == pytest.approx(beyond, abs=1e-15)
+    outputs = fmu.names_of("RobotArm", "output")
+    assert [name for name in outputs if name.endswith("_beyond")] == ["shoulder_beyond"]
+    # The missing one of two limits is 0.
+    other = open_fmu("RobotCart").initialize({"hinge": 0.25})
+    assert other.get("hinge_beyond") == 0.25
+
+
+def test_losses(open_fmu):
+    instance = open_fmu("RobotLosses")
+    for velocity, rate in [(0.0, 0.0), (0.7, -0.4), (-0.0005, 0.003)]:
+        instance.reset().initialize({"x_velocity": velocity, "phi_velocity": rate, "x_force": 20, "phi_torque": 0.1})
+        friction = 0.5 * np.tanh(velocity / 0.001)
+        assert instance.get("der(x_velocity)") == pytest.approx((20 - 2 * 9.81 * 0.6 - 3 * velocity - friction) / 2, rel=1e-13)
+        torque = 0.1 - 0.01 * rate - 4 * 0.02 * rate + 2 * 0.03 * np.tanh(-2 * rate / 0.01)
+        assert instance.get("der(phi_velocity)") == pytest.approx(torque / (0.004 + 4 * 0.004), rel=1e-13)
+    instance.reset().initialize({"x_damping": 0, "x_friction": 0, "g": 0, "x_force": 3, "x_velocity": 1})
+    assert instance.get("der(x_velocity)") == 1.5
+
+
+@pytest.mark.parametrize("name, base, spin", [("RobotFlying", "flight", "spin"), ("RobotFree", "rotor.base", "rotor.spin")])
+def test_free_motion(name, base, spin, open_fmu):
+    """Turning about the axis of the largest moment of inertia, while the centre of mass, 0.5 above the origin of the link, falls."""
+    instance, rate, t = open_fmu(name), 0.8, 1.5
+    moving = {f"{base}_qy_velocity": rate / 2, f"{base}_x_velocity": -0.5 * rate, f"{base}_z_velocity": 2.0}
+    instance.initialize(moving)
+    instance.step(t)
+    angle = rate * t
+    expected = {
+        "x": -0.5 * np.sin(angle), "y": 0, "z": 0.5 + 2.0 * t - 9.81 * t * t / 2 - 0.5 * np.cos(angle),
+        "qw": np.cos(angle / 2), "qx": 0, "qy": np.sin(angle / 2), "qz": 0,
+    }  # fmt: skip
+    for component, value in expected.items():
+        assert instance.get(f"{base}_{component}") == pytest.approx(value, abs=1e-7), component
+    assert abs(instance.get(f"{spin}_velocity")) < 1e-7
+
+
+def test_pair(open_fmu):
+    """Each falls by one gravity; the spring pulls at the ends."""
+    instance = open_fmu("RobotPair")
+    left, right = -0.4, 0.7
+    instance.initialize({"left.hinge": left, "right.hinge": right})
+    stretch = np.sin(right) - np.sin(left)
+    for side, angle, sign in [("left", left, 1), ("right", right, -1)]:
+        torque = -3 * 9.81 * 0.5 * np.sin(angle) + sign * 40 * stretch * np.cos(angle)
+        assert instance.get(f"der({side}.hinge_velocity)") == pytest.approx(torque / 1.0, rel=1e-12)
+    assert instance.get("left.tool_x", "left.tool_z") == pytest.approx([np.sin(left), -np.cos(left)])
+    assert "right.tool_vz" in fmu.names_of("RobotPair", "output")
+
+
+def test_energy_is_kept(open_fmu):
+    instance = open_fmu("RobotArm").initialize({"shoulder": 0.5, "wheel_velocity": 2})
+    before = instance.get("totalEnergy")
+    instance.step(3)
+    assert instance.get("totalEnergy") == pytest.approx(before, rel=1e-7)
+
+
+def test_names_of_joints_and_links_are_apart():
+    """A joint may be called like a link, and either like what each robot has anyway."""
+    names = {v.name for v in fmu.description("RobotCart").modelVariables}
+    assert {"base_.x", "cart.x"} <= names
+    assert {"wheel", "wheel.x"} <= {v.name for v in fmu.description("RobotArm").modelVariables}
+
+
+def test_a_file_of_any_name_makes_an_fmu(tmp_path):
+    """The FMU is named as the robot, in letters of C."""
+    bring_up_to_date(ROOT / "build")
+    (tmp_path / "arm.urdf").write_text('<?xml version="1.0"?>\n' + ROD.replace("RobotRod", "2nd arm-6.x"))
+    words = [f"-DSYSTEMS={tmp_path / 'arm.urdf'}", f"-DTOOLS={ROOT / 'build'}"]
+    subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", *words], check=True)
+    assert [path.name for path in (tmp_path / "build" / "fmu").iterdir()] == ["_2nd_arm_6_x.fmu"]
