@@ -103,11 +103,12 @@ def stiff_section(quick, progress):
     sentences = stiff.summary(rows)
     text = ("Ratios are of times to an equal error, between tolerances by powers; 0 and inf: one of the two never gets there. The methods take "
             "turns, and the fastest of several runs counts. The references are collocation of high order in extended precision, of "
-            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side; exudyn's, with fixed steps, as mass points with springs, dampers, or a distance.")  # fmt: skip
+            "the equations that SymPy derives; \"largest difference\" is that to another order. SciPy's run in one step, with SymPy's right side; exudyn's "
+            "with fixed steps, as mass points with springs, dampers, or a distance; \"largest difference\" of the rope is that to the other method.")  # fmt: skip
     plots = "".join(paragraphs([failures[problem.name]]) if problem.name in failures else stiff_plot(samples, problem)
                     for problem in stiff.problems(quick))  # fmt: skip
-    content = paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text]) + stiff_legend(stiff.PEERS) + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows)
-    return Section(sentences, content)
+    content = paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text]) + stiff_legend(stiff.PEERS)
+    return Section(sentences, content + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows))
 
 
 def mechanisms_section(quick, progress):
