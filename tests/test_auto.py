@@ -4,6 +4,7 @@ import fmpy
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import fmu
 
@@ -26,6 +27,9 @@ TEXTS = {
     '<coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz" start="1"/><particle mass="1" x="x" y="y" z="z"/>'
     '<force coordinate="x">B*vy*(1 + 0.1*z)</force><force coordinate="y">1 - B*vx*(1 + 0.1*z)</force>'
     '<force coordinate="z">-b*vz - b*z/10</force>',
+    # a ball that bounces on a hard ground with little damping
+    "Ball": '<coordinate name="x" velocity="v" start="0.1"/><particle mass="1" x="x"/><potential>9.81*x</potential>'
+    '<force coordinate="x">1e8*max(-x, 0)^1.5*(1 - 0.5*v)</force>',
     "Driven": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><input name="u"/>'
     '<force coordinate="x">u - x^3</force>',
 }  # fmt: skip
@@ -83,6 +87,16 @@ def test_friction_that_is_nearly_dry(open_fmu):
     creeping = -0.5 + 1e-4 * np.arctanh(0.5) * (20 - np.pi)
     assert instance.get("x") == pytest.approx(creeping, abs=2e-4)
     assert count(instance, "solverSteps") < 3000
+
+
+def test_flights_belong_to_the_series(open_fmu):
+    """Where no force depends on the state, no method gets further; three bounces against SciPy."""
+    instance = open_fmu("AutoBall").initialize(tolerance=1e-8)
+    instance.step(0.7)
+    force = lambda t, y: [y[1], -9.81 + 1e8 * max(-y[0], 0) ** 1.5 * (1 - 0.5 * y[1])]
+    expected = solve_ivp(force, (0, 0.7), [0.1, 0], method="DOP853", rtol=1e-11, atol=1e-13, max_step=1e-4).y[:, -1]
+    assert instance.get("x", "v") == pytest.approx(expected, abs=1e-5)
+    assert count(instance, "solverHandovers") == 0 or count(instance, "solverHandovers") >= 5
 
 
 def test_a_start_without_a_series(open_fmu):

@@ -97,7 +97,7 @@ def test_summary():
             ["C", "one step", 1.0, *[math.nan] * 6]]  # fmt: skip
     sentences = stiff.summary(rows)
     assert "1 of 2 cases; at worst 1.50 times (B, many steps)" in sentences[0] and "3.00 to 4.00 times" in sentences[1]
-    assert "20.00 to 30.00 times the time of auto, of 2 problems" in sentences[2]
+    assert "on 2 of 2 problems, in 20.00 to 30.00 times the time of auto" in sentences[2]
     assert "2 of 2 cases; at worst 1.25 times (B, many steps)" in sentences[3] and "5.00 to infinitely many times" in sentences[4]
     assert len(sentences) == 5  # none of exudyn where it never ran
 

@@ -171,7 +171,8 @@ def smallest_error(samples, problem, way, program):
 
 
 HEADER = ["problem", "communication", "seconds", *(f"{pair}, error {level:g}" for level in LEVELS for pair in ("auto / better of taylor, radau", "bdf / radau")),
-          *(f"exudyn / auto, error {level:g}" for level in LEVELS), "smallest error of SciPy", "smallest error of exudyn", "reference checked with", "largest difference"]  # fmt: skip
+          *(f"exudyn / auto, error {level:g}" for level in LEVELS), "smallest error of SciPy", "smallest error of exudyn",
+          "reference checked with", "largest difference"]  # fmt: skip
 EXUDYN = 3 + 2 * len(LEVELS)  # the first of its columns
 
 
@@ -210,7 +211,8 @@ def summary(table):
         slower, faster = max(others, default=math.nan), min(others, default=math.nan)
         sentences.append(f"bdf takes {factor(faster)} to {factor(slower)} times the time of radau (infinitely many: it never gets there).")
         beside = [row[EXUDYN + i] for row in table if not math.isnan(row[EXUDYN + i])]
+        reached = [value for value in beside if math.isfinite(value)]
         if beside:
-            sentences.append(f"exudyn's implicit methods take {factor(min(beside))} to {factor(max(beside))} times the time of auto, "
-                             f"of {len(beside)} problems in one communication step.")  # fmt: skip
+            times = f", in {factor(min(reached))} to {factor(max(reached))} times the time of auto" if reached else ""
+            sentences.append(f"exudyn's implicit methods get to that error on {len(reached)} of {len(beside)} problems{times}.")
     return sentences

@@ -131,7 +131,8 @@ def right_states(problem, way):
         both = (by_collocation if problem.definition else by_solvers)(problem, steps, changing)
         np.savez(path, states=both[0], difference=np.max(relative(both[1], both[0])))
     kept = np.load(path)
-    text = f"collocation with {STAGES[0]} and {STAGES[1]} stages" if problem.definition else " and ".join(f"{solver} at {tolerance:g}" for solver, tolerance in BY_SOLVERS)
+    names = [f"{solver} at {tolerance:g}" for solver, tolerance in BY_SOLVERS]
+    text = f"collocation with {STAGES[0]} and {STAGES[1]} stages" if problem.definition else " and ".join(names)
     return kept["states"], text, float(kept["difference"])
 
 

@@ -234,7 +234,7 @@ static bool judge_trial(const struct Instance *instance, struct Choice *choice, 
 static bool judge_radau(const struct Instance *instance, struct Choice *choice, double progress) {
   double speed = progress / choice->work, other = choice->taylor_speed;
   if (choice->taylor_rate == 0.0) choice->taylor_rate = choice->rate;
-  if (choice->rate > 0.0) other *= choice->taylor_rate / choice->rate;
+  other *= choice->rate > 0.0 ? choice->taylor_rate / choice->rate : INFINITY;
   if (choice->is_trial) return judge_trial(instance, choice, speed, other);
   choice->next_patience = SHORT_PATIENCE;
   if (choice->windows <= choice->stay || speed > 0.8 * other) return false;
