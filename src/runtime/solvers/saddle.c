@@ -19,7 +19,7 @@ static const double smallest_share = 1e-12;
 static const double weak_share = 1e-3;
 
 /* What is left of a projection, squared, when the rest is rounding. */
-static const double converged = 1e-31;
+static const double rest_of_forces = 1e-31;
 
 static double positive(double value) {
   return value > 0.0 ? value : 0.0;
@@ -111,7 +111,7 @@ void saddle_least_forces(size_t n, const size_t *start, const size_t *column, co
   if (steps == 0) return;
   double square = project_forces(n, start, column, coordinate, m, x, rest), first = square;
   memcpy(direction, rest, n * sizeof *direction);
-  for (; steps > 0 && square > converged * first; steps--) {
+  for (; steps > 0 && square > rest_of_forces * first; steps--) {
     double length = spread_direction(n, start, column, coordinate, m, direction, rest), share = square / length;
     for (size_t i = 0; i < n; i++)
       if (coordinate[i] < 0) x[i] -= share * rest[i];
