@@ -171,7 +171,7 @@ def two_carts():
     return System(q, velocities, T, U, [sp.sympify(f) for f in forces], [u], [M, m, l, k, g])
 
 
-def rolling_disk():
+def rolling_disk_with_rod():
     s, phi, v, omega, m, J, r, mr, Jr, d, slope, g = symbols("s phi v omega m J r mr Jr d slope g")
     hinge_velocity = sp.Matrix([v * cos(slope), -v * sin(slope)])
     rod_velocity = hinge_velocity + omega * d * sp.Matrix([cos(phi), sin(phi)])
@@ -289,7 +289,7 @@ DEFINITIONS = {
     "RelativisticParticle": relativistic_particle,
     "MovingBelt": moving_belt,
     "TwoCarts": two_carts,
-    "RollingDisk": rolling_disk,
+    "RollingDiskWithRod": rolling_disk_with_rod,
     "Functions": functions,
     "CoupledOscillators": coupled_oscillators,
     "Lattice": lattice,
