@@ -223,7 +223,8 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   reader->model->has_forces = true;
   bool has_components = false;
   for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
-  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL))
+  bool is_along_frame = xmlHasProp(node, (const xmlChar *)"in") != NULL;
+  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
   else if (on != NULL && !is_blank(node))
