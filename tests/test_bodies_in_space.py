@@ -274,7 +274,7 @@ def test_robot_arm(open_fmu):
     for _ in range(50):
         q, w, tau = random.uniform(-3, 3, 6), random.uniform(-3, 3, 6), random.uniform(-30, 30, 6)
         masses, gravity, tool = random.uniform(0.2, 9, 6), random.uniform(1, 12), random.uniform(0.1, 0.5)
-        values = dict(zip(names("q[{}]"), q)) | dict(zip(names("w[{}]"), w)) | dict(zip(names("m[{}]"), masses))
+        values = dict(zip(names("q[{}]"), q)) | dict(zip(names("w[{}]"), w)) | dict(zip(names("m{}")[1:], masses[1:]))
         state(instance, values | dict(g=gravity, d6=tool) | dict(zip(names("tau[{}]"), tau)))
         a = np.array(instance.get(*names("der(w[{}])")))
         motor, gear, friction = (np.array(instance.get(*names(pattern))) for pattern in ("Jm[{}]", "n[{}]", "bm[{}]"))
