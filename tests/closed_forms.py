@@ -60,3 +60,51 @@ def kepler_period(mu, r, omega):
 def pericentre_velocity(mu, a, e):
     """The angular velocity at r = a (1 - e)."""
     return np.sqrt(mu * a * (1 - e * e)) / (a - a * e) ** 2
+
+
+def top_cubic(A, C, weight, theta, vphi, vtheta, vpsi):
+    """The roots, from below, of the cubic that is (du/dt)^2 for u = cos(theta) of a heavy top, and its leading coefficient."""
+    spin = C * (vpsi + vphi * mpmath.cos(theta)) / A
+    upright = mpmath.sin(theta) ** 2 * vphi + spin * mpmath.cos(theta)
+    beta = 2 * weight / A
+    alpha = vtheta**2 + mpmath.sin(theta) ** 2 * vphi**2 + beta * mpmath.cos(theta)
+    coefficients = [beta, -alpha - spin**2, 2 * spin * upright - beta, alpha - upright**2]
+    return sorted(mpmath.re(root) for root in mpmath.polyroots(coefficients, maxsteps=200, extraprec=200)), beta
+
+
+@precisely
+def top_nutation(*top):
+    """
+    Least and largest cos(theta), and the period, of a top of inertia A about its tip and C about its axis, whose weight times its
+    lever is given, from a start theta, vphi, vtheta, vpsi.
+    """
+    (low, high, far), beta = top_cubic(*top)
+    return [low, high, 4 * mpmath.ellipk((high - low) / (far - low)) / mpmath.sqrt(beta * (far - low))]
+
+
+@precisely
+def top_cosine(A, C, weight, theta, vphi, vtheta, vpsi, t):
+    """cos(theta) = low + (high - low) sn^2."""
+    (low, high, far), beta = top_cubic(A, C, weight, theta, vphi, vtheta, vpsi)
+    m, rate = (high - low) / (far - low), mpmath.sqrt(beta * (far - low)) / 2
+    share = min(max((mpmath.cos(theta) - low) / (high - low), 0), 1)
+    phase = mpmath.ellipf(mpmath.asin(mpmath.sqrt(share)), m) * (-1 if vtheta > 0 else 1)
+    return low + (high - low) * mpmath.ellipfun("sn", rate * t + phase, m=m) ** 2
+
+
+@precisely
+def free_body_velocity(I1, I2, I3, w1, w2, w3, t):
+    """Angular velocity of a free rigid body along its principal axes, I1 < I2 < I3, by Jacobi's elliptic functions."""
+    twice = I1 * w1**2 + I2 * w2**2 + I3 * w3**2
+    square = (I1 * w1) ** 2 + (I2 * w2) ** 2 + (I3 * w3) ** 2
+    exchanged = square < twice * I2  # then the same formula serves with the first and the last axis exchanged
+    if exchanged:
+        (I1, w1), (I3, w3) = (I3, w3), (I1, w1)
+    low, high = twice * I3 - square, square - twice * I1
+    first, second = mpmath.sqrt(low / (I1 * (I3 - I1))), mpmath.sqrt(low / (I2 * (I3 - I2)))
+    last, rate = mpmath.sqrt(high / (I3 * (I3 - I1))), mpmath.sqrt((I3 - I2) * high / (I1 * I2 * I3))
+    m, sign = (I2 - I1) * low / ((I3 - I2) * high), 1 if w3 >= 0 else -1
+    phase = mpmath.ellipf(mpmath.atan2(w2 / second, sign * w1 / first), m)
+    sn, cn, dn = (mpmath.ellipfun(kind, rate * t + phase, m=m) for kind in ("sn", "cn", "dn"))
+    velocities = [sign * first * cn, second * sn, sign * last * dn]
+    return velocities[::-1] if exchanged else velocities

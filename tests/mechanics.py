@@ -119,3 +119,20 @@ def kinetic(masses_and_positions, q, v):
     return sum(
         m / 2 * sum(velocity(sp.sympify(x), q, v) ** 2 for x in position) for m, position in masses_and_positions
     )
+
+
+def rotation(axis, angle):
+    """Of a vector's components along the turned axes into those along the axes before."""
+    turn = {"x": sp.rot_ccw_axis1, "y": sp.rot_ccw_axis2, "z": sp.rot_ccw_axis3}[axis]
+    return turn(angle)
+
+
+def angular_velocity(turn, q, v):
+    """Along the body's own axes: R^T dR/dt is the matrix of its cross product."""
+    cross = turn.T * turn.applyfunc(lambda element: velocity(element, q, v))
+    return sp.Matrix([cross[2, 1], cross[0, 2], cross[1, 0]])
+
+
+def turning(turn, moments, q, v):
+    """Kinetic energy of a body that turns, by its moments of inertia about its own axes."""
+    return sum(J / 2 * rate**2 for J, rate in zip(moments, angular_velocity(turn, q, v)))

@@ -5,7 +5,7 @@ import functools
 import sympy as sp
 from sympy import cos, sin, symbols
 
-from mechanics import System, kinetic, time, velocity
+from mechanics import System, kinetic, rotation, time, turning, velocity
 
 
 def particle_cartesian():
@@ -171,7 +171,7 @@ def two_carts():
     return System(q, velocities, T, U, [sp.sympify(f) for f in forces], [u], [M, m, l, k, g])
 
 
-def rolling_disk():
+def rolling_disk_with_rod():
     s, phi, v, omega, m, J, r, mr, Jr, d, slope, g = symbols("s phi v omega m J r mr Jr d slope g")
     hinge_velocity = sp.Matrix([v * cos(slope), -v * sin(slope)])
     rod_velocity = hinge_velocity + omega * d * sp.Matrix([cos(phi), sin(phi)])
@@ -263,7 +263,51 @@ def motor_pendulum():
     )
 
 
+def heavy_top():
+    phi, theta, psi, vphi, vtheta, vpsi, m, l, I1, I3, g = symbols("phi theta psi vphi vtheta vpsi m l I1 I3 g")
+    q, v = [phi, theta, psi], [vphi, vtheta, vpsi]
+    turn = rotation("z", phi) * rotation("x", theta) * rotation("z", psi)
+    centre = turn * sp.Matrix([0, 0, l])
+    T = kinetic([(m, centre)], q, v) + turning(turn, [I1, I1, I3], q, v)
+    return System(q, v, T, m * g * centre[2], None, [], [m, l, I1, I3, g], {"rotor": tuple(centre)})
+
+
+def gyrocompass():
+    alpha, phi, nu, omega, J, C, W, latitude, b = symbols("alpha phi nu omega J C W latitude b")
+    q, v = [alpha, phi], [nu, omega]
+    turn = rotation("z", W * time) * rotation("y", -latitude) * rotation("x", alpha) * rotation("z", phi)
+    T = turning(turn, [J, J, C], q, v)
+    return System(q, v, T, sp.Integer(0), [-b * nu, sp.Integer(0)], [], [J, C, W, latitude, b])
+
+
+def flyball_governor():
+    """The springs' lengths from the plane of shaft and arm, which turns with it."""
+    psi, s, Omega, vs = symbols("psi s Omega vs")
+    alpha, nu = symbols("alpha[1] alpha[2]"), symbols("nu[1] nu[2]")
+    rho, L, w, e, h, mBall, k, c, l0, g = symbols("rho L w e h mBall k c l0 g")
+    q, v = [psi, s, *alpha], [Omega, vs, *nu]
+    prism, mSlider = rho * L * w**2, rho * e**3
+    along, across = prism * w**2 / 6, prism * (L**2 + w**2) / 12
+    T = (along + mSlider * e**2 / 6) * Omega**2 / 2 + mSlider * vs**2 / 2
+    U = prism * g * L / 2 + mSlider * g * s
+    Q, positions = [sp.Integer(0)] * 4, {"slider": (0, 0, s)}
+    for i in range(2):
+        outwards = rotation("z", psi + i * sp.pi)
+        place = lambda way: outwards * sp.Matrix([h + way * cos(alpha[i]), 0, L - way * sin(alpha[i])])
+        T += kinetic([(prism, place(L / 2)), (mBall, place(L))], q, v)
+        T += turning(outwards * rotation("y", alpha[i]), [along, across, across], q, v)
+        length = sp.sqrt((L / 2 * cos(alpha[i])) ** 2 + (L - L / 2 * sin(alpha[i]) - s) ** 2)
+        U += prism * g * place(L / 2)[2] + mBall * g * place(L)[2] + k * (length - l0) ** 2 / 2
+        rate = velocity(length, q, v)
+        Q = [Qj - c * rate * sp.diff(length, qj) for Qj, qj in zip(Q, q)]
+        positions[f"ball[{i + 1}]"] = tuple(place(L))
+    return System(q, v, T, U, Q, [], [rho, L, w, e, h, mBall, k, c, l0, g], positions)
+
+
 DEFINITIONS = {
+    "HeavyTop": heavy_top,
+    "Gyrocompass": gyrocompass,
+    "FlyballGovernor": flyball_governor,
     "Motor": motor,
     "MotorPendulum": motor_pendulum,
     "ParticleCartesian": particle_cartesian,
@@ -289,7 +333,7 @@ DEFINITIONS = {
     "RelativisticParticle": relativistic_particle,
     "MovingBelt": moving_belt,
     "TwoCarts": two_carts,
-    "RollingDisk": rolling_disk,
+    "RollingDiskWithRod": rolling_disk_with_rod,
     "Functions": functions,
     "CoupledOscillators": coupled_oscillators,
     "Lattice": lattice,

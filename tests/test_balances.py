@@ -21,7 +21,7 @@ CONSERVATIVE = {
     "DoublePendulum": dict(theta1=2, theta2=-1, omega1=3),
     "ChainPendulum": {"theta[1]": 1.5, "theta[7]": -0.9, "omega[3]": 1, "l": 0.3},
     "SphericalPendulum": dict(theta=1.5, nu=2),
-    "RollingDisk": dict(phi=2, v=1),
+    "RollingDiskWithRod": dict(phi=2, v=1),
 }
 
 

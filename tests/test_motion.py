@@ -214,7 +214,7 @@ REFERENCES = {
     "BeadOnHoop": dict(theta=0.3, omega=0, m=0.4, R=0.7, W=5, g=9),
     "FurutaPendulum": dict(alpha=0, theta=0.4, tau=0.02),
     "TwoCarts": {"x[1]": 0.3, "theta[2]": 0.9, "u": 0.1, "M": 1.5, "k": 20},
-    "RollingDisk": dict(phi=1.0, slope=0.2),
+    "RollingDiskWithRod": dict(phi=1.0, slope=0.2),
 }
 
 

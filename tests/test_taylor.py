@@ -23,7 +23,7 @@ ORDER = 12
 
 SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu.all_names()
            and not name.endswith("Linear")
-           and name not in ("ParticleCartesian", "DampedPendulum", "ElasticPendulum", "Motor", "MotorPendulum", "SeatSuspension")]
+           and name not in ("ParticleCartesian", "DampedPendulum", "ElasticPendulum", "Motor", "MotorPendulum", "SeatSuspension", "FlyballGovernor", "Gyrocompass")]
 
 
 def series_of(instance):

@@ -44,7 +44,7 @@ def flyball_governor():
     return System(list(q), list(v), T, U + k * (length - a) ** 2, [Q[0] + tau, *Q[1:]], [tau], [m, mArm, mSlider, J, L, a, k, c, g])
 
 
-DEFINITIONS = {"VanDerPol": van_der_pol, "FlyballGovernor": flyball_governor}
+DEFINITIONS = {"VanDerPol": van_der_pol, "StiffGovernor": flyball_governor}
 
 
 @dataclass
@@ -109,7 +109,7 @@ PROBLEMS = [
     *(elastic(k, ratio) for k in (1e4, 1e6, 1e8, 1e10) for ratio in (0.01, 0.1, 1.0, 10.0)),
     *map(damped, (1e2, 1e4, 1e6, 1e8)),
     *map(relaxation, (1e2, 1e4, 1e6)),
-    Problem("FlyballGovernor", "FlyballGovernor", 10.0, 200, input=("tau", 5.0)),
+    Problem("StiffGovernor", "StiffGovernor", 10.0, 200, input=("tau", 5.0)),
 ]
 if (ROOT / "fmu" / "Rope").exists():
     PROBLEMS.append(Problem("Rope", "Rope", 2.0, 200, tightest=1e-10))
