@@ -21,12 +21,12 @@ struct Reader {
   struct Model *model;
   struct Scope *scope;
   struct Definitions *definitions;
-  size_t started_coordinates; /* those whose start values were read */
+  size_t started_coordinates;   /* those whose start values were read */
   struct Names *bodies;         /* name -> struct NamedBody */
   struct Names *frames;         /* name -> size_t, its place among the model's */
   struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
-  struct Source *source;      /* the file being read */
-  struct Includes *includes;  /* all files that are included */
+  struct Source *source;        /* the file being read */
+  struct Includes *includes;    /* all files that are included */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;
