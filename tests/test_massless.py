@@ -178,6 +178,17 @@ def test_two_angles_of_one_motion(open_fmu):
         assert instance.get("given.force") == pytest.approx(0, abs=1e-9)
 
 
+def test_a_motion_of_three_coordinates_without_inertia(tmp_path):
+    """Masses at a + b and b + c do not feel (1, -1, 1), which a + b + c does."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Three"><coordinate name="a" velocity="va"/><coordinate name="b" velocity="vb"/>'
+        '<coordinate name="c" velocity="vc"/><particle mass="1" x="a + b" y="b + c"/>'
+        '<constraint name="given">a + b + c - 0.3*sin(time)</constraint></system>'
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
 def test_model_exchange(open_fmu):
     instance = open_fmu("Dumbbell", kind=FMU2Model)
     instance.initialize()

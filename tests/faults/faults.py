@@ -280,7 +280,7 @@ FAULTS = [
     ("src/compiler/program/least_forces.c", "if (along[k] == ZERO) continue;", "if (true) continue;", pytest("test_redundant", "directional")),
     ("src/compiler/mechanics/massless.c", "matrices->is_held[row] = has_changed = true;", "matrices->is_held[row] = has_changed = row % 2 == 0;",
      pytest("test_massless", "slider_crank or dumbbell")),
-    ("src/compiler/mechanics/massless.c", "z[j] -= m[k * n + j] * z[k];", "z[j] -= 0.0;", pytest("test_massless", "two_angles")),
+    ("src/compiler/mechanics/massless.c", "z[j] -= m[k * n + j] * z[k];", "z[j] -= 0.0;", pytest("test_massless", "three_coordinates")),
     ("src/runtime/guides.c", "order < guide->rates ? order : guide->rates;", "1;", pytest("test_moved_constraints", "constant_acceleration")),
     ("src/runtime/solvers/projection.c", "if (has_jumped(instance)) return false;", "", pytest("test_moved_constraints", "jumps")),
     ("src/compiler/read/surface.c", "for (size_t i = 0; i < count; i++) surface->along_both[i] = (surface->along_both[i] + other[i]) / 2;", "(void)other;",
