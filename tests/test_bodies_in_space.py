@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 import fmu
 from closed_forms import free_body_velocity, pendulum_angle, top_cosine, top_nutation
 from fmu import DISCARD, ERROR, build_systems
-from mechanics import rotation, time, turning, velocity
+from mechanics import rotation, turning, velocity
 from test_constraints import Constrained
 
 # One rigid body on a fixed point, written in three ways; the parameters are those of three particles without a rod to the point.
@@ -416,7 +416,8 @@ def test_governor_without_width_is_that_by_particles(open_fmu):
     rho = 0.3 / w**2
     e = (slider / rho) ** (1 / 3)
     J = (0.3 * w**2 + slider * e**2) / 6
-    ours = open_fmu("FlyballGovernor").initialize({"rho": rho, "w": w, "e": e, "h": 0.0, "alpha[1]": np.pi / 3, "alpha[2]": np.pi / 3, "s": 1 - np.cos(np.pi / 6)}, 1e-10)
+    values = {"rho": rho, "w": w, "e": e, "h": 0.0, "alpha[1]": np.pi / 3, "alpha[2]": np.pi / 3, "s": 1 - np.cos(np.pi / 6)}
+    ours = open_fmu("FlyballGovernor").initialize(values, 1e-10)
     theirs = open_fmu("StiffGovernor").initialize(dict(J=J), 1e-10)
     for _ in range(20):
         ours.step(0.1)
