@@ -349,6 +349,16 @@ def test_message(text, message, tmp_path):
     assert result.stderr.count("error") <= 2, result.stderr
 
 
+@pytest.mark.parametrize("moments, told", [('Ixx="1" Iyy="1" Izz="2.3"', True), ('Ixx="1" Iyy="1" Izz="2"', False), ('Izz="1"', False),
+                                           ('Ixx="1" Iyy="1" Izz="1" Ixy="0.7"', True), ("", False)])  # fmt: skip
+def test_moments_of_no_body_are_told(moments, told, tmp_path):
+    """A principal moment is at most the sum of the other two: 1 + 0.7 is more than 1 - 0.7 + 1."""
+    (tmp_path / "system.xml").write_text(f'''{HEAD}<frame name="f"><rotate axis="z" angle="q"/></frame>
+      <particle mass="1" x="p*sin(q)" y="p*cos(q)"/><body name="b" in="f" mass="0" {moments}/></system>''')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and ("the moments of inertia of 'b' are those of no body" in result.stderr) == told, result.stderr
+
+
 def test_pole_of_euler_angles_is_refused(open_fmu):
     """Where two axes of rotation fall together."""
     instance = open_fmu("EulerPole")

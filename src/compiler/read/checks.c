@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "read/rigid_body.h"
 
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
@@ -73,9 +74,26 @@ static void warn_of_displacements(const struct Reader *reader) {
 
 static void warn_of_inertia(const struct Reader *reader, const struct Body *body, const char *what, Node inertia,
                             const double *values) {
-  if (graph_is_constant(reader->model->graph, inertia) ? values[inertia] >= 0 : values[inertia] > 0) return;
+  /* One in a frame may be all moment of inertia, as the first link of a robot. */
+  bool may_vanish = graph_is_constant(reader->model->graph, inertia) || body->is_in_frame;
+  if (may_vanish ? values[inertia] >= 0 : values[inertia] > 0) return;
   report_warning(reader->diagnostics, body->line, "the %s of '%s' is %g at the start values; expected a positive one",
                  what, body->name, values[inertia]);
+}
+
+/* Of one that turns about one axis alone, authors give the moment about that. */
+static void warn_of_tensor(const struct Reader *reader, const struct Body *body, const double *values) {
+  struct Matrix3 tensor;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) tensor.at[i][j] = values[body->tensor.row[i].along[j]];
+  for (int i = 0; i < 3; i++)
+    if (body->tensor.row[i].along[i] == ZERO) return;
+  if (tensor_is_of_a_body(&tensor)) return;
+  report_warning(
+      reader->diagnostics, body->line,
+      "the moments of inertia of '%s' are those of no body at the start values: a principal moment is negative, "
+      "or larger than the other two together; expected others",
+      body->name);
 }
 
 static void warn_at_start(const struct Reader *reader) {
@@ -85,6 +103,7 @@ static void warn_at_start(const struct Reader *reader) {
     const struct Body *body = &model->bodies[i];
     warn_of_inertia(reader, body, "mass", body->mass.node, values);
     warn_of_inertia(reader, body, "inertia", body->inertia.node, values);
+    if (body->is_in_frame) warn_of_tensor(reader, body, values);
   }
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
   free(values);
