@@ -97,7 +97,7 @@ struct Model {
   struct ReferenceFrame *frames;
   size_t frame_count;
   struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
-  struct Vector gravity;     /* m/s2: the direction of what <gravity> gives, along the base's axes */
+  struct Vector gravity;      /* m/s2: the direction of what <gravity> gives, along the base's axes */
   struct Stillness *stillnesses;
   size_t stillness_count;
   Node *accelerations; /* the symbol of each coordinate's acceleration */

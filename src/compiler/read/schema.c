@@ -179,7 +179,8 @@ static void report_root(const struct Check *check, xmlNodePtr root) {
                  (const char *)root->ns->href);
   else
     report_error(check->diagnostics, xmlGetLineNo(root),
-                 "the file begins with <%s>; expected <system name=\"...\">, <linearization of=\"...\" name=\"...\"> or <robot name=\"...\">",
+                 "the file begins with <%s>; expected <system name=\"...\">, <linearization of=\"...\" name=\"...\"> "
+                 "or <robot name=\"...\">",
                  name);
 }
 
