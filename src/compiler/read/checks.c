@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "memory.h"
 #include "read/rigid_body.h"
@@ -96,6 +97,21 @@ static void warn_of_tensor(const struct Reader *reader, const struct Body *body,
       body->name);
 }
 
+/* The first stillnesses are those of quaternions, whose norm is then 0 where the constraint is -1. */
+static void check_quaternions(const struct Reader *reader, const double *values) {
+  const struct Model *model = reader->model;
+  for (size_t i = 0; i < model->constraints.count; i++) {
+    const struct Variable *constraint = &model->constraints.items[i];
+    for (size_t k = 0; k < model->stillness_count; k++)
+      if (model->stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
+        report_error(
+            reader->diagnostics, constraint->line,
+            "the quaternion of %s is 0 at the start values; expected one that turns, such as 1 0 0 0: start=\"1\" "
+            "of the first coordinate",
+            constraint->description + strlen("norm of the quaternion of "));
+  }
+}
+
 static void warn_at_start(const struct Reader *reader) {
   const struct Model *model = reader->model;
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
@@ -105,6 +121,7 @@ static void warn_at_start(const struct Reader *reader) {
     warn_of_inertia(reader, body, "inertia", body->inertia.node, values);
     if (body->is_in_frame) warn_of_tensor(reader, body, values);
   }
+  check_quaternions(reader, values);
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
   free(values);
   free(symbols);

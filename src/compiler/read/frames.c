@@ -123,9 +123,17 @@ static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attr
   return is_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
 }
 
+/* What was defined and is no frame has failed, which is told. */
+static bool is_defined(const struct Reader *reader, const char *name) {
+  char *whole = whole_name(true, name);
+  bool defined = definitions_contain(reader->definitions, whole);
+  free(whole);
+  return defined;
+}
+
 static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Similar similar = {.wanted = name};
-  if (definitions_are_waiting(reader->definitions)) return;
+  if (definitions_are_waiting(reader->definitions) || is_defined(reader, name)) return;
   for (size_t i = 0; i < reader->frames->capacity; i++)
     if (reader->frames->places[i].text != NULL) similar_consider(&similar, reader->frames->places[i].text);
   if (similar.best != NULL)
@@ -140,7 +148,7 @@ const struct ReferenceFrame *find_frame(const struct Reader *reader, const char 
   const size_t *place = names_find(reader->frames, name);
   if (place != NULL) return &reader->model->frames[*place];
   const struct SpatialPoint *point = names_find(reader->spatial_points, name);
-  return point != NULL ? &reader->model->frames[point->frame] : NULL;
+  return point != NULL && point->is_body ? &reader->model->frames[point->frame] : NULL;
 }
 
 const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -240,6 +248,7 @@ static void read_point(struct Reader *reader, xmlNodePtr node, const char *name)
   struct SpatialPoint *point = allocate(1, sizeof *point);
   struct Vector rate;
   read_offset(reader, node, &point->offset, &rate);
+  point->is_body = is_element(node, "body");
   point->frame = (size_t)(frame - reader->model->frames);
   point->position = position_at(graph, &frame->pose, point->offset);
   point->velocity = velocity_at(graph, &frame->pose, point->offset, rate);

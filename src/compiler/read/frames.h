@@ -9,6 +9,7 @@
 
 /* A point, or the centre of mass of a body, in a frame; all of it as functions of displacements too. */
 struct SpatialPoint {
+  bool is_body;           /* which turns, so that it may stand for its frame */
   size_t frame;           /* among the model's */
   struct Vector offset;   /* along the frame's axes */
   struct Vector position; /* along the base's */
@@ -41,7 +42,7 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name);
 /* What was read under the name: a point, body or particle in a frame, or the origin of a frame; false for none. */
 bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point);
 
-/* The frame of this name, also that of a planar body, or of what is placed in a frame; NULL where there is none. */
+/* The frame of this name, also that of a planar body, or of one that is placed in a frame; NULL where there is none. */
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name);
 
 /*

@@ -7,6 +7,7 @@
 #include "memory.h"
 #include "read/names.h"
 #include "read/similar.h"
+#include "read/unknown_names.h"
 
 /* Links or joints by their names in the file, and by the symbols that are made of these. */
 struct Register {
@@ -52,10 +53,11 @@ char *robot_symbol(const char *name) {
 
 /* The same for what is in a system, in which there are other names for each robot. */
 static char *symbol_in_system(const char *name) {
-  static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity"};
-  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
-    if (strcmp(name, taken[i]) == 0) return format_text("%s_", name);
-  return robot_symbol(name);
+  static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity", "pi", "time"};
+  bool is_taken = find_function(name) < OPERATION_COUNT;
+  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) is_taken |= strcmp(name, taken[i]) == 0;
+  for (size_t i = 0; special_functions[i] != NULL; i++) is_taken |= strcmp(name, special_functions[i]) == 0;
+  return is_taken ? format_text("%s_", name) : robot_symbol(name);
 }
 
 /* The entry that has the text already; else NULL, and it has a new one. */
