@@ -15,7 +15,7 @@ BALL = '<inertia ixx="0.004" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="0.004"/>'
 
 # Each joint type but floating, origins that turn, axes between those of coordinates, a part that is fixed to a moving one, and joints
 # that mimic others: a turn a slide, and through another.
-ARM = f"""<robot name="RobotArm">
+ARM = f"""<robot name="RobotHand">
   <link name="world"/>
   <link name="stand"><inertial><mass value="7"/>{TENSOR}</inertial></link>
   <joint name="on floor" type="fixed"><origin xyz="0.1 0.2 0.3" rpy="0.1 0 1.57079632679"/><parent link="world"/><child link="stand"/></joint>
@@ -94,7 +94,7 @@ PAIR = """<system name="RobotPair" description="two of them, which a spring betw
   <force on="right.tool" x="-k*stretch"/>
 </system>
 """
-SYSTEMS = {"RobotArm": ARM, "RobotCart": CART, "RobotLosses": LOSSES, "RobotRotor": ROTOR, "RobotFlying": FLYING,
+SYSTEMS = {"RobotHand": ARM, "RobotCart": CART, "RobotLosses": LOSSES, "RobotRotor": ROTOR, "RobotFlying": FLYING,
            "RobotFree": FREE, "RobotRod": ROD, "RobotPair": PAIR}  # fmt: skip
 
 
@@ -109,7 +109,7 @@ def random_state(random, coordinates, inputs):
 
 
 MOTORS = {
-    "RobotArm": (["shoulder", "slide_1", "wheel"], ["shoulder_torque", "slide_1_force", "wheel_torque"]),
+    "RobotHand": (["shoulder", "slide_1", "wheel"], ["shoulder_torque", "slide_1_force", "wheel_torque"]),
     "RobotCart": (["roll_x", "roll_y", "roll_angle", "hinge"],
                   ["roll_x_force", "roll_y_force", "roll_angle_torque", "hinge_torque"]),
 }  # fmt: skip
@@ -135,8 +135,8 @@ def test_accelerations(name, open_fmu):
 
 def test_places(open_fmu):
     """Origins and axes of frames, also of what is fixed, and the positions of what mimics."""
-    robot, instance = Robot(ARM), open_fmu("RobotArm")
-    coordinates, inputs = MOTORS["RobotArm"]
+    robot, instance = Robot(ARM), open_fmu("RobotHand")
+    coordinates, inputs = MOTORS["RobotHand"]
     values = random_state(np.random.default_rng(2), coordinates, inputs)
     instance.initialize(values)
     for link, (position, rotation) in robot.poses([mp.mpf(values[c]) for c in coordinates]).items():
@@ -147,11 +147,11 @@ def test_places(open_fmu):
 
 
 def test_limits(open_fmu):
-    instance = open_fmu("RobotArm")
+    instance = open_fmu("RobotHand")
     for angle, beyond in [(-1.5, -0.3), (-1.2, 0), (0.3, 0), (0.8, 0), (1, 0.2)]:
         instance.reset().initialize({"shoulder": angle})
         assert instance.get("shoulder_beyond") == pytest.approx(beyond, abs=1e-15)
-    outputs = fmu.names_of("RobotArm", "output")
+    outputs = fmu.names_of("RobotHand", "output")
     assert [name for name in outputs if name.endswith("_beyond")] == ["shoulder_beyond"]
     # The missing one of two limits is 0.
     other = open_fmu("RobotCart").initialize({"hinge": 0.25})
@@ -201,7 +201,7 @@ def test_pair(open_fmu):
 
 
 def test_energy_is_kept(open_fmu):
-    instance = open_fmu("RobotArm").initialize({"shoulder": 0.5, "wheel_velocity": 2})
+    instance = open_fmu("RobotHand").initialize({"shoulder": 0.5, "wheel_velocity": 2})
     before = instance.get("totalEnergy")
     instance.step(3)
     assert instance.get("totalEnergy") == pytest.approx(before, rel=1e-7)
@@ -211,7 +211,14 @@ def test_names_of_joints_and_links_are_apart():
     """A joint may be called like a link, and either like what each robot has anyway."""
     names = {v.name for v in fmu.description("RobotCart").modelVariables}
     assert {"base_.x", "cart.x"} <= names
-    assert {"wheel", "wheel.x"} <= {v.name for v in fmu.description("RobotArm").modelVariables}
+    assert {"wheel", "wheel.x"} <= {v.name for v in fmu.description("RobotHand").modelVariables}
+
+
+def test_joint_that_is_called_like_a_word_of_the_language(tmp_path):
+    (tmp_path / "rod.urdf").write_text(ROD.replace('"hinge"', '"sin"'))
+    result = fmu.lagc("rod.urdf", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert 'name="sin_"' in (tmp_path / "out" / "modelDescription.xml").read_text()
 
 
 def test_a_file_of_any_name_makes_an_fmu(tmp_path):
