@@ -70,10 +70,11 @@ void read_constraint(struct Reader *reader, xmlNodePtr node) {
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
   if (reader->diagnostics->errors > 0) return;
   if (!graph_depends_on(graph, value.node, COORDINATE) && !graph_depends_on(graph, value.node, VELOCITY))
-    report_error(
-        reader->diagnostics, constraint->line,
-        "the constraint '%s' holds no coordinate; expected an expression of coordinates that is 0 at all times",
-        constraint->name);
+    report_error(reader->diagnostics, constraint->line,
+                 "the constraint '%s' holds no coordinate; expected an expression of coordinates that is 0 at all "
+                 "times, or none "
+                 "where it is 0 by itself",
+                 constraint->name);
   else if (!is_linear_in_velocities(model->graph, value.node))
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' is not linear in the velocities; expected one of coordinates and time, or one "
