@@ -25,7 +25,7 @@ FLAGS = ["-O3", "-DNDEBUG", "-std=c++17", "-DPINOCCHIO_WITH_URDFDOM", "-DBOOST_M
          "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]  # fmt: skip
 LIBRARIES = ["-lpinocchio_default", "-lpinocchio_parsers", "-lurdfdom_model"]
 NOTE = ("Nanoseconds of the processor's time, medians of rounds in which the programs take turns; the ratio is the median of the rounds' ratios. The FMU's: "
-        "derivatives() of its generated C, with gcc -O2 as in the FMU, which gives the derivatives of positions, too. Pinocchio's: aba() of "
+        "derivatives() of its generated C, with gcc -O2 as in the FMU. Pinocchio's: aba() of "
         "its release for Python, from C++ with -O3, in the faster of its two conventions. It has a joint of its own for the finger of the Panda that mimics the other.")  # fmt: skip
 HEADER = ["robot", "joints", "FMU [ns]", "Pinocchio [ns]", "Pinocchio / FMU"]
 
@@ -103,9 +103,9 @@ def row(name, text, times):
     return [name, text, round(1e9 * median(ours)), theirs * 1e9, ratio]
 
 
-def table_of(quick):
+def rows(quick):
     """(rows, sentences about what is missing)."""
-    sentences, rows = [], []
+    sentences, lines = [], []
     try:
         robots = prefix() / "share" / "example-robot-data" / "robots"
         if not robots.exists():
@@ -119,5 +119,5 @@ def table_of(quick):
     for name, text, path, base in ROBOTS[:1] if quick else ROBOTS:
         programs = [[our_program(name, robots / path, base)]]
         programs += [[pinocchio, robots / path, base]] if pinocchio else []
-        rows.append(row(name, text, measured(programs, 5 if quick else 20)))
-    return rows, sentences
+        lines.append(row(name, text, measured(programs, 5 if quick else 20)))
+    return lines, sentences

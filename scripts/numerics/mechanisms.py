@@ -24,13 +24,16 @@ NOTES = [
     "the CSV files. An error is the largest at 100 communication points (Andrews' mechanism: at the end), relative where values are above 1.",
     "The FMU does 100 communication steps in a C program. exudyn and MuJoCo get one call from Python, and are recorded in another run. "
     "The processor time counts. Models are built, and the FMU is initialized, before that.",
-    "exudyn has planar bodies with revolute joints (a distance for the pendulum), modified Newton, one thread, and sparse matrices for the large "
-    "system; its explicit methods refuse constraints. MuJoCo has a tree of hinges, so that the pendulum has one angle and no constraint, and "
+    "exudyn has bodies with joints as constraints (a distance for the pendulum; in space, Euler parameters), modified Newton, one thread, and sparse "
+    "matrices for the large system; its explicit methods refuse constraints, and its joints have no inertia of a drive, which the robot arm needs. "
+    "Of Bricard's mechanism it gets the constraints without the redundant one. MuJoCo has a tree of joints, so that the pendulum has one angle and no constraint, and "
     "closes loops with soft constraints, as stiff as it allows: a time constant of two steps, an impedance of 0.9999. That softness is in its errors.",
     "The drifts that IFToMM's library of benchmark problems asks for are quoted without its problem sheets at hand. The authors' earlier "
-    "specification of A01 (lim.ii.udc.es/mbsbenchmark, 2005) asks for positions to 0.1 and 0.001 over 2000 s. A03 has no such figure.",
+    "specification of A01 (lim.ii.udc.es/mbsbenchmark, 2005) asks for positions to 0.1 and 0.001 over 2000 s. A03 has no such figure, and that of A05 is not known here.",
+    "The reference of the governor is checked as those of stiff systems are. That of the robot arm is Pinocchio's algorithm with SciPy's method of order 8, "
+    "of the links that MuJoCo gets.",
     "The published state of Andrews' mechanism is good to about 1e-10, where all our tolerances and both methods end up.",
-    "inf: never gets there with the steps that end in ten seconds. –: not installed, or the program has no such constraint.",
+    "inf: never gets there with the steps that end in ten seconds. –: not installed, or the program cannot express it.",
 ]
 PROBLEMS = [*PLANAR, *SPATIAL]
 SOLVERS = ["taylor", "radau"]  # each has a build of all systems

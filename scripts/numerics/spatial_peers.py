@@ -39,7 +39,7 @@ class Exudyn(mechanism_peers.Exudyn):
         for spring in self.model.springs:
             (one, begin), (other, end) = spring.ends
             places = [list(point - self.model.links[link].centre) for link, point in spring.ends]
-            self.system.CreateSpringDamper(bodyNumbers=[self.body(one), self.body(other)], localPosition0=places[0], localPosition1=places[1],
+            self.system.CreateSpringDamper(itemNumbers=[self.body(one), self.body(other)], localPosition0=places[0], localPosition1=places[1],
                                            referenceLength=spring.length, stiffness=spring.stiffness, damping=spring.damping)  # fmt: skip
         kinds = exudyn.OutputVariableType
         kinds = [kinds.Position, kinds.RotationMatrix, kinds.Velocity, kinds.AngularVelocityLocal]
@@ -50,7 +50,7 @@ class Exudyn(mechanism_peers.Exudyn):
         return self.ground if link is GROUND else self.bodies[link]["bodyNumber"]
 
     def join(self, link, other, point, axes, constrained):
-        self.system.CreateGenericJoint(bodyNumbers=[self.body(other), self.body(link)], position=list(point), rotationMatrixAxes=axes,
+        self.system.CreateGenericJoint(itemNumbers=[self.body(other), self.body(link)], position=list(point), rotationMatrixAxes=axes,
                                        constrainedAxes=list(constrained), useGlobalFrame=True, show=False)  # fmt: skip
 
     def recorded(self, points):
