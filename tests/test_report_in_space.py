@@ -9,7 +9,7 @@ import pytest
 import fmu
 from numerics import accelerations, driver
 from numerics.accelerations import ROBOTS, Missing
-from numerics.mechanisms import METHODS, first_run
+from numerics.mechanisms import METHODS, Fmu, Peer, first_run
 from numerics.spatial_problems import PROBLEMS
 
 BRICARD, GOVERNOR, TOP, FREE_BODY, ARM = PROBLEMS
@@ -83,6 +83,15 @@ def test_peers_converge(peer, problem, measure, rough, fine, governor):
         pytest.skip(f"{peer} is not installed")
     rough, fine = (first_run(problem, peer, steps)[1].measured(measure) for steps in (rough, fine))
     assert fine < 0.3 * rough and fine < 0.03
+
+
+@pytest.mark.parametrize("peer", METHODS[2:5])
+def test_bricard_in_other_programs(peer):
+    """Its energy would be kept without a constraint, too: the third joint is where that of the FMU is."""
+    if importlib.util.find_spec(peer.split()[0].lower()) is None:
+        pytest.skip(f"{peer} is not installed")
+    (_, ours), (_, theirs) = Fmu(BRICARD, 1e-10, "taylor", 60).record(), Peer(BRICARD, 2000, peer).record()
+    np.testing.assert_allclose(theirs, ours, atol=1e-3)
 
 
 def test_row_of_accelerations():

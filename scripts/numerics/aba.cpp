@@ -11,7 +11,9 @@
 #include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/parsers/urdf.hpp>
 
-static double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+static double seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 static double time_of(const pinocchio::Model &model, pinocchio::Convention convention, long count) {
   pinocchio::Data data(model);
@@ -29,9 +31,11 @@ static double time_of(const pinocchio::Model &model, pinocchio::Convention conve
 int main(int words, char **word) {
   if (words != 4) return 2;
   pinocchio::Model model;
-  if (std::strcmp(word[2], "floating") == 0) pinocchio::urdf::buildModel(word[1], pinocchio::JointModelFreeFlyer(), model);
+  if (std::strcmp(word[2], "floating") == 0)
+    pinocchio::urdf::buildModel(word[1], pinocchio::JointModelFreeFlyer(), model);
   else pinocchio::urdf::buildModel(word[1], model);
   const long count = std::atol(word[3]);
-  std::printf("%g %g\n", time_of(model, pinocchio::Convention::WORLD, count), time_of(model, pinocchio::Convention::LOCAL, count));
+  std::printf("%g %g\n", time_of(model, pinocchio::Convention::WORLD, count),
+              time_of(model, pinocchio::Convention::LOCAL, count));
   return 0;
 }
