@@ -38,7 +38,7 @@ NOTES = [
 PROBLEMS = [*PLANAR, *SPATIAL]
 SOLVERS = ["taylor", "radau"]  # each has a build of all systems
 METHODS = [*SOLVERS, *PEERS]
-TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10]
+TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12]
 PATIENCE = 10.0  # seconds of a run; longer ones are not tried
 LONG = 0.5  # seconds, from which on two rounds are enough
 
