@@ -96,7 +96,9 @@ def test_a_solver_that_does_not_come_to_the_end_of_a_reference(monkeypatch, tmp_
 def test_a_mechanism_that_fails(monkeypatch):
     monkeypatch.setattr(mechanisms, "PROBLEMS", MECHANISMS[:1])
     monkeypatch.setattr(mechanisms, "runners_of", fail)
-    assert "Left out, pendulum in x and y (A01)" in report.mechanisms_section(True, lambda what: None).content
+    monkeypatch.setattr(report.accelerations, "rows", fail)
+    content = report.mechanisms_section(True, lambda what: None).content
+    assert "Left out, pendulum in x and y (A01)" in content and "Left out, one evaluation of the accelerations of a robot: it did not" in content
 
 
 def test_peers_and_references_that_fail(monkeypatch):

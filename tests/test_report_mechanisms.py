@@ -30,14 +30,14 @@ def start_of(planar):
 def test_energy_at_the_start(problem, open_fmu):
     """41 pillars turn about their feet, 40 beams move along; all stand up. The pendulum rests at the height of its pivot."""
     expected = 41 * (1 / 6 + 9.81 / 2) + 40 * (1 / 2 + 9.81) if problem is FOUR_BARS else 0.0
-    assert problem.start_energy() == pytest.approx(expected, rel=1e-14)
+    assert problem.model.start_energy() == pytest.approx(expected, rel=1e-14)
     assert open_fmu(problem.system).initialize().get("totalEnergy") == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("problem", [PENDULUM, FOUR_BARS, SQUEEZER], ids=lambda problem: problem.system)
 def test_bodies_move_with_their_joints(problem):
     """At the start both sides of each joint have the same velocity."""
-    planar = problem.planar
+    planar = problem.model
     for joint in planar.joints:
         velocities = []
         for number in (joint.body, joint.other):
@@ -50,7 +50,7 @@ def test_bodies_move_with_their_joints(problem):
 def test_lengths_of_the_squeezer():
     """Between its joints, of which the knee is placed by the crank alone: the start values close all three loops."""
     value = fmu.start_values("AndrewsSqueezer")
-    hinge, tip, b, a, _, left, right, knee, *_ = (joint.point for joint in SQUEEZER.planar.joints)
+    hinge, tip, b, a, _, left, right, knee, *_ = (joint.point for joint in SQUEEZER.model.joints)
     sides = dict(rr=(hinge, tip), d=(tip, knee), ss=(b, knee), e=(left, knee), zf=(right, knee), zt=(a, left), u=(a, right))
     for name, (one, other) in sides.items():
         assert np.linalg.norm(one - other) == pytest.approx(value[name], rel=1e-12)
@@ -63,9 +63,9 @@ def test_errors():
     angles[37, 1] += 1e-6
     assert PENDULUM.error(angles) == pytest.approx(1e-6, rel=1e-6)
     assert math.isnan(FOUR_BARS.error(np.zeros((100, 0))))
-    positions, velocities = start_of(FOUR_BARS.planar)
+    positions, velocities = start_of(FOUR_BARS.model)
     positions[1] += 0.01
-    assert FOUR_BARS.planar.energy(positions, velocities) - FOUR_BARS.start_energy() == pytest.approx(0.0981, rel=1e-9)
+    assert FOUR_BARS.model.energy(positions, velocities) - FOUR_BARS.model.start_energy() == pytest.approx(0.0981, rel=1e-9)
 
 
 def test_angles_of_the_squeezer():
@@ -102,10 +102,12 @@ def test_section(monkeypatch, tmp_path):
     monkeypatch.setattr(mechanisms, "PROBLEMS", [PENDULUM, KNIFE_EDGE])
     monkeypatch.setattr(mechanisms, "settings_of", lambda problem, method, quick: [1e-4, 1e-8] if method in mechanisms.SOLVERS else [100, 200])
     steps = []
+    monkeypatch.setattr(report.accelerations, "rows", lambda quick: ([["UR5", "6 axes", 500, math.nan, math.nan]], ["No Pinocchio."]))
     sentences, content, _ = report.mechanisms_section(True, steps.append)
-    assert len(steps) == 2 and len(sentences) == 1 and "a drift of the energy of 5e-05 J" in sentences[0]
-    assert content.count("<svg") == 3 and content.count("<table>") == 2 and "knife edge on a slope" in content
-    assert (tmp_path / "mechanisms.csv").exists() and (tmp_path / "mechanism_ratios.csv").exists()
+    assert len(steps) == 3 and len(sentences) == 1 and "a drift of the energy of 5e-05 J" in sentences[0]
+    assert content.count("<svg") == 3 and content.count("<table>") == 3 and "knife edge on a slope" in content
+    assert "<p>No Pinocchio.</p>" in content and "<td>UR5</td>" in content
+    assert all((tmp_path / name).exists() for name in ("mechanisms.csv", "mechanism_ratios.csv", "accelerations.csv"))
 
 
 def test_ratios():

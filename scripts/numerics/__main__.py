@@ -10,7 +10,7 @@ from typing import NamedTuple
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
-from numerics import energy, footprint, mechanisms, stiff, work_precision
+from numerics import accelerations, energy, footprint, mechanisms, stiff, work_precision
 from numerics.failures import failure
 from numerics.peers import PEERS
 from numerics.plots import energy_plot, legend, mechanism_legend, mechanism_plot, stiff_legend, stiff_plot, work_precision_plot
@@ -28,7 +28,7 @@ class Section(NamedTuple):
 
 def machine_section(quick, progress):
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
-    packages = ["fmpy", "scipy", "heyoka", "mujoco", "exudyn", "sympy", "python-flint"]
+    packages = ["fmpy", "scipy", "heyoka", "mujoco", "exudyn", "pin", "sympy", "python-flint"]
     versions = []
     for package in packages:
         try:
@@ -119,7 +119,7 @@ def mechanisms_section(quick, progress):
     sentences = mechanisms.summary(rows)
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
     plots = ""
-    for problem in mechanisms.PROBLEMS:
+    for problem in mechanisms.chosen(quick):
         if problem.system in failures:
             plots += paragraphs([failures[problem.system]])
             continue
@@ -130,7 +130,18 @@ def mechanisms_section(quick, progress):
     tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
               table(mechanisms.HEADER[level][:4] + mechanisms.HEADER[ratios], [row[level][:4] + row[ratios] for row in rows])]  # fmt: skip
     content = paragraphs([*sentences, *absent, *mechanisms.NOTES]) + mechanism_legend() + f'<div class="plots">{plots}</div>'
-    return Section(sentences, content + "".join(tables))
+    return Section(sentences, content + "".join(tables) + accelerations_part(quick, progress))
+
+
+def accelerations_part(quick, progress):
+    title = "One evaluation of the accelerations of a robot"
+    try:
+        rows, missing = accelerations.rows(quick)
+    except Exception as error:
+        rows, missing = [], [failure(title.lower(), error)]
+    progress("accelerations of robots")
+    write_csv(FOLDER / "accelerations.csv", accelerations.HEADER, rows)
+    return f"<h3>{title}</h3>" + paragraphs([*missing, *([accelerations.NOTE] if rows else [])]) + (table(accelerations.HEADER, rows) if rows else "")
 
 
 def references_section(quick, progress):
@@ -196,7 +207,7 @@ def main(words=None):
     parser.add_argument("--quick", action="store_true", help="five systems, few tolerances: two minutes")
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
-    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.PROBLEMS)
+    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 1
     progress, sections = Progress(count + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
         sections[title] = attempt(title, section, quick, progress)

@@ -16,21 +16,25 @@ class Exudyn:
         import exudyn
         import exudyn.itemInterface as items
 
-        self.problem, self.planar, self.items = problem, problem.planar, items
+        self.problem, self.model, self.items = problem, problem.model, items
         container = exudyn.SystemContainer()
         self.system = container.AddSystem()
-        self.ground = self.system.AddObject(items.ObjectGround())
-        self.bodies, nodes = zip(*[self.add_body(body) for body in self.planar.bodies])
-        self.sensors = [[self.system.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True))
-                         for kind in (exudyn.OutputVariableType.Coordinates, exudyn.OutputVariableType.Coordinates_t)]
-                        for node in nodes]  # fmt: skip
-        for joint in self.planar.joints:
-            self.add_joint(joint)
-        self.add_motor_and_spring()
-        self.add_drag()
+        self.build(exudyn)
         self.system.Assemble()
         self.solver = getattr(exudyn.DynamicSolverType, solver)
         self.settings = self.fixed_steps(exudyn, steps)
+
+    def build(self, exudyn):
+        items = self.items
+        self.ground = self.system.AddObject(items.ObjectGround())
+        self.bodies, nodes = zip(*[self.add_body(body) for body in self.model.bodies])
+        self.sensors = [[self.system.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True))
+                         for kind in (exudyn.OutputVariableType.Coordinates, exudyn.OutputVariableType.Coordinates_t)]
+                        for node in nodes]  # fmt: skip
+        for joint in self.model.joints:
+            self.add_joint(joint)
+        self.add_motor_and_spring()
+        self.add_drag()
 
     def fixed_steps(self, exudyn, steps):
         settings = exudyn.SimulationSettings()
@@ -48,7 +52,7 @@ class Exudyn:
 
     def add_body(self, body):
         """(object, node)"""
-        items, system, weight = self.items, self.system, [0.0, -self.planar.gravity, 0.0]
+        items, system, weight = self.items, self.system, [0.0, -self.model.gravity, 0.0]
         if body.inertia == 0.0:
             node = system.AddNode(items.NodePoint2D(referenceCoordinates=body.centre, initialVelocities=body.velocity))
             number = system.AddObject(items.ObjectMassPoint2D(mass=body.mass, nodeNumber=node))
@@ -60,13 +64,13 @@ class Exudyn:
         return number, node
 
     def marker(self, body, point):
-        centre = np.zeros(2) if body is GROUND else self.planar.bodies[body].centre
+        centre = np.zeros(2) if body is GROUND else self.model.bodies[body].centre
         number = self.ground if body is GROUND else self.bodies[body]
         return self.system.AddMarker(self.items.MarkerBodyPosition(bodyNumber=number, localPosition=[*(point - centre), 0.0]))
 
     def add_joint(self, joint):
         """A mass point has no angle, and keeps its distance."""
-        body = self.planar.bodies[joint.body]
+        body = self.model.bodies[joint.body]
         if body.inertia == 0.0:
             markers = [self.marker(joint.other, joint.point), self.marker(joint.body, body.centre)]
             length = float(np.linalg.norm(body.centre - joint.point))
@@ -76,20 +80,20 @@ class Exudyn:
             self.system.AddObject(self.items.ObjectJointRevolute2D(markerNumbers=markers))
 
     def add_motor_and_spring(self):
-        items, (body, torque) = self.items, self.planar.torque
+        items, (body, torque) = self.items, self.model.torque
         if torque != 0.0:
             marker = self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=self.bodies[body]))
             self.system.AddLoad(items.LoadTorqueVector(markerNumber=marker, loadVector=[0.0, 0.0, torque]))
-        if self.planar.spring is not None:
-            body, point, fixed, stiffness, length = self.planar.spring
+        if self.model.spring is not None:
+            body, point, fixed, stiffness, length = self.model.spring
             markers = [self.marker(GROUND, fixed), self.marker(body, point)]
             self.system.AddObject(items.ObjectConnectorSpringDamper(markerNumbers=markers, stiffness=stiffness, referenceLength=length,
-                                                                     damping=self.planar.damping))  # fmt: skip
+                                                                     damping=self.model.damping))  # fmt: skip
 
     def add_drag(self):
-        if self.planar.drag != 0.0:
-            markers = [self.marker(GROUND, np.zeros(2)), self.marker(0, self.planar.bodies[0].centre)]
-            damping = [self.planar.drag, self.planar.drag, 0.0]
+        if self.model.drag != 0.0:
+            markers = [self.marker(GROUND, np.zeros(2)), self.marker(0, self.model.bodies[0].centre)]
+            damping = [self.model.drag, self.model.drag, 0.0]
             self.system.AddObject(self.items.ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping))
 
     def solve(self, period):
@@ -103,14 +107,18 @@ class Exudyn:
         """Rows of (x, y, angle) and their rates for each body, at the last points of those that were written."""
         coordinates = [[self.system.GetSensorStoredData(sensor)[-points:, 1:] for sensor in pair] for pair in self.sensors]
         positions, velocities = (np.hstack([self.padded(pair[i]) for pair in coordinates]) for i in (0, 1))
-        return positions + np.concatenate([[*body.centre, 0.0] for body in self.planar.bodies]), velocities
+        return positions + np.concatenate([[*body.centre, 0.0] for body in self.model.bodies]), velocities
+
+    def measured(self, points):
+        """(energies, motion of the bodies)"""
+        positions, velocities = self.recorded(points)
+        return self.model.energy(positions, velocities), positions
 
     def record(self):
         """(energies, what is compared) at the communication points."""
         self.solve(self.problem.end / POINTS)
-        positions, velocities = self.recorded(POINTS)
-        compared = None if self.problem.from_bodies is None else self.problem.from_bodies(positions)
-        return self.planar.energy(positions, velocities), compared
+        energies, motion = self.measured(POINTS)
+        return energies, None if self.problem.from_bodies is None else self.problem.from_bodies(motion)
 
     @staticmethod
     def padded(columns):
@@ -125,16 +133,19 @@ class MuJoCo:
         import mujoco
 
         mujoco.set_mju_user_warning(lambda text: None)  # in place of a file in the current folder
-        self.library, self.problem, self.steps = mujoco, problem, steps
-        self.model = mujoco.MjModel.from_xml_string(mujoco_text(problem.planar, problem.end / steps, integrator))
-        self.data, self.measured = mujoco.MjData(self.model), mujoco.MjData(self.model)
-        self.parents = parents_of(problem.planar)
+        self.library, self.problem, self.model, self.steps = mujoco, problem, problem.model, steps
+        self.mujoco = mujoco.MjModel.from_xml_string(self.text(problem.end / steps, integrator))
+        self.data, self.copy = mujoco.MjData(self.mujoco), mujoco.MjData(self.mujoco)
         # The bodies' numbers here, which MuJoCo orders by depth; 0 is the ground.
-        self.numbers = [self.model.body(f"b{i}").id for i in range(len(problem.planar.bodies))]
+        self.numbers = [self.mujoco.body(f"b{i}").id for i in range(self.mujoco.nbody - 1)]
+
+    def text(self, step, integrator):
+        self.parents = parents_of(self.model)
+        return mujoco_text(self.model, step, integrator)
 
     def start(self):
-        bodies, (driven, torque) = self.problem.planar.bodies, self.problem.planar.torque
-        self.library.mj_resetData(self.model, self.data)
+        bodies, (driven, torque) = self.model.bodies, self.model.torque
+        self.library.mj_resetData(self.mujoco, self.data)
         for i, number in enumerate(self.numbers):
             above = self.parents[i].other
             self.data.qvel[number - 1] = bodies[i].rate - (0.0 if above is GROUND else bodies[above].rate)
@@ -142,7 +153,7 @@ class MuJoCo:
 
     def run(self):
         self.start()
-        self.library.mj_step(self.model, self.data, self.steps)
+        self.library.mj_step(self.mujoco, self.data, self.steps)
 
     def record(self):
         self.start()
@@ -150,19 +161,23 @@ class MuJoCo:
 
     def advance(self, steps):
         """(energy, what is compared) after so many steps; in other data, to leave the simulation as it is."""
-        library, model, data = self.library, self.model, self.measured
+        library, model, data = self.library, self.mujoco, self.copy
         library.mj_step(model, self.data, steps)
         data.qpos[:], data.qvel[:] = self.data.qpos, self.data.qvel
         library.mj_fwdPosition(model, data)
         library.mj_fwdVelocity(model, data)
-        library.mj_energyPos(model, data)
-        library.mj_energyVel(model, data)
+        energy, motion = self.state_of(data)
+        return energy, np.nan if self.problem.from_bodies is None else self.problem.from_bodies(motion)[0]
+
+    def state_of(self, data):
+        """(energy, motion of the bodies)"""
+        self.library.mj_energyPos(self.mujoco, data)
+        self.library.mj_energyVel(self.mujoco, data)
         angles = {GROUND: 0.0}
         for body in sorted(self.parents, key=lambda body: self.numbers[body]):
             angles[body] = angles[self.parents[body].other] + data.qpos[self.numbers[body] - 1]
         row = np.concatenate([[*data.xipos[number][:2], angles[i]] for i, number in enumerate(self.numbers)])
-        compared = np.nan if self.problem.from_bodies is None else self.problem.from_bodies(row[None])[0]
-        return float(np.sum(data.energy)), compared
+        return float(np.sum(data.energy)), row[None]
 
 
 def parents_of(planar):
@@ -209,9 +224,10 @@ def mujoco_text(planar, step, integrator):
             f"{tendon}<equality>{loops}</equality></mujoco>")  # fmt: skip
 
 
+# Program and method.
 PEERS = {
-    "exudyn generalized-alpha": (Exudyn, "GeneralizedAlpha"),
-    "exudyn trapezoidal, index 2": (Exudyn, "TrapezoidalIndex2"),
-    "MuJoCo RK4": (MuJoCo, "RK4"),
-    "MuJoCo implicitfast": (MuJoCo, "implicitfast"),
+    "exudyn generalized-alpha": ("exudyn", "GeneralizedAlpha"),
+    "exudyn trapezoidal, index 2": ("exudyn", "TrapezoidalIndex2"),
+    "MuJoCo RK4": ("MuJoCo", "RK4"),
+    "MuJoCo implicitfast": ("MuJoCo", "implicitfast"),
 }

@@ -1,5 +1,6 @@
 """Mechanisms with known answers, each once as a planar mechanism of bodies and joints that other programs are built from."""
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -43,6 +44,11 @@ class Planar:
     damping: float = 0.0  # of the spring [N s/m]
     drag: float = 0.0  # of a single mass point [N s/m]
 
+    def start_energy(self):
+        rows = [[np.array([*body.centre, 0.0]), np.array([*body.velocity, body.rate])] for body in self.bodies]
+        positions, velocities = (np.concatenate([row[i] for row in rows]) for i in (0, 1))
+        return float(self.energy(positions, velocities))
+
     def energy(self, positions, velocities):
         """Of rows of (x, y, angle) and their rates for each body; without springs."""
         masses = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies]).ravel()
@@ -59,26 +65,27 @@ class Mechanism:
     expected: Callable | None  # rows of what is compared, at times; without it, energy is the measure
     compared: list  # names of those states of the FMU
     levels: list  # errors at which times are compared: (of "drift" in J or "error", level, whose it is)
-    planar: Planar | None  # None where the other programs cannot express it
+    model: object  # Planar, or Spatial of spatial_problems.py; None where the other programs cannot express it
     steps: list  # numbers of fixed steps, multiples of POINTS
     at_end: bool = False  # the reference is known at the end alone
-    from_bodies: Callable | None = None  # what is compared, of rows of (x, y, angle) of the bodies
+    from_bodies: Callable | None = None  # what is compared, of rows of (x, y, angle) of the bodies, or of their Motion in space
+    programs: tuple = ("exudyn", "MuJoCo")  # which can express it
+    quick: bool = True  # whether a quick report has it
 
     @property
     def times(self):
         return np.array([self.end]) if self.at_end else self.end * np.arange(1, POINTS + 1) / POINTS
 
+    @functools.cached_property
+    def exact(self):
+        return self.expected(self.times)
+
     def error(self, rows):
         """The largest over the communication points, relative where values are above 1; not a number without a reference."""
         if self.expected is None:
             return np.nan
-        exact = self.expected(self.times)
-        return float(np.max(np.abs(rows[-len(exact) :] - exact) / np.maximum(1.0, np.abs(exact))))
-
-    def start_energy(self):
-        rows = [[np.array([*body.centre, 0.0]), np.array([*body.velocity, body.rate])] for body in self.planar.bodies]
-        positions, velocities = (np.concatenate([row[i] for row in rows]) for i in (0, 1))
-        return float(self.planar.energy(positions, velocities))
+        rows, exact = rows[-len(self.exact) :], self.exact
+        return float(np.max(np.abs(rows - exact) / np.maximum(1.0, np.abs(exact))))
 
 
 def direction(angle):
@@ -155,5 +162,5 @@ PROBLEMS = [
               [("error", 1e-2, "ours"), ("error", 1e-4, "ours"), ("error", 1e-8, "ours")], squeezer(), [100, 200, 300, 1000, 3000, 10000, 30000],
               at_end=True, from_bodies=squeezer_angles),
     Mechanism("KnifeEdge", "knife edge on a slope", 10.0, "cycloid", cycloid, ["x", "y"],
-              [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], None, []),
+              [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], None, [], programs=()),
 ]  # fmt: skip

@@ -53,7 +53,7 @@ NEWTON = {"DampedPendulum": (1e-12, 1e-14)}
 
 @dataclass
 class Mechanism:
-    planar: Planar
+    model: Planar
     end: float
 
 

@@ -1,0 +1,123 @@
+"""One evaluation of the accelerations of a robot: the code of our FMU beside Pinocchio's articulated-body algorithm, both in C and C++."""
+
+import importlib.util
+import math
+import shutil
+import subprocess
+from pathlib import Path
+from statistics import median
+
+from differential.build import runtime
+from fmu import LAGC, ROOT
+
+FOLDER = ROOT / "build" / "accelerations"
+SOURCES = Path(__file__).parent
+# Name, what it is, its file among the example robots, its base.
+ROBOTS = [
+    ("UR5", "6 axes", "ur_description/urdf/ur5_robot.urdf", "fixed"),
+    ("Panda", "7 axes and 2 fingers", "panda_description/urdf/panda.urdf", "fixed"),
+    ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
+]
+ROUND = 0.05  # seconds of one program in one round
+HEADERS = [(Path("/usr/include/eigen3"), "libeigen3-dev"), (Path("/usr/include/urdfdom_headers"), "liburdfdom-headers-dev")]
+# Pinocchio's headers have lists longer than Boost's preprocessed ones. Without -march=native, with which the library is not built.
+FLAGS = ["-O3", "-DNDEBUG", "-std=c++17", "-DPINOCCHIO_WITH_URDFDOM", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
+         "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]  # fmt: skip
+LIBRARIES = ["-lpinocchio_default", "-lpinocchio_parsers", "-lurdfdom_model"]
+NOTE = ("Nanoseconds of the processor's time, medians of rounds in which the programs take turns; the ratio is the median of the rounds' ratios. The FMU's: "
+        "derivatives() of its generated C, with gcc -O2 as in the FMU. Pinocchio's: aba() of "
+        "its release for Python, from C++ with -O3, in the faster of its two conventions. It has a joint of its own for the finger of the Panda that mimics the other.")  # fmt: skip
+HEADER = ["robot", "joints", "FMU [ns]", "Pinocchio [ns]", "Pinocchio / FMU"]
+
+
+class Missing(Exception):
+    """What is not installed here, as a sentence."""
+
+
+def prefix():
+    """The folder of Pinocchio's headers and libraries, and of the example robots."""
+    spec = importlib.util.find_spec("pinocchio")
+    if spec is None or spec.origin is None:
+        raise Missing("Pinocchio (the Python package pin) is not installed here.")
+    return next(folder for folder in Path(spec.origin).parents if folder.name == "cmeel.prefix")
+
+
+def is_current(target, *sources):
+    return target.exists() and all(target.stat().st_mtime >= source.stat().st_mtime for source in sources)
+
+
+def run(*words):
+    result = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise RuntimeError(f"{words[0]} ends with {result.returncode}: {result.stderr.strip()[:300]}")
+    return result.stdout
+
+
+def our_program(name, path, base):
+    folder = FOLDER / name
+    program, system = folder / "accelerations", folder / "system.xml"
+    if is_current(program, LAGC, path, SOURCES / "accelerations.c"):
+        return program
+    folder.mkdir(parents=True, exist_ok=True)
+    system.write_text(f'<system name="{name}"><include file="{path}" as="robot" base="{base}"/></system>')
+    run(LAGC, system, "-o", folder)
+    flags = ["-O2", "-std=gnu11", "-ffp-contract=off", "-falign-functions=64", "-ffunction-sections", "-Wl,--gc-sections"]
+    run("gcc", *flags, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", SOURCES / "accelerations.c", folder / "system.c", *runtime(), "-o", program)
+    return program
+
+
+def pinocchio_program(quick):
+    """Compiled once, which takes minutes: too long for a quick report."""
+    program, source, folder = FOLDER / "aba", SOURCES / "aba.cpp", prefix()
+    if is_current(program, source):
+        return program
+    if shutil.which("g++") is None:
+        raise Missing("Pinocchio's times are not here: its program needs g++, which is not installed.")
+    for headers, package in HEADERS:
+        if not headers.exists():
+            raise Missing(f"Pinocchio's times are not here: its program needs {headers} (Debian's {package}).")
+    if quick:
+        raise Missing("Pinocchio's times are not here: its program takes minutes to compile, which a report without --quick does once.")
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    includes = [f"-I{path}" for path in (HEADERS[0][0], folder / "include", folder / "include" / "urdfdom", HEADERS[1][0])]
+    run("g++", *FLAGS, *includes, source, "-o", program, f"-L{folder}/lib", *LIBRARIES, f"-Wl,-rpath,{folder}/lib")
+    return program
+
+
+def seconds(words, count):
+    """Of one evaluation; where a program tells several times, the shortest."""
+    return min(map(float, run(*words, count).split()))
+
+
+def measured(programs, rounds):
+    """Seconds of one evaluation of each program in each round."""
+    counts = [max(1, round(ROUND / seconds(words, 100))) for words in programs]
+    return [[seconds(words, count) for words, count in zip(programs, counts)] for _ in range(rounds)]
+
+
+def row(name, text, times):
+    """times: rounds of one or two programs."""
+    ours, *others = zip(*times)
+    theirs = median(others[0]) if others else math.nan
+    ratio = median(their / our for our, their in times) if others else math.nan
+    return [name, text, round(1e9 * median(ours)), theirs * 1e9, ratio]
+
+
+def rows(quick):
+    """(rows, sentences about what is missing)."""
+    sentences, lines = [], []
+    try:
+        robots = prefix() / "share" / "example-robot-data" / "robots"
+        if not robots.exists():
+            raise Missing("The robots (the Python package example-robot-data) are not installed here.")
+    except Missing as error:
+        return [], [f"No accelerations of robots: {error}"]
+    try:
+        pinocchio = pinocchio_program(quick)
+    except (Missing, RuntimeError) as error:
+        pinocchio, sentences = None, [str(error)]
+    for name, text, path, base in ROBOTS[:1] if quick else ROBOTS:
+        programs = [[our_program(name, robots / path, base)]]
+        programs += [[pinocchio, robots / path, base]] if pinocchio else []
+        lines.append(row(name, text, measured(programs, 5 if quick else 20)))
+    return lines, sentences

@@ -1,0 +1,133 @@
+"""What the report of bodies in space stands on: the links that other programs are built from, references, accelerations of robots."""
+
+import importlib.util
+import math
+
+import numpy as np
+import pytest
+
+import fmu
+from numerics import accelerations, driver
+from numerics.accelerations import ROBOTS, Missing
+from numerics.mechanisms import METHODS, Fmu, Peer, first_run
+from numerics.spatial_problems import PROBLEMS
+
+BRICARD, GOVERNOR, TOP, FREE_BODY, ARM = PROBLEMS
+
+
+@pytest.fixture(autouse=True)
+def built(monkeypatch):
+    """The FMUs as shipped in place of the builds with each solver."""
+    monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
+
+
+@pytest.fixture
+def governor(monkeypatch):
+    """With the FMU at a tight tolerance for its reference, which takes a minute to compute."""
+    stepped = driver.step("taylor", GOVERNOR.system, {}, GOVERNOR.end, 1e-11, driver.POINTS, 0)
+    monkeypatch.setitem(vars(GOVERNOR), "exact", stepped.columns(GOVERNOR.compared))
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.system)
+def test_energy_at_the_start(problem, open_fmu):
+    """That of the FMU; the governor's springs are at rest. Bricard's rods hang from a level one."""
+    expected = open_fmu(problem.system).initialize().get("totalEnergy")
+    assert problem.model.start_energy() == pytest.approx(expected, rel=1e-8 if problem is ARM else 1e-13)
+    if problem is BRICARD:
+        assert expected == pytest.approx(-3 * 9.81, rel=1e-14)
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.system)
+def test_links_move_with_their_joints(problem):
+    """At the start a hinge and a ball have one velocity on both sides, and the links of hinges and slides turn about the axis at most."""
+    links = problem.model.links
+    at = lambda link, point: np.add(link.velocity, np.cross(link.turning, np.subtract(point, link.centre)))
+    for link in links:
+        above = links[link.above] if link.above is not None else None
+        turning = np.subtract(link.turning, above.turning if above else np.zeros(3))
+        if link.joint in ("hinge", "ball"):
+            assert at(link, link.point) == pytest.approx(at(above, link.point) if above else np.zeros(3), abs=1e-12)
+        if link.joint in ("hinge", "slide"):
+            assert np.linalg.norm(link.axis) == pytest.approx(1, rel=1e-15)
+            assert np.cross(turning, link.axis) == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_springs_of_the_governor():
+    """At rest at the start, between the middles of the arms and the sides of the slider."""
+    for spring in GOVERNOR.model.springs:
+        (_, begin), (_, end) = spring.ends
+        assert np.linalg.norm(begin - end) == pytest.approx(spring.length, rel=1e-14)
+
+
+@pytest.mark.parametrize("problem, measure, largest", [(BRICARD, "drift", 1e-7), (TOP, "error", 1e-8), (FREE_BODY, "error", 1e-5), (ARM, "error", 1e-9)],
+                         ids=["A04", "top", "free body", "arm"])  # fmt: skip
+def test_errors_of_the_fmu(problem, measure, largest):
+    """The references are closed forms, and Pinocchio's algorithm for the arm."""
+    assert first_run(problem, "taylor", 1e-8)[1].measured(measure) < largest
+
+
+# Steps at which errors are compared, of the methods of order 2 or more; implicitfast has order 1, and does without energy.
+ORDER_TWO = [(BRICARD, "drift", 500, 2000), (FREE_BODY, "error", 2000, 8000), (GOVERNOR, "error", 1000, 4000), (TOP, "error", 4000, 16000)]
+CONVERGENT = [
+    *((peer, *run) for peer in METHODS[2:4] for run in ORDER_TWO if run[0] is not TOP or "index 2" in peer),
+    *(("MuJoCo RK4", *run) for run in (*ORDER_TWO[:2], (GOVERNOR, "error", 20000, 40000), ORDER_TWO[3], (ARM, "error", 100, 200))),
+    ("MuJoCo implicitfast", ARM, "error", 200, 2000),
+    ("MuJoCo implicitfast", FREE_BODY, "error", 2000, 20000),
+]
+
+
+@pytest.mark.parametrize("peer, problem, measure, rough, fine", CONVERGENT, ids=lambda value: getattr(value, "system", str(value)))
+def test_peers_converge(peer, problem, measure, rough, fine, governor):
+    """They have the same mechanism."""
+    if importlib.util.find_spec(peer.split()[0].lower()) is None:
+        pytest.skip(f"{peer} is not installed")
+    rough, fine = (first_run(problem, peer, steps)[1].measured(measure) for steps in (rough, fine))
+    assert fine < 0.3 * rough and fine < 0.03
+
+
+@pytest.mark.parametrize("peer", METHODS[2:5])
+def test_bricard_in_other_programs(peer):
+    """Its energy would be kept without a constraint, too: the third joint is where that of the FMU is."""
+    if importlib.util.find_spec(peer.split()[0].lower()) is None:
+        pytest.skip(f"{peer} is not installed")
+    (_, ours), (_, theirs) = Fmu(BRICARD, 1e-10, "taylor", 60).record(), Peer(BRICARD, 2000, peer).record()
+    np.testing.assert_allclose(theirs, ours, atol=1e-3)
+
+
+def test_row_of_accelerations():
+    """The ratio is the median of ratios, not that of medians; alone, the FMU has none."""
+    times = [(1e-6, 2e-6), (2e-6, 8e-6), (4e-6, 4e-6)]
+    assert accelerations.row("R", "axes", times) == ["R", "axes", 2000, pytest.approx(4000), pytest.approx(2)]
+    name, text, ours, theirs, ratio = accelerations.row("R", "axes", [(3e-6,), (1e-6,), (2e-6,)])
+    assert ours == 2000 and math.isnan(theirs) and math.isnan(ratio)
+
+
+def test_accelerations_without_pinocchio(monkeypatch, tmp_path):
+    """A sentence in its place: without the package, the compiler or a header, and in a quick report that would have to compile it."""
+    monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
+    monkeypatch.setattr(accelerations, "HEADERS", [(tmp_path, "libeigen3-dev")] * 2)
+    monkeypatch.setattr(accelerations.shutil, "which", lambda name: "/usr/bin/g++")
+    with pytest.raises(Missing, match="takes minutes to compile"):
+        accelerations.pinocchio_program(True)
+    monkeypatch.setattr(accelerations, "HEADERS", [(tmp_path / "eigen3", "libeigen3-dev")])
+    with pytest.raises(Missing, match="needs .*eigen3 .*libeigen3-dev"):
+        accelerations.pinocchio_program(False)
+    monkeypatch.setattr(accelerations.shutil, "which", lambda name: None)
+    with pytest.raises(Missing, match="needs g\\+\\+"):
+        accelerations.pinocchio_program(False)
+    monkeypatch.setattr(accelerations.importlib.util, "find_spec", lambda name: None)
+    assert accelerations.rows(False) == ([], ["No accelerations of robots: Pinocchio (the Python package pin) is not installed here."])
+
+
+def test_accelerations_of_the_fmu_alone(monkeypatch, tmp_path):
+    """Where Pinocchio's program does not compile: its first words, and the FMU's times."""
+    monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
+    monkeypatch.setattr(accelerations, "ROUND", 1e-3)
+    monkeypatch.setattr(accelerations, "ROBOTS", ROBOTS[:1])
+
+    def fail(quick):
+        raise RuntimeError("g++ ends with 1: no such type")
+
+    monkeypatch.setattr(accelerations, "pinocchio_program", fail)
+    (line,), sentences = accelerations.rows(True)
+    assert sentences == ["g++ ends with 1: no such type"] and line[0] == "UR5" and line[2] > 0 and math.isnan(line[4])
