@@ -31,7 +31,7 @@ NOTES = [
     "The drifts that IFToMM's library of benchmark problems asks for are quoted without its problem sheets at hand. The authors' earlier "
     "specification of A01 (lim.ii.udc.es/mbsbenchmark, 2005) asks for positions to 0.1 and 0.001 over 2000 s. A03 has no such figure, and that of A05 is not known here.",
     "The reference of the governor is checked as those of stiff systems are. That of the robot arm is Pinocchio's algorithm with SciPy's method of order 8, "
-    "of the links that MuJoCo gets.",
+    "of the links that MuJoCo gets. The FMU has the top by Euler angles, of which its spin is one; exudyn and MuJoCo turn it by a quaternion, for which the spin is fast.",
     "The published state of Andrews' mechanism is good to about 1e-10, where all our tolerances and both methods end up.",
     "inf: never gets there with the steps that end in ten seconds. –: not installed, or the program cannot express it.",
 ]
