@@ -2,6 +2,7 @@
 
 import importlib.util
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -108,6 +109,19 @@ def test_section(monkeypatch, tmp_path):
     assert content.count("<svg") == 3 and content.count("<table>") == 3 and "knife edge on a slope" in content
     assert "<p>No Pinocchio.</p>" in content and "<td>UR5</td>" in content
     assert all((tmp_path / name).exists() for name in ("mechanisms.csv", "mechanism_ratios.csv", "accelerations.csv"))
+
+
+def test_a_slow_reference(monkeypatch):
+    """Its time is not that of the first run, after which nothing finer would be tried."""
+    clock = [0.0]
+
+    def slow(times):
+        clock[0] += 2 * mechanisms.PATIENCE
+        return KNIFE_EDGE.expected(times)
+
+    monkeypatch.setattr(mechanisms.time, "perf_counter", lambda: clock[0])
+    runners, _ = mechanisms.runners_of(replace(KNIFE_EDGE, expected=slow), False)
+    assert len(runners) == 2 * len(mechanisms.TOLERANCES)
 
 
 def test_ratios():

@@ -37,9 +37,9 @@ class Exudyn(mechanism_peers.Exudyn):
         for closing in self.model.closings:
             self.join(closing.link, closing.other, closing.point, closing.axes, closing.constrained)
         for spring in self.model.springs:
-            (one, begin), (other, end) = spring.ends
+            bodies = [self.body(link) for link, _ in spring.ends]
             places = [list(point - self.model.links[link].centre) for link, point in spring.ends]
-            self.system.CreateSpringDamper(itemNumbers=[self.body(one), self.body(other)], localPosition0=places[0], localPosition1=places[1],
+            self.system.CreateSpringDamper(itemNumbers=bodies, localPosition0=places[0], localPosition1=places[1],
                                            referenceLength=spring.length, stiffness=spring.stiffness, damping=spring.damping)  # fmt: skip
         kinds = exudyn.OutputVariableType
         kinds = [kinds.Position, kinds.RotationMatrix, kinds.Velocity, kinds.AngularVelocityLocal]
