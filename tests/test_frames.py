@@ -91,7 +91,7 @@ MOVED = """<system name="MovedFrame" description="Pendulum on a platform that in
   <frame name="platform"> <translate x="u"/> <rotate axis="0 0.6 0.8" angle="f"/> </frame>
   <frame name="rod" in="platform"> <rotate axis="x" angle="q"/> </frame>
   <body name="bob" in="rod" mass="2" z="-0.5" Ixx="0.1" Iyy="0.12" Izz="0.03"/>
-  <body name="base" in="platform" mass="1" Ixx="0.3" Iyy="0.2" Izz="0.4"/>
+  <body name="deck" in="platform" mass="1" Ixx="0.3" Iyy="0.2" Izz="0.4"/>
   <torque on="bob" y="0.5"/>
   <gravity z="-9.81"/>
   <work/>
@@ -319,6 +319,9 @@ MESSAGES = [
     ('<frame name="f" in="g"/>', "there is no frame 'g'; expected the name of a <frame>"),
     ('<frame name="arm"/><frame name="f" in="amr"/>', "there is no frame 'amr'; did you mean 'arm'?"),
     ('<frame name="f" in="g"/><frame name="g" in="f"/>', "in a circle: frame f -> frame g -> frame f"),
+    ('<frame name="base"><translate x="p*q"/></frame>', "the name 'base' is that of the frame which rests; expected another name"),
+    ('<particle name="base" in="base" mass="1" x="p*q"/>', "the name 'base' is that of the frame which rests"),
+    ('<body name="base" mass="1" x="p*q" inertia="p*q" angle="q"/>', "the name 'base' is that of the frame which rests"),
     ('<frame name="f"/><point name="f"/>', "a frame, point or body named 'f' is already defined"),
     ('<frame name="f"><rotate axis="z"/></frame>', '<rotate> needs either axis="..." with angle="..." or quaternion="..."'),
     ('<frame name="f"><rotate axis="0 1" angle="q"/></frame>', "axis of <rotate> has 2 parts; expected 3 expressions between blanks"),

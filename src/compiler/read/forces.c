@@ -128,7 +128,9 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   if (frame == NULL) return;
   force = along_base(reader, line, frame, force);
   for (int axis = 0; axis < 3; axis++) {
-    if (body != NULL && !body->has_position[axis] && force.along[axis] != ZERO)
+    bool is_given =
+        xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL && xmlHasProp(node, (const xmlChar *)"in") == NULL;
+    if (body != NULL && !body->has_position[axis] && is_given)
       report_error(reader->diagnostics, line,
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);

@@ -91,8 +91,15 @@ static void collect(struct Reader *reader, xmlNodePtr node, char *name, const ch
   definitions_add(reader->definitions, name, &(struct NamedExpression){node, attribute, reader->source, NULL});
 }
 
+static bool is_base(struct Reader *reader, xmlNodePtr node, const char *name) {
+  if (strcmp(name, "base") != 0) return false;
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "the name 'base' is that of the frame which rests; expected another name");
+  return true;
+}
+
 void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
-  collect(reader, node, whole_name(true, name), "");
+  if (!is_base(reader, node, name)) collect(reader, node, whole_name(true, name), "");
 }
 
 /* Whether a frame, or a point or body in a frame, of this name was collected; reports it. */
@@ -109,7 +116,7 @@ static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
 
 void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name) {
   const char *const *components = components_of(node);
-  if (is_taken(reader, node, name)) return;
+  if (is_base(reader, node, name) || is_taken(reader, node, name)) return;
   collect(reader, node, whole_name(is_element(node, "frame"), name), "");
   for (size_t i = 0; components[i] != NULL; i++)
     collect(reader, node, format_text("%s.%s", name, components[i]), components[i]);
