@@ -137,12 +137,6 @@ static void check_inertial(struct Urdf *urdf, xmlNodePtr node, const struct Link
   if (body->mass < 0)
     report_error(urdf->diagnostics, line, "the mass %g of the link '%s' is negative; expected 0 or more", body->mass,
                  link->name);
-  if (!tensor_is_of_a_body(&body->tensor))
-    report_warning(urdf->diagnostics, line,
-                   "the <inertia> of the link '%s' is that of no body: a principal moment is negative, or larger than "
-                   "the other two "
-                   "together",
-                   link->name);
 }
 
 static void read_inertial(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
