@@ -6,6 +6,14 @@
 #include "algebra/other_units.h"
 #include "memory.h"
 
+bool is_element(xmlNodePtr node, const char *name) {
+  return xmlStrEqual(node->name, (const xmlChar *)name);
+}
+
+bool has_attribute(xmlNodePtr node, const char *name) {
+  return xmlHasProp(node, (const xmlChar *)name) != NULL;
+}
+
 char *attribute(xmlNodePtr node, const char *name) {
   xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
   if (value == NULL) return NULL;

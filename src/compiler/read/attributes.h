@@ -52,6 +52,10 @@ enum {
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
 
+/* Whether the element has this name, and whether it has an attribute of this name. */
+bool is_element(xmlNodePtr node, const char *name);
+bool has_attribute(xmlNodePtr node, const char *name);
+
 /* NULL where missing; to be freed with free(). */
 char *attribute(xmlNodePtr node, const char *name);
 

@@ -51,7 +51,7 @@ static void append_body(struct Reader *reader, struct Body body) {
 /* A component that definitions.h has read; true where it is given. */
 static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
                            struct Quantity *value, Node *displaced) {
-  if (!xmlHasProp(node, (const xmlChar *)component)) return false;
+  if (!has_attribute(node, component)) return false;
   char *name = format_text("%s.%s", body->name, component);
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
@@ -108,7 +108,7 @@ static void require_accelerations(const struct Reader *reader, const struct Body
 /* Its own name, or one by its number among the bodies and particles of the file. */
 static char *name_of(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
-  if (xmlStrEqual(node->name, (const xmlChar *)"point")) return name;
+  if (is_element(node, "point")) return name;
   size_t number = ++reader->source->body_count;
   return name != NULL ? name : format_text("%sbody%zu", reader->source->prefix, number);
 }
@@ -213,8 +213,8 @@ static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   struct SpatialPoint point;
   if (body.name == NULL) return; /* reported */
   const struct Body *other = report_same_name(reader, &body);
-  if (!xmlStrEqual(node->name, (const xmlChar *)"point")) read_mass(reader, node, &body);
-  if (xmlStrEqual(node->name, (const xmlChar *)"body")) read_tensor(reader, node, &body);
+  if (!is_element(node, "point")) read_mass(reader, node, &body);
+  if (is_element(node, "body")) read_tensor(reader, node, &body);
   if (other != NULL || reader->diagnostics->errors > 0 || !find_spatial_point(reader, body.name, &point)) {
     free(body.name);
     return;
@@ -227,17 +227,13 @@ static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   append_body(reader, body);
 }
 
-static bool has_attribute(xmlNodePtr node, const char *name) {
-  return xmlHasProp(node, (const xmlChar *)name) != NULL;
-}
-
 /* A planar body has a position and an angle, one in a frame has neither. */
 static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
   static const char *const moments[] = {"Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
   bool is_in_frame = has_attribute(node, "in"), has_moments = false;
   bool has_angle = has_attribute(node, "angle"), has_inertia = has_attribute(node, "inertia");
   for (int i = 0; i < 6; i++) has_moments |= has_attribute(node, moments[i]);
-  if (!xmlStrEqual(node->name, (const xmlChar *)"body")) return true;
+  if (!is_element(node, "body")) return true;
   if (is_in_frame ? !has_angle && !has_inertia : has_angle && has_inertia && !has_moments) return true;
   report_error(reader->diagnostics, xmlGetLineNo(node),
                is_in_frame
@@ -249,7 +245,7 @@ static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
 }
 
 void read_body(struct Reader *reader, xmlNodePtr node) {
-  if (xmlStrEqual(node->name, (const xmlChar *)"frame")) {
+  if (is_element(node, "frame")) {
     char *name = name_attribute(reader, node, "name");
     if (name != NULL) append_places(reader, node, name);
     free(name);

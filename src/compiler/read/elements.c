@@ -118,7 +118,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
   model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
-  model->drives[index] = (struct Drive){.given = xmlHasProp(node, (const xmlChar *)"acceleration") != NULL};
+  model->drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
   model->drive_count += model->drives[index].given;
   model->has_forces |= model->drives[index].given;
 }

@@ -128,8 +128,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   if (frame == NULL) return;
   force = along_base(reader, line, frame, force);
   for (int axis = 0; axis < 3; axis++) {
-    bool is_given =
-        xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL && xmlHasProp(node, (const xmlChar *)"in") == NULL;
+    bool is_given = has_attribute(node, axes[axis]) && !has_attribute(node, "in");
     if (body != NULL && !body->has_position[axis] && is_given)
       report_error(reader->diagnostics, line,
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
@@ -226,8 +225,8 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
   reader->model->has_forces = true;
   bool has_components = false;
-  for (int axis = 0; axis < 3; axis++) has_components |= xmlHasProp(node, (const xmlChar *)axes[axis]) != NULL;
-  bool is_along_frame = xmlHasProp(node, (const xmlChar *)"in") != NULL;
+  for (int axis = 0; axis < 3; axis++) has_components |= has_attribute(node, axes[axis]);
+  bool is_along_frame = has_attribute(node, "in");
   if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");

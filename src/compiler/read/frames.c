@@ -19,14 +19,6 @@ static const char *const planar_components[] = {"x", "y", "z", "angle", NULL};
 static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy",     "vz", "omegaX",
                                               "omegaY", "omegaZ", "alphaX", "alphaY", "alphaZ", NULL};
 
-static bool is_element(xmlNodePtr node, const char *name) {
-  return xmlStrEqual(node->name, (const xmlChar *)name);
-}
-
-static bool has_attribute(xmlNodePtr node, const char *name) {
-  return xmlHasProp(node, (const xmlChar *)name) != NULL;
-}
-
 bool is_spatial(xmlNodePtr node) {
   if (is_element(node, "frame") || is_element(node, "point")) return true;
   return (is_element(node, "body") || is_element(node, "particle")) && has_attribute(node, "in");

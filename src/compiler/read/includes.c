@@ -93,7 +93,7 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   if (document == NULL) return NULL;
   if (is_robot(document)) return system_of_robot(document, options, diagnostics);
   xmlNodePtr root = xmlDocGetRootElement(document);
-  if (!xmlStrEqual(root->name, (const xmlChar *)"system"))
+  if (!is_element(root, "system"))
     report_error(diagnostics, xmlGetLineNo(root),
                  "a <%s> cannot be included; expected the file of a <system> or <robot>", (const char *)root->name);
   else if (options->base != NULL || options->tool != NULL)
@@ -205,7 +205,7 @@ const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char
 }
 
 bool is_given(const struct Given *given, const char *attribute) {
-  return given != NULL && xmlHasProp(given->node, (const xmlChar *)attribute) != NULL;
+  return given != NULL && has_attribute(given->node, attribute);
 }
 
 bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,

@@ -8,13 +8,9 @@
 #include "read/elements.h"
 #include "read/frames.h"
 
-static bool is_element(xmlNodePtr node, const char *name) {
-  return xmlStrEqual(node->name, (const xmlChar *)name);
-}
-
 bool has_value(xmlNodePtr node, const struct Given *given) {
   if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
-  return is_given(given, "value") || (!is_given(given, "start") && xmlHasProp(node, (const xmlChar *)"value") != NULL);
+  return is_given(given, "value") || (!is_given(given, "start") && has_attribute(node, "value"));
 }
 
 /* The value of a definition, parameter or input, in its unit where it gives one. */
@@ -76,7 +72,7 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
 static void collect_planar(struct Reader *reader, xmlNodePtr node, const char *body) {
   static const char *const components[] = {"x", "y", "z", "angle"};
   for (size_t i = 0; i < sizeof components / sizeof *components; i++)
-    if (xmlHasProp(node, (const xmlChar *)components[i]))
+    if (has_attribute(node, components[i]))
       definitions_add(reader->definitions, format_text("%s.%s", body, components[i]),
                       &(struct NamedExpression){node, components[i], reader->source, NULL});
   if (is_element(node, "body")) collect_frame(reader, node, body);

@@ -27,7 +27,7 @@ void check_calculated(struct Reader *reader, const struct Given *given, xmlNodeP
   struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
   if (is_given(given, "value")) node = given->node;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (xmlHasProp(node, (const xmlChar *)others[i]) != NULL)
+    if (has_attribute(node, others[i]))
       report_error(reader->diagnostics, xmlGetLineNo(node),
                    "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
                    "others, or start=\"...\" for one that is set",
@@ -105,7 +105,7 @@ static const char separators[] = " \t\r\n,;";
 /* values="1 2 3" of m: m[1], m[2] and m[3]. */
 static void read_list(struct Reader *reader, xmlNodePtr node) {
   char *values = attribute(node, "values"), *name = name_attribute(reader, node, "name");
-  if (xmlHasProp(node, (const xmlChar *)"start") != NULL || xmlHasProp(node, (const xmlChar *)"value") != NULL)
+  if (has_attribute(node, "start") || has_attribute(node, "value"))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "a <parameter> with values and a start or value; expected values=\"...\" alone");
   if (name != NULL && strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
@@ -139,7 +139,7 @@ static void read_list(struct Reader *reader, xmlNodePtr node) {
 }
 
 void read_parameter(struct Reader *reader, xmlNodePtr node) {
-  if (xmlHasProp(node, (const xmlChar *)"values") != NULL) {
+  if (has_attribute(node, "values")) {
     read_list(reader, node);
     return;
   }
@@ -153,7 +153,7 @@ void read_parameter(struct Reader *reader, xmlNodePtr node) {
   variable.start = 0.0;
   read_start(reader, node, given, &variable);
   declare(reader, node, given, variable);
-  if (xmlHasProp(node, (const xmlChar *)"start") == NULL && !is_given(given, "start"))
+  if (!has_attribute(node, "start") && !is_given(given, "start"))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
                  "follows from others, or values=\"...\" for name[1], name[2], ...");

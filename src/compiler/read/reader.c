@@ -112,8 +112,8 @@ static void read_include(struct Reader *reader, xmlNodePtr node, enum Pass pass)
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
-    if (xmlStrEqual(node->name, (const xmlChar *)"for")) read_repetition(reader, node, pass);
-    else if (xmlStrEqual(node->name, (const xmlChar *)"include")) read_include(reader, node, pass);
+    if (is_element(node, "for")) read_repetition(reader, node, pass);
+    else if (is_element(node, "include")) read_include(reader, node, pass);
     else read_element(reader, node, pass);
   }
 }
@@ -235,7 +235,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   xmlDocPtr document = xml_load(path, &local);
   if (document != NULL && is_robot(document)) document = system_of_robot(document, &(struct RobotOptions){0}, &local);
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
-  if (root != NULL && xmlStrEqual(root->name, (const xmlChar *)"linearization")) {
+  if (root != NULL && is_element(root, "linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;
     if (depth > 0) report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
     else if (original != NULL) {

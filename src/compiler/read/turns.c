@@ -10,7 +10,7 @@
 
 xmlNodePtr quaternion_of(xmlNodePtr frame) {
   for (xmlNodePtr step = frame->children; step != NULL; step = step->next)
-    if (step->type == XML_ELEMENT_NODE && xmlHasProp(step, (const xmlChar *)"quaternion") != NULL) return step;
+    if (step->type == XML_ELEMENT_NODE && has_attribute(step, "quaternion")) return step;
   return NULL;
 }
 
@@ -86,10 +86,6 @@ static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Po
   for (int i = 0; i < 4; i++) rate[i] = total_time_derivative(reader->scope, q[i]);
   set_norm(reader, node, q);
   pose_turn_by_quaternion(reader->model->graph, pose, q, rate);
-}
-
-static bool has_attribute(xmlNodePtr node, const char *name) {
-  return xmlHasProp(node, (const xmlChar *)name) != NULL;
 }
 
 static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name, size_t expected) {

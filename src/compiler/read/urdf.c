@@ -201,8 +201,8 @@ static void read_limit(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) 
   double lower = 0, upper = 0;
   bool is_given = read_numbers(urdf, limit, "lower", 1, &lower);
   is_given |= read_numbers(urdf, limit, "upper", 1, &upper);
-  if (xmlHasProp(limit, (const xmlChar *)"effort") != NULL) leave_out(urdf, "effort of limit");
-  if (xmlHasProp(limit, (const xmlChar *)"velocity") != NULL) leave_out(urdf, "velocity of limit");
+  if (has_attribute(limit, "effort")) leave_out(urdf, "effort of limit");
+  if (has_attribute(limit, "velocity")) leave_out(urdf, "velocity of limit");
   if (lower > upper)
     report_error(urdf->diagnostics, xmlGetLineNo(limit),
                  "lower=\"%g\" of <limit> is above upper=\"%g\"; expected it below", lower, upper);
