@@ -77,6 +77,16 @@ Node without_displacements(struct Reader *reader, long line, const char *what, N
   return node;
 }
 
+struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector) {
+  for (int i = 0; i < 3; i++) vector.along[i] = without_displacements(reader, line, what, vector.along[i]);
+  return vector;
+}
+
+struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix) {
+  for (int i = 0; i < 3; i++) matrix.row[i] = vector_without_displacements(reader, line, what, matrix.row[i]);
+  return matrix;
+}
+
 /* The element's text; a comment separates what stands before and after it. */
 static char *text_of(xmlNodePtr node) {
   char *text = copy_text("");

@@ -81,6 +81,10 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 /* The node where nothing is displaced; reports where it has no finite value there. */
 Node without_displacements(struct Reader *reader, long line, const char *what, Node node);
 
+/* The same of the components of a vector, and of the rows of a matrix. */
+struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector);
+struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
+
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 

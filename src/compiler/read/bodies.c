@@ -164,22 +164,18 @@ static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *bod
     }
 }
 
-static struct Vector undisplaced(struct Reader *reader, const struct Body *body, struct Vector vector) {
-  for (int i = 0; i < 3; i++) vector.along[i] = without_displacements(reader, body->line, body->name, vector.along[i]);
-  return vector;
-}
-
 /* Where the body is and how it moves, as it was read with the definitions. */
 static void place_body(struct Reader *reader, const struct SpatialPoint *point, struct Body *body) {
   const struct Model *model = reader->model;
   body->is_in_frame = true;
   body->frame = point->frame;
-  body->offset = undisplaced(reader, body, point->offset);
+  body->offset = vector_without_displacements(reader, body->line, body->name, point->offset);
   body->displaced_velocity = point->velocity;
   body->displaced_angular_velocity = model->frames[point->frame].pose.angular_velocity;
-  body->velocity = undisplaced(reader, body, point->velocity);
-  body->angular_velocity = undisplaced(reader, body, body->displaced_angular_velocity);
-  struct Vector position = undisplaced(reader, body, point->position);
+  body->velocity = vector_without_displacements(reader, body->line, body->name, point->velocity);
+  body->angular_velocity =
+      vector_without_displacements(reader, body->line, body->name, body->displaced_angular_velocity);
+  struct Vector position = vector_without_displacements(reader, body->line, body->name, point->position);
   for (int axis = 0; axis < 3; axis++) {
     body->has_position[axis] = true;
     body->displaced[axis] = point->position.along[axis];

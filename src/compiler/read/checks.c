@@ -106,9 +106,9 @@ static void check_quaternions(const struct Reader *reader, const double *values)
       if (model->stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
         report_error(
             reader->diagnostics, constraint->line,
-            "the quaternion of %s is 0 at the start values; expected one that turns, such as 1 0 0 0: start=\"1\" "
+            "the quaternion of %.*s is 0 at the start values; expected one that turns, such as 1 0 0 0: start=\"1\" "
             "of the first coordinate",
-            constraint->description + strlen("norm of the quaternion of "));
+            (int)(strrchr(constraint->name, '.') - constraint->name), constraint->name);
   }
 }
 

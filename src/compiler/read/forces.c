@@ -34,8 +34,7 @@ static char *meant_coordinate(const struct Reader *reader, const char *name) {
 
 static char *meant_body(const struct Reader *reader, const char *name) {
   struct Similar similar = {.wanted = name};
-  for (size_t i = 0; i < reader->bodies->capacity && are_shown(reader); i++)
-    if (reader->bodies->places[i].text != NULL) similar_consider(&similar, reader->bodies->places[i].text);
+  if (are_shown(reader)) similar_consider_all(&similar, reader->bodies);
   return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
 }
 
@@ -104,14 +103,9 @@ static struct Vector read_components(struct Reader *reader, xmlNodePtr node, con
   return vector;
 }
 
-/* From the axes of the frame to those of the base, both where nothing is displaced. */
-static struct Vector along_base(struct Reader *reader, long line, const struct ReferenceFrame *frame,
-                                struct Vector vector) {
-  struct Matrix rotation = frame->pose.rotation;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      rotation.row[i].along[j] = without_displacements(reader, line, frame->name, rotation.row[i].along[j]);
-  return matrix_apply(reader->model->graph, &rotation, vector);
+/* How the frame is turned where nothing is displaced. */
+static struct Matrix rotation_of(struct Reader *reader, long line, const struct ReferenceFrame *frame) {
+  return matrix_without_displacements(reader, line, frame->name, frame->pose.rotation);
 }
 
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -126,7 +120,8 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
     return;
   }
   if (frame == NULL) return;
-  force = along_base(reader, line, frame, force);
+  struct Matrix rotation = rotation_of(reader, line, frame);
+  force = matrix_apply(model->graph, &rotation, force);
   for (int axis = 0; axis < 3; axis++) {
     bool is_given = has_attribute(node, axes[axis]) && !has_attribute(node, "in");
     if (body != NULL && !body->has_position[axis] && is_given)
@@ -157,8 +152,7 @@ static struct Vector driven_part(const struct Model *model, struct Vector veloci
 static void add_torque(struct Reader *reader, long line, struct Vector torque, struct Vector displaced) {
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
-  struct Vector velocity = displaced;
-  for (int i = 0; i < 3; i++) velocity.along[i] = without_displacements(reader, line, "the torque", displaced.along[i]);
+  struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
   struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   for (size_t i = 0; i < levers.count; i++)
     add_term(model, &model->forces[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
@@ -178,12 +172,9 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
   if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
   if (turned != NULL && frame != NULL) {
     if (frame != turned) {
-      struct Matrix rotation = turned->pose.rotation;
-      for (int i = 0; i < 3; i++) {
-        struct Vector *row = &rotation.row[i];
-        for (int j = 0; j < 3; j++) row->along[j] = without_displacements(reader, line, name, row->along[j]);
-      }
-      torque = matrix_apply_transposed(reader->model->graph, &rotation, along_base(reader, line, frame, torque));
+      struct Graph *graph = reader->model->graph;
+      struct Matrix to_base = rotation_of(reader, line, frame), from_turned = rotation_of(reader, line, turned);
+      torque = matrix_apply_transposed(graph, &from_turned, matrix_apply(graph, &to_base, torque));
     }
     add_torque(reader, line, torque, turned->pose.angular_velocity);
   }

@@ -94,12 +94,17 @@ void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   if (!is_base(reader, node, name)) collect(reader, node, whole_name(true, name), "");
 }
 
-/* Whether a frame, or a point or body in a frame, of this name was collected; reports it. */
+/* Whether a frame, or else a point or body in a frame, of this name was collected. */
+static bool is_collected(const struct Reader *reader, bool is_frame, const char *name) {
+  char *whole = whole_name(is_frame, name);
+  bool collected = definitions_contain(reader->definitions, whole);
+  free(whole);
+  return collected;
+}
+
+/* Whether either was; reports it. */
 static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
-  char *frame = whole_name(true, name), *point = whole_name(false, name);
-  bool taken = definitions_contain(reader->definitions, frame) || definitions_contain(reader->definitions, point);
-  free(frame);
-  free(point);
+  bool taken = is_collected(reader, true, name) || is_collected(reader, false, name);
   if (taken)
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "a frame, point or body named '%s' is already defined; expected another name", name);
@@ -117,24 +122,16 @@ void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name) {
 /* The full name of the frame that the element is in; "base" where it does not say. Free with free(); NULL after an error. */
 static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
   char *text = attribute(node, attribute_name);
-  bool is_base = text == NULL || strcmp(text, "base") == 0;
+  bool is_in_base = text == NULL || strcmp(text, "base") == 0;
   free(text);
-  return is_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
+  return is_in_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
 }
 
-/* What was defined and is no frame has failed, which is told. */
-static bool is_defined(const struct Reader *reader, const char *name) {
-  char *whole = whole_name(true, name);
-  bool defined = definitions_contain(reader->definitions, whole);
-  free(whole);
-  return defined;
-}
-
+/* What was collected and is no frame has failed, which is told. */
 static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Similar similar = {.wanted = name};
-  if (definitions_are_waiting(reader->definitions) || is_defined(reader, name)) return;
-  for (size_t i = 0; i < reader->frames->capacity; i++)
-    if (reader->frames->places[i].text != NULL) similar_consider(&similar, reader->frames->places[i].text);
+  if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
+  similar_consider_all(&similar, reader->frames);
   if (similar.best != NULL)
     report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; did you mean '%s'?", name,
                  similar.best);

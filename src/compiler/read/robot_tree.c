@@ -111,8 +111,7 @@ static const struct Entry *find(const struct Connection *connection, const struc
   const struct Entry *entry = names_find(all->names, name);
   if (entry != NULL) return entry;
   struct Similar similar = {.wanted = name};
-  for (size_t i = 0; i < all->names->capacity; i++)
-    if (all->names->places[i].text != NULL) similar_consider(&similar, all->names->places[i].text);
+  similar_consider_all(&similar, all->names);
   report_missing(all->kind, name, what, line, &similar, connection->diagnostics);
   return NULL;
 }

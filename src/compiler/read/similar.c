@@ -65,3 +65,8 @@ void similar_consider(struct Similar *similar, const char *known) {
   similar->best = known;
   similar->distance = distance;
 }
+
+void similar_consider_all(struct Similar *similar, const struct Names *names) {
+  for (size_t i = 0; i < names->capacity; i++)
+    if (names->places[i].text != NULL) similar_consider(similar, names->places[i].text);
+}

@@ -2,7 +2,7 @@
 #ifndef SIMILAR_H
 #define SIMILAR_H
 
-#include <stddef.h>
+#include "read/names.h"
 
 struct Similar {
   const char *wanted, *best; /* best: NULL while nothing is similar */
@@ -16,5 +16,8 @@ struct Similar {
  * alphabet.
  */
 void similar_consider(struct Similar *similar, const char *known);
+
+/* Considers all names of a table. */
+void similar_consider_all(struct Similar *similar, const struct Names *names);
 
 #endif
