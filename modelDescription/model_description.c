@@ -29,8 +29,9 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
                                              "providesDirectionalDerivative"};
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
-  /* A step is asked for whether its state has drifted from the constraints. */
-  if (model->constraints.count == 0) write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
+  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  if (model->constraints.count == 0 && program->expressions->switching == NULL)
+    write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
   xmlTextWriterEndElement(writer);
@@ -109,17 +110,23 @@ static void write_experiment(xmlTextWriterPtr writer, const struct Model *model)
   xmlTextWriterEndElement(writer);
 }
 
+/* Changes at events and communication points alone. */
+static bool is_discrete(const struct ScalarVariable *entry) {
+  return entry->kind == VARIABLE_STATISTIC || entry->kind == VARIABLE_MODE || entry->kind == VARIABLE_CONTACT;
+}
+
 /* Causality, variability and initial by the tables of section 2.2.7. */
 static void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
   static const char *const causalities[] = {
       [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
       [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
-      [VARIABLE_STATISTIC] = "local",
+      [VARIABLE_STATISTIC] = "local",  [VARIABLE_MODE] = "local",          [VARIABLE_CONTACT] = "local",
   };
   static const char *const initials[] = {
-      [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
-      [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
+      [VARIABLE_STATE] = "exact",        [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
+      [VARIABLE_RESULT] = "calculated",  [VARIABLE_STATISTIC] = "calculated",  [VARIABLE_MODE] = "exact",
+      [VARIABLE_CONTACT] = "calculated",
   };
   bool is_calculated = is_calculated_parameter(entry);
   write_attribute(writer, "causality",
@@ -128,7 +135,7 @@ static void write_classification(xmlTextWriterPtr writer, const struct Interface
                                    : causalities[entry->kind]);
   write_attribute(writer, "variability",
                   entry->kind == VARIABLE_PARAMETER || is_calculated ? "tunable"
-                  : entry->kind == VARIABLE_STATISTIC                ? "discrete"
+                  : is_discrete(entry)                               ? "discrete"
                                                                      : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
     write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);
@@ -142,7 +149,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
   if (!isnan(variable->entry.maximum)) write_number(writer, "max", variable->entry.maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
-  if (kind == VARIABLE_STATE || kind == VARIABLE_INPUT || kind == VARIABLE_PARAMETER)
+  if (kind == VARIABLE_STATE || kind == VARIABLE_INPUT || kind == VARIABLE_PARAMETER || kind == VARIABLE_MODE)
     write_number(writer, "start", variable->entry.start);
   if (kind == VARIABLE_DERIVATIVE)
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
@@ -205,7 +212,9 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   if (model->description != NULL) write_attribute(writer, "description", model->description);
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
-  write_attribute(writer, "numberOfEventIndicators", "0");
+  const struct SwitchingExpressions *switching = program->expressions->switching;
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "numberOfEventIndicators", "%zu",
+                                    switching != NULL ? switching->indicator_count : 0);
   write_interfaces(writer, program);
   write_units(writer, interface);
   write_log_categories(writer);

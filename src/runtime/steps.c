@@ -9,6 +9,7 @@
 #include "guides.h"
 #include "projection.h"
 #include "solver.h"
+#include "switching.h"
 
 enum StepResult {
   STEP_DONE,
@@ -79,6 +80,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set. */
     if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return STEP_PARTIAL;
+    if (lagrangian.switching != NULL && !lagrangian.switching->resume(instance, step->start)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -99,22 +101,29 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
   const struct Span *last = &instance->situation->last_step;
+  const struct Switching *switcher = lagrangian.switching;
+  struct EventProgress progress = {.searched = step->start};
   int resting = 0;
-  for (; last->end < step->end; step->count++) {
+  for (;; step->count++) {
+    const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    if (problem != NULL || last->end >= step->end) return problem;
     if (step->count == lagrangian.max_steps)
       return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
     if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);
-    const char *problem = lagrangian.solver->advance(instance, step);
+    problem = lagrangian.solver->advance(instance, step);
+    if (problem != NULL && switcher != NULL) problem = switcher->pass_barrier(instance, step, problem, &progress);
     if (problem != NULL) return problem;
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return solver_resting;
   }
-  return NULL;
 }
 
 /* False where the state is not known or not finite. */
 static bool take_state(struct Instance *instance, double time) {
-  if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
+  const struct Span *last = &instance->situation->last_step;
+  bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
+  if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
+  else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
   return are_finite(instance->state, lagrangian.state_count);
 }
 

@@ -1,6 +1,6 @@
 /*
- * FMI for Model Exchange (section 3.2): the importer integrates. The only events are those in which a state that drifted
- * from the constraints is brought back.
+ * FMI for Model Exchange (section 3.2): the importer integrates. In an event modes may change, and a state that drifted from
+ * the constraints is brought back.
  */
 #include <math.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include "evaluate.h"
 #include "fmi2_life_cycle.h"
 #include "projection.h"
+#include "switching.h"
 
 static fmi2Status change_mode(fmi2Component c, enum Function function, const char *name, enum Mode mode) {
   struct Instance *instance = enter(c, function, name);
@@ -42,11 +43,26 @@ static bool has_drifted(struct Instance *instance) {
   return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
 }
 
+/* Brings the modes into agreement with the state. */
+static enum Status settle_in_event(struct Instance *instance, fmi2EventInfo *event) {
+  bool changed;
+  const char *problem =
+      lagrangian.switching->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, &changed);
+  if (problem != NULL) return log_error(instance, "time %g: %s", instance->situation->time, problem);
+  event->valuesOfContinuousStatesChanged = changed;
+  return STATUS_DONE;
+}
+
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
   struct Instance *instance = enter(c, FUNCTION_NEW_DISCRETE_STATES, __func__);
   if (instance == NULL || !check_array(instance, eventInfo, 1, __func__, "eventInfo")) return fmi2Error;
   *eventInfo = (fmi2EventInfo){0};
-  return lagrangian.projection == NULL ? fmi2OK : fmi2_status(project_in_event(instance, eventInfo));
+  enum Status status = STATUS_DONE;
+  if (lagrangian.switching != NULL) status = settle_in_event(instance, eventInfo);
+  bool has_settled = eventInfo->valuesOfContinuousStatesChanged;
+  if (status == STATUS_DONE && lagrangian.projection != NULL) status = project_in_event(instance, eventInfo);
+  if (has_settled) eventInfo->valuesOfContinuousStatesChanged = fmi2True;
+  return fmi2_status(status);
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
@@ -56,7 +72,8 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
   if (instance == NULL || !check_array(instance, enterEventMode, 1, __func__, "enterEventMode") ||
       !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation"))
     return fmi2Error;
-  *enterEventMode = lagrangian.projection != NULL && has_drifted(instance);
+  *enterEventMode = (lagrangian.projection != NULL && has_drifted(instance)) ||
+                    (lagrangian.switching != NULL && lagrangian.switching->is_due(instance));
   *terminateSimulation = fmi2False;
   return fmi2OK;
 }
@@ -103,10 +120,15 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni) {
   struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  (void)eventIndicators;
+  size_t count = indicator_count(lagrangian.switches);
   if (instance == NULL) return fmi2Error;
-  if (ni == 0) return fmi2OK;
-  return fmi2_status(log_error(instance, "%s: %zu elements; expected 0", __func__, ni));
+  if (ni != count)
+    return fmi2_status(
+        log_error(instance, "%s: %zu elements; expected %zu, the number of event indicators", __func__, ni, count));
+  if (count == 0) return fmi2OK;
+  if (!check_array(instance, eventIndicators, ni, __func__, "the array")) return fmi2Error;
+  return lagrangian.switching->indicators(instance, eventIndicators) ? fmi2OK
+                                                                     : fmi2_status(discard_for_singularity(instance));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx) {
