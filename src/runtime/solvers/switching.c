@@ -50,7 +50,10 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   double rate = settlement->value[place + FRICTION_RATE],
          noise = settlement_noise(settlement, place, place + FRICTION_RATE);
   double flips = settlement->flips[indicator_of_friction(settlement, friction)];
-  bool is_moving = fabs(velocity) > noise, is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
+  bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
+  bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
   double direction = velocity > 0.0 ? 1.0 : -1.0;
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
