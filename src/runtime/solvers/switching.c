@@ -15,6 +15,9 @@
 
 enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
 
+/* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
+static const double shortest_slip = 1e-4;
+
 /* Whether some constraint of a contact or friction holds, so that indicators are forces. */
 static bool holds_any(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -66,7 +69,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   if (is_moving && settlement->jumped) return direction;
   if (is_moving && !turns) return mode;
   if (is_first_of_all && is_first) return 0.0;
-  double least = -settlement->noise[place + FRICTION_RATE];
+  double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
   if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
   return 0.0;
 }
