@@ -123,6 +123,8 @@ class Line:
                     ahead = expm(self.flow(accelerations) * AHEAD) @ z
                     stays = self.stays(closed, trial, forces)
                     if np.all(stays @ ahead > np.where(abs(stays @ z) < 1e-12, -1e-14, -1e-12)):
+                        if np.linalg.matrix_rank(rows) < len(rows):
+                            raise Redundant
                         return closed, trial
         raise Redundant if redundant else AssertionError("no combination of modes is right")
 
