@@ -60,8 +60,11 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   double direction = velocity > 0.0 ? 1.0 : -1.0;
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    bool slips = fabs(force) > settlement->value[place + FRICTION_STICTION] ||
-                 (is_hit(settlement, indicator_of_friction(settlement, friction)) && is_first && !settlement->jumped);
+    double stiction = settlement->value[place + FRICTION_STICTION];
+    /* An importer comes to a zero or past it, and does not tell whose. */
+    bool is_reached = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
+                      (settlement->occasion == IN_EXCHANGE && fabs(force) >= stiction);
+    bool slips = fabs(force) > stiction || (is_reached && is_first && !settlement->jumped);
     if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
     return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
   }
@@ -219,8 +222,9 @@ static const char *settle(struct Instance *instance, double time, double *state,
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
     problem = "the constraints cannot be kept at an event";
-  if (problem == NULL && settlement.changed && lagrangian.projection != NULL && occasion != AT_START)
-    problem = solver_project(instance, time, state);
+  /* In exchange the event mode itself takes up what an importer went too far. */
+  bool has_to_keep = lagrangian.projection != NULL && occasion != AT_START && occasion != IN_EXCHANGE;
+  if (problem == NULL && settlement.changed && has_to_keep) problem = solver_project(instance, time, state);
   if (settlement.changed && occasion != AT_START) instance->situation->statistics[STATISTIC_EVENTS]++;
   *changed = settlement.changed;
   return problem;
