@@ -24,7 +24,7 @@ PLATFORMS = {
     "darwin64": (".dylib", ["x86_64-macos.11.0", "aarch64-macos.11.0"]),
     "aarch64-linux": (".so", ["aarch64-linux-gnu.2.17"]),
 }
-RUNTIME = Path(__file__).resolve().parent.parent  # has include/ and src/runtime/
+ROOT = Path(__file__).resolve().parent.parent  # of include/ and src/runtime/
 
 # The same sums and products everywhere: no a*b + c in one operation. Without unused functions.
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all"]
@@ -37,10 +37,16 @@ LEFT_OUT = re.compile(r"^f(ark|cv|n|sun)|xbraid|hypamg|profiler|fused|futils")
 KLU_PARTS = ["KLU", "AMD", "COLAMD", "BTF"]
 
 
+class Failure(Exception):
+    """What cannot be compiled, with the compiler's words."""
+
+
 def zig(*words, cache):
     """Runs zig; what it compiled of the platforms' C libraries stays where ZIG_GLOBAL_CACHE_DIR says, or zig's own place."""
     environment = {"ZIG_LOCAL_CACHE_DIR": str(cache), **os.environ}
-    subprocess.run([sys.executable, "-m", "ziglang", *map(str, words)], env=environment, check=True)
+    result = subprocess.run([sys.executable, "-m", "ziglang", *map(str, words)], env=environment, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise Failure(result.stderr.strip())
 
 
 @contextmanager
@@ -64,14 +70,15 @@ def universal(slices):
     return header.ljust(start, b"\0") + content
 
 
-def compile_target(target, system, library, sundials, folder):
+def compile_target(target, system, library, source, sundials, folder):
     """system.c and the parts of the runtime that it includes as one library in the folder."""
     output = folder / target / library
     output.parent.mkdir()
-    words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={RUNTIME}=."]
+    words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.",
+             f"-ffile-prefix-map={system.parent}=."]  # fmt: skip
     if "macos" in target:
         words.append(f"-Wl,-install_name,@rpath/{library}")
-    includes = [RUNTIME / "include", RUNTIME / "src" / "runtime", *sorted((RUNTIME / "src" / "runtime").glob("*/"))]
+    includes = [source / "include", source / "src" / "runtime", *sorted((source / "src" / "runtime").glob("*/"))]
     libraries = []
     if sundials is not None:
         includes.append(sundials / "include")
@@ -80,19 +87,20 @@ def compile_target(target, system, library, sundials, folder):
     return output.read_bytes()
 
 
-def compile_fmu(platform, system, library, sundials=None):
+def compile_fmu(platform, system, library, source=ROOT, sundials=None):
     """
-    Compiles the system.c of lagc as the shared library for binaries/PLATFORM. sundials: the folder that compile_sundials() made,
-    for systems with erk and bdf; others leave it alone.
+    Compiles the system.c of lagc as the shared library for binaries/PLATFORM, with the runtime in source/include and
+    source/src/runtime. sundials: the folder that compile_sundials() made, for systems with erk and bdf; others leave it alone.
     """
-    system, library = Path(system).resolve(), Path(library).resolve()
+    system, library, source = Path(system).resolve(), Path(library).resolve(), Path(source).resolve()
     if '#include "sundials_memory.c"' not in system.read_text():
         sundials = None
     elif sundials is None or not (Path(sundials) / "include").exists():
-        sys.exit(f"cross.py: {system} needs SUNDIALS for {platform}, which is not in {sundials}; "
-                 "expected what scripts/sundials-everywhere builds, or another <solver> than erk and bdf")  # fmt: skip
+        raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
+    else:
+        sundials = Path(sundials).resolve()
     with scratch(library) as folder:
-        slices = [compile_target(target, system, library.name, sundials and Path(sundials).resolve(), folder) for target in PLATFORMS[platform][1]]
+        slices = [compile_target(target, system, library.name, source, sundials, folder) for target in PLATFORMS[platform][1]]
         (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])
         (folder / library.name).replace(library)
 
@@ -155,8 +163,8 @@ def main():
             compile_fmu(words.platform, words.system, words.library, words.sundials)
         else:
             compile_sundials(words.folder, words.sundials, words.suitesparse)
-    except subprocess.CalledProcessError as problem:
-        sys.exit(problem.returncode)
+    except Failure as problem:
+        sys.exit(f"cross.py: {problem}")
 
 
 if __name__ == "__main__":
