@@ -14,7 +14,8 @@
 
 /* FMUs without SUNDIALS are complete in C, as one file that the build makes of system.c and the runtime. */
 static void write_sources(xmlTextWriterPtr writer, const struct Program *program) {
-  if (method_uses_library(program->interface->method)) return;
+  const struct Method *method = program->interface->method;
+  if (method != NULL && method->uses_library) return;
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
   xmlTextWriterStartElement(writer, BAD_CAST "File");
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "name", "%s.c", program->model->name);

@@ -15,15 +15,15 @@ static void include_source(FILE *file, const char *name) {
   fprintf(file, "#include \"%s\"\n", name);
 }
 
-/* FMUs without SUNDIALS are complete in C: the files that this one needs, for archives whose source is one file. */
+/* The files of the runtime that this one needs, for compiling all in one, and for archives whose source is one file. */
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->interface->method;
-  if (method_uses_library(method)) return;
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);
   for (const char *const *name = runtime_sources; *name != NULL; name++) include_source(file, *name);
+  const char *solver = description_solver(program), *lu = description_lu(program);
+  if (solver != NULL) fprintf(file, "#include \"%s.c\"\n", solver);
   for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
     include_source(file, method->sources[i]);
-  const char *lu = description_lu(program);
   if (lu != NULL) fprintf(file, "#include \"%s.c\"\n", lu);
   if (program->is_table) include_source(file, "instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");

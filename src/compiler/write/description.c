@@ -83,6 +83,13 @@ static void write_pattern(FILE *file, const struct Program *program) {
   fputs("\n", file);
 }
 
+const char *description_solver(const struct Program *program) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  if (program->equations->count == 0) return NULL;
+  return method_solver(program->interface->method, program->interface->state_count,
+                       jacobian != NULL ? jacobian->count : 0);
+}
+
 const char *description_lu(const struct Program *program) {
   const struct Method *method = program->interface->method;
   if (method == NULL || !method->factors) return NULL;
@@ -189,24 +196,18 @@ static void write_operations(FILE *file, const struct Program *program) {
 }
 
 /* NULL for a system without coordinates. */
-static const char *solver_of(const struct Program *program) {
-  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
-  if (program->equations->count == 0) return NULL;
-  return method_solver(program->interface->method, program->interface->state_count,
-                       jacobian != NULL ? jacobian->count : 0);
-}
 
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
   const struct Interface *interface = program->interface;
-  const char *solver = solver_of(program), *lu = description_lu(program);
-  if (solver != NULL) fprintf(file, "extern const struct Solver %s;\n\n", solver);
+  const char *solver = description_solver(program), *lu = description_lu(program);
+  if (solver != NULL) fprintf(file, "extern const struct Solver solver_%s;\n\n", solver);
   if (lu != NULL) fprintf(file, "extern const struct Lu %s;\n\n", lu);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n",
           program->model->name);
   write_counts(file, program, work_count);
   fputs("    .variables = variables,\n", file);
   if (solver != NULL)
-    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &%s,\n",
+    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
             solver);
   fputs("    .tolerance = ", file);
   write_c_number(file, interface_tolerance(program->model));
