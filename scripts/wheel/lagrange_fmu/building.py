@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 
 from .packing import pack, write_sources
 from .problem import Problem
-from .runtime.scripts.cross import PLATFORMS, compile_fmu
+from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
 
 HERE = Path(__file__).resolve().parent
 NATIVE = "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux"
@@ -65,8 +65,8 @@ def compile_libraries(folder, name, platforms, content):
         library.parent.mkdir(parents=True)
         try:
             compile_fmu(platform_name, folder / "system.c", library)
-        except subprocess.CalledProcessError as problem:
-            raise Problem(f"{name} cannot be compiled for {platform_name}: {' '.join(map(str, problem.cmd[:4]))} ended with {problem.returncode}") from None
+        except Failure as failure:
+            raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
 
 def build(system, platforms=None, solver=None, output="."):

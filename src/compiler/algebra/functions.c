@@ -105,8 +105,8 @@ static Node root_of_square_minus_one(struct Graph *graph, Node node) {
 }
 
 static Node sum_of_squares(struct Graph *graph, Node node) {
-  Node left = graph->vertices[node].left, right = graph->vertices[node].right;
-  return add(graph, power_number(graph, left, 2.0), power_number(graph, right, 2.0));
+  Node left = graph->vertices[node].left, right = power_number(graph, graph->vertices[node].right, 2.0);
+  return add(graph, power_number(graph, left, 2.0), right);
 }
 
 static Node difference(struct Graph *graph, Node node) {
