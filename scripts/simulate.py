@@ -18,7 +18,7 @@ def main():
         motion = simulate(arguments.fmu, dict(arguments.start))
     except Problem as problem:
         sys.exit(f"scripts/run: {problem}")
-    print_results(arguments.fmu, write_results(motion, Path("build/results")))
+    print_results(write_results(motion, Path("build/results")))
 
 
 if __name__ == "__main__":

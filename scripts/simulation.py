@@ -19,6 +19,7 @@ from .variables import settable, start_values, why_not
 
 @dataclass
 class Motion:
+    fmu: Path
     description: ModelDescription
     scene: list  # the elements to be seen
     start: dict  # the start values of all that have one
@@ -64,7 +65,7 @@ def simulate(fmu, start, **options):
         )
     except FMICallException as problem:
         raise Problem(f"{fmu}: {problem}") from None
-    return Motion(description, scene, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
+    return Motion(fmu, description, scene, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
 
 
 def draw(description, result, path):
@@ -89,12 +90,12 @@ def draw(description, result, path):
 
 
 def write_results(motion, folder):
-    """Writes them into the folder; the path of each kind, or why there is none."""
+    """Writes them into the folder; the path of each kind, the FMU's too, or why there is none."""
     folder.mkdir(parents=True, exist_ok=True)
     name, result = motion.description.modelName, motion.outputs
     csv, plot, animation = ((folder / f"{name}.{kind}").resolve() for kind in ("csv", "png", "html"))
     np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
-    written = {"CSV": csv, "plot": plot, "animation": animation}
+    written = {"FMU": Path(motion.fmu).resolve(), "CSV": csv, "plot": plot, "animation": animation}
     try:
         draw(motion.description, result, plot)
     except ModuleNotFoundError:
@@ -108,6 +109,6 @@ def write_results(motion, folder):
     return written
 
 
-def print_results(fmu, written):
-    for kind, path in {"FMU": fmu.resolve(), **written}.items():
+def print_results(written):
+    for kind, path in written.items():
         print(f"{kind:10} {path}")

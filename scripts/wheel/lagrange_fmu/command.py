@@ -5,9 +5,9 @@ import sys
 import warnings
 
 from . import __version__
-from .building import build, check, new
-from .cross import PLATFORMS
+from .building import NATIVE, build, check, new
 from .problem import Problem
+from .runtime.scripts.cross import PLATFORMS
 
 
 def start_value(text):
@@ -49,7 +49,7 @@ def parse(words):
     system = {"metavar": "SYSTEM.xml", "help": "the file, or a folder with a system.xml in it"}
     one = add("build", build_command, "Builds the FMU of a system, and prints where it is.")
     one.add_argument("system", **system)
-    one.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORMS)}; linux64 where none are given")
+    one.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORMS)}; {NATIVE} where none are given")
     one.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
     one.add_argument("-o", "--output", default=".", metavar="FOLDER", help="where the FMU goes; else the current folder")
     one = add("run", run_command, "Builds the FMU of a system and simulates it; leaves a CSV, a plot and an animation.")
