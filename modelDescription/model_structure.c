@@ -59,8 +59,8 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
     fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
     fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(dependency, known->entry.type, initial));
   }
-  fclose(places_file);
-  fclose(kinds_file);
+  close_text(places_file, &places, &places_length);
+  close_text(kinds_file, &kinds, &kinds_length);
   write_attribute(structure->writer, "dependencies", places);
   write_attribute(structure->writer, "dependenciesKind", kinds);
   free(places);

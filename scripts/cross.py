@@ -3,6 +3,7 @@ Compiles for other platforms than this machine's, with zig, which brings compile
 (the Python package ziglang). What every platform needs is here, and nowhere else.
 
     cross.py fmu PLATFORM SYSTEM.c LIBRARY [--sundials FOLDER]    a system that lagc wrote, as a library for binaries/PLATFORM
+    cross.py suffix PLATFORM                                      what libraries of the platform end in
     cross.py sundials FOLDER SUNDIALS SUITESPARSE                 SUNDIALS and KLU for all of them, from their sources
 """
 
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 # Folders in binaries/, with what libraries end in and zig's targets. FMI 2.0.5 has the first three, and for others the names of FMI 3.0.
@@ -55,6 +57,15 @@ def scratch(output):
     output.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=".cross-") as folder:
         yield Path(folder)
+
+
+def suffix_of(platform):
+    if platform not in PLATFORMS:
+        raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORMS)}")
+    if find_spec("ziglang") is None:
+        package = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
+        raise Failure(f"this Python has no package ziglang, which compiles for {platform}; expected one after pip install {package}")
+    return PLATFORMS[platform][0]
 
 
 def universal(slices):
@@ -150,17 +161,20 @@ def main():
     parser = argparse.ArgumentParser(prog="cross.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     fmu = commands.add_parser("fmu")
-    fmu.add_argument("platform", choices=PLATFORMS)
+    fmu.add_argument("platform")
     fmu.add_argument("system")
     fmu.add_argument("library")
     fmu.add_argument("--sundials")
+    commands.add_parser("suffix").add_argument("platform")
     libraries = commands.add_parser("sundials")
     for name in ("folder", "sundials", "suitesparse"):
         libraries.add_argument(name)
     words = parser.parse_args()
     try:
-        if words.command == "fmu":
-            compile_fmu(words.platform, words.system, words.library, words.sundials)
+        if words.command == "suffix":
+            print(suffix_of(words.platform))
+        elif words.command == "fmu":
+            compile_fmu(words.platform, words.system, words.library, sundials=words.sundials)
         else:
             compile_sundials(words.folder, words.sundials, words.suitesparse)
     except Failure as problem:

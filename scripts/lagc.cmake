@@ -18,7 +18,7 @@ file(GLOB compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/sr
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
 add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
             ${CMAKE_BINARY_DIR}/runtime_sources.c)
-target_compile_definitions(compiler PUBLIC _GNU_SOURCE)
+target_compile_definitions(compiler PUBLIC _XOPEN_SOURCE=700)
 target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/modelDescription)
 target_include_directories(compiler SYSTEM PUBLIC ${LIBXML2_INCLUDE_DIRS})
 target_link_libraries(compiler PUBLIC ${LIBXML2_LIBRARIES} m)

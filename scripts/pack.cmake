@@ -1,6 +1,7 @@
-# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SYSTEM=... -D SOURCE=... -D ICON=... -D ZIP=... -D NAMES=...
-#                     -P pack.cmake
-# FOLDER holds what lagc wrote; NAMES lists the global names of the compiled runtime.
+# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... [-D LIBRARIES=...] -D FMU=... -D SYSTEM=... -D SOURCE=... -D ICON=... -D ZIP=...
+#                     -D NAMES=... -P pack.cmake
+# FOLDER holds what lagc wrote; LIBRARY is this machine's, LIBRARIES are those to pack, each in a folder of its platform's name,
+# where that is not LIBRARY; NAMES lists the global names of the compiled runtime.
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
 
@@ -17,7 +18,14 @@ file(REMOVE_RECURSE ${FMU} ${content})
 file(MAKE_DIRECTORY ${content})
 file(COPY ${FOLDER}/modelDescription.xml DESTINATION ${content})
 file(COPY ${FOLDER}/documentation/index.html DESTINATION ${content}/documentation)
-file(COPY ${LIBRARY} DESTINATION ${content}/binaries/linux64)
+if(NOT LIBRARIES)
+  set(LIBRARIES ${LIBRARY})
+endif()
+foreach(library ${LIBRARIES})
+  get_filename_component(platform ${library} DIRECTORY)
+  get_filename_component(platform ${platform} NAME)
+  file(COPY ${library} DESTINATION ${content}/binaries/${platform})
+endforeach()
 run(${ICON} ${LIBRARY} ${FOLDER}/modelDescription.xml model.png)
 
 # Where modelDescription.xml lists a source, it is one file: all that system.c includes, once each.

@@ -10,6 +10,7 @@
 #include "mechanics/linearize.h"
 #include "memory.h"
 #include "output.h"
+#include "platform.h"
 #include "program/program.h"
 #include "read/reader.h"
 
@@ -137,7 +138,10 @@ static _Noreturn void end_without_memory(void) {
 
 int main(int count, char **words) {
   on_memory_failure(end_without_memory);
+  write_plain_lines();
+#ifdef SIGXFSZ
   signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */
+#endif
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();

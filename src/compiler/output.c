@@ -4,13 +4,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "documentation.h"
 #include "model_description.h"
 #include "write/code.h"
 #include "guid.h"
 #include "memory.h"
+#include "platform.h"
 
 enum { FILE_COUNT = 3 };
 
@@ -22,25 +22,25 @@ static char *code_text(const struct Program *program) {
   size_t length = 0;
   FILE *file = open_text(&text, &length);
   code_write(file, program);
-  fclose(file);
+  close_text(file, &text, &length);
   return text;
 }
 
 /* Creates the directory and those above it. */
 static bool create_directory(const char *path) {
   char *partial = copy_text(path);
-  for (char *slash = strchr(partial + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
-    *slash = '\0';
-    mkdir(partial, 0777);
-    *slash = '/';
+  for (char *end = first_separator(partial + 1); end != NULL; end = first_separator(end + 1)) {
+    char separator = *end;
+    *end = '\0';
+    make_directory(partial);
+    *end = separator;
   }
   free(partial);
-  struct stat status;
-  return mkdir(path, 0777) == 0 || (stat(path, &status) == 0 && S_ISDIR(status.st_mode));
+  return make_directory(path);
 }
 
 static bool write_file(const char *path, const char *text) {
-  FILE *file = fopen(path, "w");
+  FILE *file = fopen(path, "wb");
   if (file == NULL) return false;
   bool written = fputs(text, file) >= 0;
   return fclose(file) == 0 && written;
@@ -79,6 +79,7 @@ static bool move_in(const char *directory) {
   free(mark);
   for (int i = 0; i < FILE_COUNT && moved; i++) {
     char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
+    remove(to); /* not everywhere does rename do that */
     moved = rename(from, to) == 0;
     free(from);
     free(to);

@@ -84,7 +84,7 @@ char *method_names(void) {
   FILE *file = open_text(&text, &length);
   for (size_t i = 0; i < METHOD_COUNT; i++)
     fprintf(file, "%s%s", i == 0 ? "" : i + 1 == METHOD_COUNT ? " or " : ", ", methods[i].name);
-  fclose(file);
+  close_text(file, &text, &length);
   return text;
 }
 

@@ -115,7 +115,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
     inside = inside || definitions->stack[i] == closing;
     if (inside && definition->state == ACTIVE) fprintf(file, "%s -> ", definition->name);
   }
-  fclose(file);
+  close_text(file, &text, &length);
   const struct NamedExpression *expression = &definitions->items[closing].expression;
   struct Source *present = source_enter(reader, expression->source);
   report_error(reader->diagnostics, xmlGetLineNo(expression->node),
