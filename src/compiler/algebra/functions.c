@@ -73,7 +73,8 @@ static Node cosh_of_operand(struct Graph *graph, Node node) {
 
 /* constant + factor node^2 */
 static Node with_square(struct Graph *graph, double constant, double factor, Node node) {
-  return add(graph, graph_constant(graph, constant), scale(graph, factor, power_number(graph, node, 2.0)));
+  Node square = scale(graph, factor, power_number(graph, node, 2.0));
+  return add(graph, graph_constant(graph, constant), square);
 }
 
 static Node one_plus_own_square(struct Graph *graph, Node node) {
@@ -105,8 +106,9 @@ static Node root_of_square_minus_one(struct Graph *graph, Node node) {
 }
 
 static Node sum_of_squares(struct Graph *graph, Node node) {
-  Node left = graph->vertices[node].left, right = power_number(graph, graph->vertices[node].right, 2.0);
-  return add(graph, power_number(graph, left, 2.0), right);
+  Node left = graph->vertices[node].left, right = graph->vertices[node].right;
+  Node other = power_number(graph, right, 2.0);
+  return add(graph, power_number(graph, left, 2.0), other);
 }
 
 static Node difference(struct Graph *graph, Node node) {

@@ -266,8 +266,8 @@ bool find_spatial_point(const struct Reader *reader, const char *name, struct Sp
 
 static struct Vector acceleration_of(struct Scope *scope, const struct Pose *pose, struct Vector velocity) {
   struct Graph *graph = scope->graph;
-  struct Vector by_turning = vector_cross(graph, pose->angular_velocity, velocity);
-  return vector_add(graph, derivative_of(scope, velocity), by_turning);
+  struct Vector turning = vector_cross(graph, pose->angular_velocity, velocity);
+  return vector_add(graph, derivative_of(scope, velocity), turning);
 }
 
 /* What a component such as "vx" or "omegaX" is of. */

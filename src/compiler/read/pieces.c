@@ -3,7 +3,8 @@
 #include "algebra/simplify.h"
 
 Node way_in(struct Graph *graph, Node x, double from, double to) {
-  return function(graph, MINIMUM, graph_constant(graph, to - from), way_behind(graph, x, from));
+  Node way = way_behind(graph, x, from);
+  return function(graph, MINIMUM, graph_constant(graph, to - from), way);
 }
 
 Node way_before(struct Graph *graph, Node x, double start) {
