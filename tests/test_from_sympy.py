@@ -162,13 +162,16 @@ def test_speeds_have_names_of_their_own(tmp_path):
 
 
 def test_expressions(tmp_path):
-    """Values of what the language writes otherwise, through an FMU: U' is minus the acceleration."""
+    """What the language writes otherwise, through an FMU: the velocity after a short time is minus U' of SymPy times that."""
     x = dynamicsymbols("x")
-    U = sm.Max(x, x**2, 3, k) + sm.Min(sm.E * x, sm.cot(x + 2), 7) + sm.atan2(x, 2) + sm.GoldenRatio * x ** sm.Rational(-5, 3) + 2 ** (-(x**2)) + sm.sqrt(x) / 3e-7
-    path = wheel.package().from_sympy(LagrangesMethod(x.diff() ** 2 / 2 - U, [x]), tmp_path / "Terms.xml", {k: 1}, start={x: 2.5})
-    motion = wheel.package().simulate(path, stop_time=1e-6, output_interval=1e-6)
-    expected = -float(U.diff(x).subs({k: 1, x: 2.5}))
-    assert motion["x_dot"][-1] == pytest.approx(expected * 1e-6, rel=1e-6)
+    extremes = sm.Max(x, x**2, 3, 4 * k * x) + sm.Min(sm.E * x, sm.cot(x + 2), 7 + x**3, 3 - 2 * x)
+    U = 1e6 * extremes + sm.atan2(x, 2) + sm.GoldenRatio * x ** sm.Rational(-5, 3) + 2 ** (-(x**2)) + sm.sqrt(x) / 3e-7
+    lagrange_fmu = wheel.package()
+    system = lagrange_fmu.from_sympy(LagrangesMethod(x.diff() ** 2 / 2 - U, [x]), tmp_path / "Terms.xml", {k: 1})
+    path = lagrange_fmu.build(system, output=tmp_path)
+    for place, stiffness in [(0.5, 1), (0.5, 5), (0.9, 0.1), (1.3, 0.01), (2.5, 0.2), (4, 9)]:
+        motion = lagrange_fmu.simulate(path, {"x": place, "k": stiffness}, stop_time=1e-9, output_interval=1e-9)
+        assert motion["x_dot"][-1] == pytest.approx(-float(U.diff(x).subs({k: stiffness, x: place})) * 1e-9, rel=1e-7)
 
 
 X = dynamicsymbols("x")
