@@ -15,7 +15,6 @@ from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
 
 HERE = Path(__file__).resolve().parent
 NATIVE = "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux"
-INSTEAD = {"bdf": "radau", "erk": "auto"}  # of the methods of SUNDIALS
 
 
 def system_file(system):
@@ -52,8 +51,9 @@ def check(system, solver=None):
     with tempfile.TemporaryDirectory() as scratch:
         description = derive(system, Path(scratch), solver)
         method = method_of(Path(scratch))
-    counts = {f"{causality}s": len(description.findall(f"ModelVariables/ScalarVariable[@causality='{causality}']")) for causality in ("input", "output", "parameter")}
-    counts = {"states": len(description.findall("ModelStructure/Derivatives/Unknown"))} | counts
+    counts = {"states": len(description.findall("ModelStructure/Derivatives/Unknown"))}
+    for causality in ("input", "output", "parameter"):
+        counts[f"{causality}s"] = len(description.findall(f"ModelVariables/ScalarVariable[@causality='{causality}']"))
     return f"{description.get('modelName')}: {', '.join(f'{count} {kind}' for kind, count in counts.items())}; solver {method}"
 
 
@@ -64,7 +64,7 @@ def compile_libraries(folder, name, platforms, content):
         library = content / "binaries" / platform_name / f"{name}{PLATFORMS[platform_name][0]}"
         library.parent.mkdir(parents=True)
         try:
-            compile_fmu(platform_name, folder / "system.c", library)
+            compile_fmu(platform_name, folder / "system.c", library, sundials=HERE / "sundials")
         except Failure as failure:
             raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
@@ -81,18 +81,14 @@ def build(system, platforms=None, solver=None, output="."):
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         description = derive(system, folder, solver)
-        name, method = description.find("CoSimulation").get("modelIdentifier"), method_of(folder)
-        if method in INSTEAD:
-            raise Problem(
-                f"{system}: the solver {method} needs SUNDIALS, which this package does not bring; "
-                f"expected another one, such as {INSTEAD[method]} (--solver {INSTEAD[method]})"
-            )
+        name = description.find("CoSimulation").get("modelIdentifier")
         content = folder / "content"
         compile_libraries(folder, name, platforms, content)
         (content / "documentation").mkdir()
         for file in ("modelDescription.xml", "documentation/index.html"):
             (folder / file).rename(content / file)
-        write_sources(folder / "system.c", name, content / "sources" / f"{name}.c")
+        if description.find("CoSimulation/SourceFiles") is not None:
+            write_sources(folder / "system.c", name, content / "sources" / f"{name}.c")
         archive = Path(output) / f"{name}.fmu"
         archive.parent.mkdir(parents=True, exist_ok=True)
         pack(content, archive)
