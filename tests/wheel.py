@@ -34,15 +34,18 @@ def _install(wheel):
 
 @functools.cache
 def installed():
-    """The wheel of this tree, after it has been installed where COMMAND is; other processes wait."""
+    """The wheel of this tree, after it has been installed where COMMAND is; once in a run of tests, other processes wait."""
     (FOLDER / "scratch").mkdir(parents=True, exist_ok=True)
-    with open(FOLDER / "lock", "w") as lock:
+    this_run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid()))
+    with open(FOLDER / "lock", "a+") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        wheel = build_wheel(ROOT, FOLDER / "dist")
-        stamp, digest = FOLDER / "installed", hashlib.sha256(wheel.read_bytes()).hexdigest()
-        if not stamp.exists() or stamp.read_text() != digest:
-            _install(wheel)
-            stamp.write_text(digest)
+        lock.seek(0)
+        if lock.read() != this_run:
+            shutil.rmtree(FOLDER / "dist", ignore_errors=True)
+            _install(build_wheel(ROOT, FOLDER / "dist"))
+            lock.truncate(0)
+            lock.write(this_run)
+    [wheel] = (FOLDER / "dist").glob("*.whl")
     return wheel
 
 
