@@ -2,8 +2,8 @@
 
 import fcntl
 import functools
-import hashlib
-
+import os
+import shutil
 import subprocess
 import sys
 
