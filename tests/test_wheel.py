@@ -36,6 +36,12 @@ def test_any_linux_can_install_it():
         assert "lagrange_fmu/licenses/libxml2" in file.namelist()
 
 
+def test_one_version_of_the_compiler():
+    """What builds the wheel, what it asks for, and what the tree takes for other platforms."""
+    pin = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
+    assert re.findall(r'"(ziglang[^"]*)"', (ROOT / "scripts" / "wheel" / "pyproject.toml").read_text()) == [pin, pin]
+
+
 def test_from_nothing_to_a_motion(tmp_path):
     succeed("new", "Swing", cwd=tmp_path)
     assert succeed("check", "Swing.xml", cwd=tmp_path) == "Swing: 2 states, 1 inputs, 3 outputs, 4 parameters; solver auto\n"
@@ -137,6 +143,8 @@ def test_from_python(tmp_path):
     assert written["CSV"].exists() and written["plot"].stat().st_size > 10_000
     with pytest.raises(lagrange_fmu.Problem, match="there is no file"):
         lagrange_fmu.build(tmp_path / "nothing")
+    with pytest.raises(lagrange_fmu.Problem, match="the platform 'win46' is not known; expected linux64"):
+        lagrange_fmu.build(ROOT / "fmu" / "SimplePendulum", platforms="win46")
 
 
 def test_two_clones_give_the_same_bytes(tmp_path):

@@ -72,9 +72,9 @@ def compile_libraries(folder, name, platforms, content):
 def build(system, platforms=None, solver=None, output="."):
     """
     Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
-    `output`. Platforms are names in PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own.
+    `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own.
     """
-    platforms = list(dict.fromkeys(platforms or [NATIVE]))
+    platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORMS:
             raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORMS)}")
