@@ -195,7 +195,8 @@ def test_mac_libraries(name):
     for processor in ("x86_64", "arm64"):
         dump = functools.partial(output_of, "llvm-objdump", "--macho", f"--arch={processor}")
         exported = re.findall(r"^0x[0-9A-F]+\s+(\S+)$", dump("--exports-trie", path), re.M)
-        assert sorted(exported) == [f"_{function}" for function in functions()]
+        # zig's linker adds the two by which every library for the Mac finds its own header.
+        assert sorted(set(exported) - {"__mh_dylib_header", "___dso_handle"}) == [f"_{function}" for function in functions()]
         headers = dump("--private-headers", path)
         assert re.search(r"\bDYLIB\b", headers)
         assert re.findall(r"cmd LC_LOAD_DYLIB\s+cmdsize \d+\s+name (\S+)", headers) == ["/usr/lib/libSystem.B.dylib"]
