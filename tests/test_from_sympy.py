@@ -1,6 +1,7 @@
 """from_sympy of the wheel: systems of sympy.physics.mechanics move in the FMU as SymPy's own mass matrix and forcing say."""
 
 import random
+import re
 
 import numpy as np
 import pytest
@@ -133,6 +134,16 @@ def test_accelerations_are_those_of_sympy(make, tmp_path, open_fmu):
         instance = open_fmu(name, kind=FMU2Model).initialize(start, start_time=moment)
         found = instance.get(*(f"der({variable})" for variable in [*names, *names.values()]))
         np.testing.assert_allclose(found, expected[: 2 * len(q)], rtol=1e-9, atol=1e-9)
+
+
+def test_the_example_of_the_readme(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    [example] = re.findall(r"```python\n(from sympy.*?)```", (fmu.ROOT / "scripts" / "wheel" / "README.md").read_text(), re.S)
+    names = {"lagrange_fmu": wheel.package()}
+    exec(example, names)
+    motion = names["motion"]
+    energy = 0.5 * 0.5**2 * motion["theta_dot"] ** 2 - 9.81 * 0.5 * np.cos(motion["theta"])
+    assert motion["theta"][0] == 1 and np.ptp(energy) < 1e-6 and np.ptp(motion["theta"]) > 1.9
 
 
 def test_names_become_valid(tmp_path):
