@@ -251,7 +251,7 @@ def test_lagc_for_windows(tmp_path):
         subprocess.run(["cmake", "--build", folder, "--target", "lagc", "--parallel", "2"], check=True, capture_output=True)
     systems = {name: ROOT / "fmu" / name / "system.xml" for name in fmu.all_names()}
     systems |= {name: ROOT / "tests" / "systems" / name / "system.xml" for name in fmu.further_names()}
-    lines = [f'"{folder / "lagc.exe"}" "{system}" -o "{tmp_path / "there" / name}" || exit 1' for name, system in systems.items()]
+    lines = [f'"{folder / "lagc.exe"}" "{system}" -o "{tmp_path / "there" / name}"\nif errorlevel 1 exit 1' for name, system in systems.items()]
     (tmp_path / "all.bat").write_text("@echo off\n" + "\n".join(lines).replace("/", "\\"), newline="\r\n")  # starting wine takes seconds
     result = subprocess.run(["wine", "cmd", "/c", "all.bat"], capture_output=True, text=True, env=ENVIRONMENT, cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
