@@ -63,7 +63,7 @@ def bring_up_to_date(build):
     """What build_systems() takes from another build; its lock is that of scripts/build."""
     with open(build / "build.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        tools = ["lagc", "icon", "interface", "solvers"]
+        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers"]
         subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
 
 
