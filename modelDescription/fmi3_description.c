@@ -73,20 +73,6 @@ static bool is_intermediate(const struct ScalarVariable *entry) {
          (entry->kind == VARIABLE_RESULT && !is_calculated_parameter(entry));
 }
 
-/* Of a derivative, that of the array. */
-static void write_description(xmlTextWriterPtr writer, const struct Interface *interface,
-                              const struct InterfaceVariable *variable) {
-  const struct ScalarVariable *entry = &variable->entry;
-  if (variable->description == NULL) return;
-  if (entry->kind != VARIABLE_DERIVATIVE || variable->array_count == 0) {
-    write_attribute(writer, "description", variable->description);
-    return;
-  }
-  char *state = array_name(&interface->variables[interface_find(interface, VARIABLE_STATE, entry->index)]);
-  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "description", "time derivative of %s", state);
-  free(state);
-}
-
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,
                           const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
@@ -107,11 +93,11 @@ static const char *type_name(const struct ScalarVariable *entry) {
 
 static void write_variable(xmlTextWriterPtr writer, const struct Interface *interface, size_t place) {
   const struct InterfaceVariable *variable = &interface->variables[place];
-  char *name = array_name(variable);
+  char *name = array_name(variable), *description = array_description(variable);
   xmlTextWriterStartElement(writer, BAD_CAST type_name(&variable->entry));
   write_attribute(writer, "name", name);
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", place);
-  write_description(writer, interface, variable);
+  if (description != NULL) write_attribute(writer, "description", description);
   write_classification(writer, variable);
   if (is_intermediate(&variable->entry)) write_attribute(writer, "intermediateUpdate", "true");
   if (variable->entry.type != TYPE_BOOLEAN) write_numbers(writer, interface, variable);
@@ -123,6 +109,7 @@ static void write_variable(xmlTextWriterPtr writer, const struct Interface *inte
   }
   xmlTextWriterEndElement(writer);
   free(name);
+  free(description);
 }
 
 static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {

@@ -1,10 +1,10 @@
 /* Creation and end of an instance, and its messages to the caller's logger (section 2.3.1). */
 #include "fmi3_component.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "fmi3_life_cycle.h"
+#include "fmi3_memory.h"
 #include "log_categories.h"
 
 static unsigned wanted_statuses(const struct Component *component) {
@@ -59,19 +59,18 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
 
 /* What a new component is made of; NULL, and nothing is allocated, where there is no memory. */
 static struct Component *component_create(const struct Component *description, enum Kind kind) {
-  static const struct Allocator memory = {calloc, free};
-  struct Component *component = calloc(1, sizeof *component);
-  void *before = calloc(1, situation_size()), *kept = calloc(1, situation_size());
+  struct Component *component = fmi3_memory.allocate(1, sizeof *component);
+  void *before = fmi3_memory.allocate(1, situation_size()), *kept = fmi3_memory.allocate(1, situation_size());
   if (component != NULL && before != NULL && kept != NULL) {
     *component = *description;
     component->before = before;
     component->intermediate.kept = kept;
     struct Log log = log_of(component);
-    if (instance_create(&component->instance, kind, &memory, &log)) return component;
+    if (instance_create(&component->instance, kind, &fmi3_memory, &log)) return component;
   }
-  free(component);
-  free(before);
-  free(kept);
+  fmi3_memory.free(component);
+  fmi3_memory.free(before);
+  fmi3_memory.free(kept);
   return NULL;
 }
 
@@ -149,10 +148,10 @@ void fmi3FreeInstance(fmi3Instance c) {
   struct Component *component = c;
   if (component == NULL) return;
   instance_destroy(&component->instance);
-  free(component->before);
-  free(component->intermediate.kept);
-  for (int i = 0; i < WORKSPACE_COUNT; i++) free(component->workspaces[i].block);
-  free(component);
+  fmi3_memory.free(component->before);
+  fmi3_memory.free(component->intermediate.kept);
+  for (int i = 0; i < WORKSPACE_COUNT; i++) fmi3_memory.free(component->workspaces[i].block);
+  fmi3_memory.free(component);
 }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean loggingOn, size_t nCategories,

@@ -1,8 +1,7 @@
 #include "fmi3_references.h"
 
-#include <stdlib.h>
-
 #include "check.h"
+#include "fmi3_memory.h"
 
 /* The array with the variable in it; NULL for a scalar. */
 static const struct ArrayVariable *array_with(unsigned reference) {
@@ -30,8 +29,8 @@ void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size
                         const char *function) {
   struct Workspace *workspace = &component->workspaces[use];
   if (workspace->block != NULL && count <= workspace->size / size) return workspace->block;
-  free(workspace->block);
-  workspace->block = calloc(count + 1, size);
+  fmi3_memory.free(workspace->block);
+  workspace->block = fmi3_memory.allocate(count + 1, size);
   workspace->size = workspace->block != NULL ? count * size : 0;
   if (workspace->block == NULL)
     log_error(&component->instance, "%s: there is no memory for %zu values", function, count);
