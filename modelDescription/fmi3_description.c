@@ -69,7 +69,7 @@ static bool has_start(const struct ScalarVariable *entry) {
 
 /* What can be read within a communication step. */
 static bool is_intermediate(const struct ScalarVariable *entry) {
-  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_DERIVATIVE ||
+  return entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_DERIVATIVE ||
          (entry->kind == VARIABLE_RESULT && !is_calculated_parameter(entry));
 }
 
