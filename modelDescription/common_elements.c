@@ -28,10 +28,10 @@ static bool contains(const char *const *names, size_t count, const char *name) {
 }
 
 /* Each unit once, in the order of the variables. A system has few of them, however many variables. */
-void write_units(xmlTextWriterPtr writer, const struct Interface *interface) {
-  const char **written = allocate(interface->count, sizeof *written);
+void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count) {
+  const char **written = allocate(variable_count, sizeof *written);
   size_t count = 0;
-  for (size_t i = 0; i < interface->count; i++) {
+  for (size_t i = 0; i < variable_count; i++) {
     const char *unit = interface->variables[i].unit;
     if (unit == NULL || contains(written, count, unit)) continue;
     if (count == 0) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");

@@ -6,8 +6,8 @@
 
 #include "mechanics/interface.h"
 
-/* The element UnitDefinitions, where there are units. */
-void write_units(xmlTextWriterPtr writer, const struct Interface *interface);
+/* The element UnitDefinitions, where so many of the first variables have units. */
+void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count);
 
 void write_log_categories(xmlTextWriterPtr writer);
 

@@ -76,7 +76,7 @@ static bool is_intermediate(const struct ScalarVariable *entry) {
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,
                           const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
-  if (variable->unit != NULL) write_attribute(writer, "unit", variable->unit);
+  if (variable->unit != NULL && entry->type == TYPE_REAL) write_attribute(writer, "unit", variable->unit);
   if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);
   if (!isnan(entry->maximum)) write_number(writer, "max", entry->maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
@@ -140,7 +140,7 @@ bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, 
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
   write_interfaces(writer, program);
-  write_units(writer, program->interface);
+  write_units(writer, program->interface, program->interface->count);
   write_log_categories(writer);
   write_experiment(writer, model);
   write_variables(writer, program->interface);

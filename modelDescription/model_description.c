@@ -104,7 +104,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
   write_attribute(writer, "numberOfEventIndicators", "0");
   write_interfaces(writer, program);
-  write_units(writer, interface);
+  write_units(writer, interface, interface_count_in_use(interface));
   write_log_categories(writer);
   write_experiment(writer, model);
   if (has_scene(model)) {
