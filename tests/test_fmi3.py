@@ -46,10 +46,26 @@ TYPES = """
 </system>
 """
 
+HAND = """
+<system name="MovedHand">
+  <input name="u" start="0.1" derivatives="2"/>
+  <coordinate name="x" velocity="v" start="0.1"/>
+  <coordinate name="theta" velocity="omega" start="0.4"/>
+  <particle name="slide" mass="3" x="x"/>
+  <particle name="bob" mass="2" x="x + 0.5*sin(theta)" y="-0.5*cos(theta)"/>
+  <potential>2*9.81*bob.y</potential>
+  <constraint name="hand">u - x</constraint>
+</system>
+"""
+
 
 @pytest.fixture(scope="module")
-def types():
-    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES}, "-DFMI_VERSIONS=2;3")
+def own_systems():
+    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND}, "-DFMI_VERSIONS=2;3")
+
+
+@pytest.fixture
+def types(own_systems):
     return "TypesOfAll"
 
 
@@ -320,6 +336,17 @@ def test_intermediate_update(name, variables, opened):
             for end in (0.5, 0.51, time):
                 reference.step(end - reference.time)
             np.testing.assert_allclose(values, reference.get(*variables), rtol=1e-5, atol=1e-6)
+
+
+def test_intermediate_guides(own_systems, opened):
+    """An input that moves a constraint goes on by its derivatives, and the state with it."""
+    importer = Importer()
+    hand = observed(opened, "MovedHand", importer, ["x", "v", "der(v)"])
+    hand.initialize({"u": 0.1, "der(u)": 0.3, "der(der(u))": -0.8})
+    hand.step(3.0)
+    assert len(importer.calls) > 2
+    for t, _, (x, v, a) in importer.calls:
+        np.testing.assert_allclose([x, v, a], [0.1 + 0.3 * t - 0.4 * t**2, 0.3 - 0.8 * t, -0.8], rtol=1e-9)
 
 
 def test_early_return(opened):
