@@ -183,6 +183,17 @@ def test_fmpy_builds_the_sources(name, tmp_path):
         np.testing.assert_allclose(built[output], packed[output], rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_sources_are_plain_c11_with_names_of_the_fmu(compiler, tmp_path):
+    for name in ("ChainPendulum", "StateFeedback", "FourBar"):
+        words = [compiler, "-std=c11", "-pedantic-errors", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Wno-unused-function"]
+        source = fmi3.unpacked(name) / "sources" / f"{name}.c"
+        subprocess.run([*words, "-Werror", "-O0", "-c", source, f"-DFMI3_FUNCTION_PREFIX={name}_", "-o", tmp_path / "fmu.o"], check=True)
+        lines = subprocess.run(["nm", "-g", "--defined-only", tmp_path / "fmu.o"], capture_output=True, text=True).stdout
+        defined = [line.split()[-1] for line in lines.splitlines()]
+        assert f"{name}_fmi3DoStep" in defined and [symbol for symbol in defined if not symbol.startswith(f"{name}_")] == []
+
+
 def test_arrays(types, opened):
     """Elements that follow each other are one array; where two coordinates take turns, they are scalars."""
     shapes = {v.name: v.shape for v in fmi3.description(types).modelVariables}

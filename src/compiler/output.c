@@ -49,12 +49,9 @@ static bool write_file(const char *path, const char *text) {
 
 /* The last one is what the build looks for: while it is there, all are of one run. */
 static const char *const names[FILE_COUNT] = {
-    [DESCRIPTION] = "modelDescription.xml",
-    [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
-    [TERMINALS] = "fmi3/terminalsAndIcons.xml",
-    [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
-    [DOCUMENTATION] = "documentation/index.html",
-    [CODE] = "system.c",
+    [DESCRIPTION] = "modelDescription.xml",       [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
+    [TERMINALS] = "fmi3/terminalsAndIcons.xml",   [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
+    [DOCUMENTATION] = "documentation/index.html", [CODE] = "system.c",
 };
 
 static char *path_of(const char *directory, int file, const char *suffix) {
