@@ -1,9 +1,12 @@
+#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/xmlwriter.h>
 
 #include "algebra/differentiate.h"
 #include "fmi3_description.h"
+#include "mechanics/arrays.h"
+#include "memory.h"
 #include "xml_output.h"
 
 /* Names of what a flange is made of, by the unit of its coordinate. */
@@ -22,55 +25,81 @@ static const struct Flange *flange_of(const struct Variable *coordinate) {
   return NULL;
 }
 
-/* Whether the input is a force along the coordinate, and along no other. */
-static bool acts_along(const struct Model *model, const struct Variable *input, size_t coordinate) {
-  for (size_t i = 0; i < model->coordinates.count; i++)
-    if (derivative_by(model->graph, model->forces[i].node, input->node) != (i == coordinate ? ONE : ZERO)) return false;
-  return true;
-}
+enum { NONE = -1, SEVERAL = -2 };
 
-/* The only input that is a force along the coordinate; NULL where there is none, or several. */
-static const struct Variable *force_on(const struct Model *model, size_t coordinate) {
-  const struct Variable *found = NULL;
-  for (size_t i = 0; i < model->inputs.count; i++) {
-    if (!acts_along(model, &model->inputs.items[i], coordinate)) continue;
-    if (found != NULL) return NULL;
-    found = &model->inputs.items[i];
+/* Which input is the force along each coordinate, and along no other: its place, NONE or SEVERAL. */
+static int *find_forces(const struct Model *model) {
+  size_t inputs = model->inputs.count, coordinates = model->coordinates.count;
+  int *coordinate_of = allocate(inputs + 1, sizeof *coordinate_of), *force = allocate(coordinates + 1, sizeof *force);
+  for (size_t i = 0; i < inputs; i++) coordinate_of[i] = NONE;
+  for (size_t i = 0; i < coordinates; i++) {
+    struct Gradient gradient = gradient_by_kinds(model->graph, model->forces[i].node, 1u << INPUT);
+    for (size_t j = 0; j < gradient.count; j++) {
+      int *coordinate = &coordinate_of[graph_symbol_of(model->graph, gradient.symbols[j])->index];
+      *coordinate = *coordinate == NONE && gradient.values[j] == ONE ? (int)i : SEVERAL;
+    }
+    gradient_free(&gradient);
+    force[i] = NONE;
   }
-  return found;
+  for (size_t i = 0; i < inputs; i++)
+    if (coordinate_of[i] >= 0) force[coordinate_of[i]] = force[coordinate_of[i]] == NONE ? (int)i : SEVERAL;
+  free(coordinate_of);
+  return force;
 }
 
-static void write_member(xmlTextWriterPtr writer, const char *variable, const char *member, const char *kind) {
+static void write_member(xmlTextWriterPtr writer, const struct InterfaceVariable *variable, const char *member,
+                         const char *kind) {
+  char *name = array_name(variable);
   xmlTextWriterStartElement(writer, BAD_CAST "TerminalMemberVariable");
-  write_attribute(writer, "variableName", variable);
+  write_attribute(writer, "variableName", name);
   write_attribute(writer, "memberName", member);
   write_attribute(writer, "variableKind", kind);
   xmlTextWriterEndElement(writer);
+  free(name);
 }
 
-static bool is_scalar(const struct Interface *interface, enum VariableKind kind, size_t index) {
-  const struct InterfaceVariable *variable = &interface->variables[interface_find(interface, kind, index)];
-  return variable->array_count == 0 && !variable->is_further_element;
+/* The variables of a terminal: scalars, or arrays of as many elements, which are as many flanges. */
+struct Members {
+  const struct InterfaceVariable *position, *velocity, *force; /* NULL where there is no terminal */
+};
+
+static bool are_of_one_size(const struct InterfaceVariable *a, const struct InterfaceVariable *b) {
+  return a->array_count == b->array_count && !b->is_further_element;
+}
+
+/* The members of the terminal of a coordinate, or of the array that begins with it; force as find_forces() tells. */
+static struct Members members_of(const struct Program *program, const int *force, size_t coordinate) {
+  const struct Interface *interface = program->interface;
+  const struct Members none = {NULL, NULL, NULL};
+  const struct InterfaceVariable *position =
+      &interface->variables[interface_find(interface, VARIABLE_STATE, coordinate)];
+  if (position->is_further_element || force[coordinate] < 0) return none;
+  for (size_t i = 1; i < position->array_count; i++)
+    if (force[coordinate + i] != force[coordinate] + (int)i) return none;
+  struct Members members = {
+      position, position + program->model->coordinates.count,
+      &interface->variables[interface_find(interface, VARIABLE_INPUT, (size_t)force[coordinate])]};
+  return are_of_one_size(position, members.velocity) && are_of_one_size(position, members.force) ? members : none;
 }
 
 /* A force on a flange flows into the system: those of connected flanges add up to 0. */
-static bool write_terminal(xmlTextWriterPtr writer, const struct Program *program, size_t i, bool is_open) {
-  const struct Model *model = program->model;
-  const struct Variable *coordinate = &model->coordinates.items[i], *input = force_on(model, i);
-  const struct Flange *flange = flange_of(coordinate);
-  if (flange == NULL || input == NULL || !is_scalar(program->interface, VARIABLE_STATE, i) ||
-      !is_scalar(program->interface, VARIABLE_INPUT, (size_t)(input - model->inputs.items)))
-    return is_open;
+static bool write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
+                           bool is_open) {
+  const struct Flange *flange = flange_of(&program->model->coordinates.items[coordinate]);
+  struct Members members = members_of(program, force, coordinate);
+  if (flange == NULL || members.position == NULL) return is_open;
+  char *name = array_name(members.position), *description = array_description(members.position);
   if (!is_open) xmlTextWriterStartElement(writer, BAD_CAST "Terminals");
   xmlTextWriterStartElement(writer, BAD_CAST "Terminal");
-  write_attribute(writer, "name", coordinate->name);
+  write_attribute(writer, "name", name);
   write_attribute(writer, "matchingRule", "plug");
-  write_attribute(writer, "description",
-                  coordinate->description != NULL ? coordinate->description : flange->description);
-  write_member(writer, coordinate->name, flange->position, "signal");
-  write_member(writer, model->velocities.items[i].name, flange->velocity, "signal");
-  write_member(writer, input->name, flange->force, "inflow");
+  write_attribute(writer, "description", description != NULL ? description : flange->description);
+  write_member(writer, members.position, flange->position, "signal");
+  write_member(writer, members.velocity, flange->velocity, "signal");
+  write_member(writer, members.force, flange->force, "inflow");
   xmlTextWriterEndElement(writer);
+  free(name);
+  free(description);
   return true;
 }
 
@@ -94,7 +123,10 @@ bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program) {
   if (writer == NULL) return false;
   write_attribute(writer, "fmiVersion", "3.0");
   write_icon(writer);
-  for (size_t i = 0; i < program->model->coordinates.count; i++) is_open = write_terminal(writer, program, i, is_open);
+  int *force = find_forces(program->model);
+  for (size_t i = 0; i < program->model->coordinates.count; i++)
+    is_open = write_terminal(writer, program, force, i, is_open);
   if (is_open) xmlTextWriterEndElement(writer);
+  free(force);
   return close_document(writer);
 }

@@ -55,13 +55,25 @@ HAND = """
   <particle name="bob" mass="2" x="x + 0.5*sin(theta)" y="-0.5*cos(theta)"/>
   <potential>2*9.81*bob.y</potential>
   <constraint name="hand">u - x</constraint>
+  <output name="where">u</output>
+</system>
+"""
+LEVERS = """
+<system name="Levers">
+  <input name="twice" unit="N"/><input name="both" unit="N"/><input name="alone" unit="N"/>
+  <coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/>
+  <coordinate name="z" velocity="vz" unit="m"/>
+  <particle name="p" mass="1" x="x" y="y" z="z"/>
+  <force coordinate="x">2*twice</force>
+  <force coordinate="y">alone + both</force>
+  <force coordinate="z">both</force>
 </system>
 """
 
 
 @pytest.fixture(scope="module")
 def own_systems():
-    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND}, "-DFMI_VERSIONS=2;3")
+    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND, "Levers": LEVERS}, "-DFMI_VERSIONS=2;3")
 
 
 @pytest.fixture
@@ -352,12 +364,13 @@ def test_intermediate_update(name, variables, opened):
 def test_intermediate_guides(own_systems, opened):
     """An input that moves a constraint goes on by its derivatives, and the state with it."""
     importer = Importer()
-    hand = observed(opened, "MovedHand", importer, ["x", "v", "der(v)"])
+    hand = observed(opened, "MovedHand", importer, ["x", "v", "der(v)", "where"])
     hand.initialize({"u": 0.1, "der(u)": 0.3, "der(der(u))": -0.8})
     hand.step(3.0)
     assert len(importer.calls) > 2
-    for t, _, (x, v, a) in importer.calls:
-        np.testing.assert_allclose([x, v, a], [0.1 + 0.3 * t - 0.4 * t**2, 0.3 - 0.8 * t, -0.8], rtol=1e-9)
+    for t, _, values in importer.calls:
+        u = 0.1 + 0.3 * t - 0.4 * t**2
+        np.testing.assert_allclose(values, [u, 0.3 - 0.8 * t, -0.8, u], rtol=1e-9)
 
 
 def test_early_return(opened):
@@ -424,10 +437,10 @@ def test_log(opened):
     assert loud.messages[-1][:2] == (ERROR, "logStatusError")
 
 
-def test_terminals():
+def test_terminals(own_systems):
     """A flange where one input is the force along a coordinate."""
     members = {}
-    for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian"):
+    for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "Levers"):
         root = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "terminalsAndIcons.xml")
         members[name] = {
             terminal.get("name"): [(m.get("variableName"), m.get("memberName"), m.get("variableKind")) for m in terminal]
@@ -437,6 +450,9 @@ def test_terminals():
     assert members["InvertedPendulumCart"] == {"x": force}
     torque = [("theta", "angle", "signal"), ("omega", "angularVelocity", "signal"), ("tau", "torque", "inflow")]
     assert members["DampedPendulum"] == {"theta": torque}
+    torques = [("q", "angle", "signal"), ("w", "angularVelocity", "signal"), ("tau", "torque", "inflow")]
+    assert members["RobotArm"] == {"q": torques}, "arrays of six flanges"
+    assert {name: terminal[2][0] for name, terminal in members["Levers"].items()} == {"y": "alone"}
     assert members["SimplePendulum"] == {} and set(members["ParticleCartesian"]) == {"x", "y", "z"}
 
 
