@@ -242,8 +242,6 @@ FAULTS = [
     ("src/runtime/fmi3/fmi3_co_simulation.c", "  component->has_returned_early = true;\n  return requested_time;", "  return requested_time;",
      pytest("test_fmi3", "early_return", "DampedPendulum")),
     ("src/runtime/fmi3/fmi3_references.c", "references[k++] = vr[i] + j;", "references[k++] = vr[i];", pytest("test_fmi3", "arrays")),
-    ("src/runtime/intermediate.c", "  memcpy(instance->situation, intermediate->kept, situation_size());\n", "  instance->situation->mode = MODE_STEP_COMPLETE;\n",
-     pytest("test_fmi3", "guides")),
     ("src/runtime/intermediate.c", "  evaluate_advance_inputs(instance, time); /* from the time of the situation */\n", "", pytest("test_fmi3", "guides")),
     ("src/runtime/derivatives.c", "sum += seed[i] * column[i];", "sum += column[i];", pytest("test_fmi3", "partial_derivatives and Damped", "DampedPendulum")),
     ("src/compiler/mechanics/arrays.c", "return has_element(interface, name, count + 1) ? 0 : count;", "return count;", pytest("test_fmi3", "arrays")),
