@@ -75,6 +75,11 @@ static inline bool is_unknown(const struct ScalarVariable *variable) {
   return variable->is_output || variable->kind == VARIABLE_DERIVATIVE || variable->follows_from != NULL;
 }
 
+/* Variables that follow each other in the table and are the elements 1, 2, ... of one array. */
+struct ArrayVariable {
+  size_t first, count;
+};
+
 /* The elements of a matrix that may differ from 0. Those of column j are in row[start[j]] to row[start[j + 1] - 1]. */
 struct Sparsity {
   size_t count;
@@ -115,6 +120,8 @@ struct Lagrangian {
   size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
   int output_derivative_order;            /* the highest by time that outputs have */
   const struct ScalarVariable *variables;
+  const struct ArrayVariable *arrays; /* ascending; NULL where there are none */
+  size_t array_count;
   const bool *result_uses_acceleration; /* for each result */
   const double *nominal;                /* state_count: scales of the absolute tolerance */
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */

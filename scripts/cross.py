@@ -2,9 +2,9 @@
 Compiles for other platforms than this machine's, with zig, which brings compilers, linkers and C libraries for all of them
 (the Python package ziglang). What every platform needs is here, and nowhere else.
 
-    cross.py fmu PLATFORM SYSTEM.c LIBRARY [--sundials FOLDER]    a system that lagc wrote, as a library for binaries/PLATFORM
-    cross.py suffix PLATFORM                                      what libraries of the platform end in
-    cross.py sundials FOLDER SUNDIALS SUITESPARSE                 SUNDIALS and KLU for all of them, from their sources
+    cross.py fmu PLATFORM SYSTEM.c BINARIES NAME [--fmi 3] [--sundials FOLDER]    a system that lagc wrote, as libraries in binaries/
+    cross.py libraries PLATFORM NAME [--fmi 3]                                    which these are, separated by ;
+    cross.py sundials FOLDER SUNDIALS SUITESPARSE                                 SUNDIALS and KLU for all of them, from their sources
 """
 
 import argparse
@@ -19,7 +19,8 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-# Folders in binaries/, with what libraries end in and zig's targets. FMI 2.0.5 has the first three, and for others the names of FMI 3.0.
+# Folders in binaries/ of FMI 2.0, with what libraries end in and zig's targets. FMI 2.0.5 has the first three, and for others the names of
+# FMI 3.0, which are those of the targets, one a processor.
 PLATFORMS = {
     "linux64": (".so", ["x86_64-linux-gnu.2.17"]),
     "win64": (".dll", ["x86_64-windows-gnu"]),
@@ -59,13 +60,23 @@ def scratch(output):
         yield Path(folder)
 
 
-def suffix_of(platform):
+def libraries_of(platform, name, fmi=2):
+    """The libraries of an FMU for the platform, as paths in binaries/, each with the targets that it is for."""
     if platform not in PLATFORMS:
         raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORMS)}")
     if find_spec("ziglang") is None:
         package = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
         raise Failure(f"this Python has no package ziglang, which compiles for {platform}; expected one after pip install {package}")
-    return PLATFORMS[platform][0]
+    suffix, targets = PLATFORMS[platform]
+    if fmi == 2:
+        return {f"{platform}/{name}{suffix}": targets}
+    return {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets}
+
+
+def folder_of(target):
+    """What FMI 3.0 calls a target."""
+    processor, system = target.split(".")[0].split("-")[:2]
+    return f"{processor}-{'darwin' if system == 'macos' else system}"
 
 
 def universal(slices):
@@ -81,8 +92,8 @@ def universal(slices):
     return header.ljust(start, b"\0") + content
 
 
-def compile_target(target, system, library, source, sundials, folder):
-    """system.c and the parts of the runtime that it includes as one library in the folder."""
+def compile_target(target, system, library, fmi, source, sundials, folder):
+    """system.c, the parts of the runtime that it includes and the layer of the version of FMI as one library in the folder."""
     output = folder / target / library
     output.parent.mkdir()
     words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.",
@@ -90,30 +101,34 @@ def compile_target(target, system, library, source, sundials, folder):
     if "macos" in target:
         words.append(f"-Wl,-install_name,@rpath/{library}")
     includes = [source / "include", source / "src" / "runtime", *sorted((source / "src" / "runtime").glob("*/"))]
+    layer = [word for file in sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c")) for word in ("-include", file)]
     libraries = []
     if sundials is not None:
         includes.append(sundials / "include")
         libraries.append(sundials / target / "libsundials.a")
-    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], system, *libraries, "-lm", "-o", output, cache=folder / "cache")
+    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], *layer, system, *libraries, "-lm", "-o", output, cache=folder / "cache")
     return output.read_bytes()
 
 
-def compile_fmu(platform, system, library, source=ROOT, sundials=None):
+def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=None):
     """
-    Compiles the system.c of lagc as the shared library for binaries/PLATFORM, with the runtime in source/include and
-    source/src/runtime. sundials: the folder that compile_sundials() made, for systems with erk and bdf; others leave it alone.
+    Compiles the system.c of lagc as the platform's libraries in the folder binaries, for an FMU of this name and version of FMI, with the
+    runtime in source/include and source/src/runtime. sundials: the folder that compile_sundials() made, for systems with erk and bdf;
+    others leave it alone.
     """
-    system, library, source = Path(system).resolve(), Path(library).resolve(), Path(source).resolve()
+    system, source = Path(system).resolve(), Path(source).resolve()
     if '#include "sundials_memory.c"' not in system.read_text():
         sundials = None
     elif sundials is None or not (Path(sundials) / "include").exists():
         raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
     else:
         sundials = Path(sundials).resolve()
-    with scratch(library) as folder:
-        slices = [compile_target(target, system, library.name, source, sundials, folder) for target in PLATFORMS[platform][1]]
-        (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])
-        (folder / library.name).replace(library)
+    for path, targets in libraries_of(platform, name, fmi).items():
+        library = Path(binaries).resolve() / path
+        with scratch(library) as folder:
+            slices = [compile_target(target, system, library.name, fmi, source, sundials, folder) for target in targets]
+            (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])
+            (folder / library.name).replace(library)
 
 
 def sundials_configuration(source):
@@ -160,21 +175,23 @@ def compile_sundials(folder, sundials, suitesparse):
 def main():
     parser = argparse.ArgumentParser(prog="cross.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
-    fmu = commands.add_parser("fmu")
-    fmu.add_argument("platform")
-    fmu.add_argument("system")
-    fmu.add_argument("library")
+    fmu, libraries, sundials = (commands.add_parser(name) for name in ("fmu", "libraries", "sundials"))
+    for parser_of_one, names in (
+        (fmu, ("platform", "system", "binaries", "name")),
+        (libraries, ("platform", "name")),
+        (sundials, ("folder", "sundials", "suitesparse")),
+    ):
+        for name in names:
+            parser_of_one.add_argument(name)
+    for parser_of_one in (fmu, libraries):
+        parser_of_one.add_argument("--fmi", type=int, choices=(2, 3), default=2)
     fmu.add_argument("--sundials")
-    commands.add_parser("suffix").add_argument("platform")
-    libraries = commands.add_parser("sundials")
-    for name in ("folder", "sundials", "suitesparse"):
-        libraries.add_argument(name)
     words = parser.parse_args()
     try:
-        if words.command == "suffix":
-            print(suffix_of(words.platform))
+        if words.command == "libraries":
+            print(";".join(libraries_of(words.platform, words.name, words.fmi)))
         elif words.command == "fmu":
-            compile_fmu(words.platform, words.system, words.library, sundials=words.sundials)
+            compile_fmu(words.platform, words.system, words.binaries, words.name, words.fmi, sundials=words.sundials)
         else:
             compile_sundials(words.folder, words.sundials, words.suitesparse)
     except Failure as problem:

@@ -6,7 +6,6 @@ find_program(zip zip REQUIRED)
 
 # What no FMU needs is left out: unused functions, and tables to unwind the stack by, which C has no use for.
 set(lagrange_compact -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables)
-set(lagrange_exports ${lagrange_root}/src/runtime/fmi2/exports.map)
 file(GLOB_RECURSE lagrange_sources CONFIGURE_DEPENDS ${lagrange_root}/include/*.h ${lagrange_root}/src/runtime/*.[ch])
 
 # append_named_files(list file): the files that a system's file names, and those that they name, each once.
@@ -28,50 +27,116 @@ function(append_named_files list file)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# find_platform(platform): sets lagrange_zig to a Python with the package ziglang, and lagrange_suffix_PLATFORM to what its libraries
-# end in, once for all FMUs.
-function(find_platform platform)
+# find_platform(platform version): sets lagrange_zig to a Python with the package ziglang, and lagrange_libraries_PLATFORM_VERSION to the
+# paths of its libraries of FMUs named NAME in binaries/, once for all FMUs.
+function(find_platform platform version)
   find_program(LAGRANGE_PYTHON python3 HINTS ${lagrange_root}/build/venv/bin DOC "A Python with the package ziglang, for other platforms")
-  if(NOT lagrange_suffix_${platform} OR NOT "${lagrange_zig}" STREQUAL LAGRANGE_PYTHON)
-    execute_process(COMMAND ${LAGRANGE_PYTHON} ${lagrange_root}/scripts/cross.py suffix ${platform}
-                    RESULT_VARIABLE status OUTPUT_VARIABLE suffix ERROR_VARIABLE words OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT lagrange_libraries_${platform}_${version} OR NOT "${lagrange_zig}" STREQUAL LAGRANGE_PYTHON)
+    execute_process(COMMAND ${LAGRANGE_PYTHON} ${lagrange_root}/scripts/cross.py libraries ${platform} NAME --fmi ${version}
+                    RESULT_VARIABLE status OUTPUT_VARIABLE libraries ERROR_VARIABLE words OUTPUT_STRIP_TRAILING_WHITESPACE)
     if(NOT status EQUAL 0)
       message(FATAL_ERROR "${words} (LAGRANGE_PYTHON is ${LAGRANGE_PYTHON})")
     endif()
     set(lagrange_zig ${LAGRANGE_PYTHON} CACHE INTERNAL "A Python with the package ziglang")
-    set(lagrange_suffix_${platform} ${suffix} CACHE INTERNAL "What libraries of the platform end in")
+    set(lagrange_libraries_${platform}_${version} "${libraries}" CACHE INTERNAL "The platform's libraries of FMUs")
   endif()
 endfunction()
 
-# add_platform_libraries(list name folder platforms): for each platform the library of folder/system.c by cross.py, added to the list.
-function(add_platform_libraries list name folder platforms)
+# add_platform_libraries(list name version folder platforms): for each platform the libraries of folder/system.c by cross.py, added to the
+# list.
+function(add_platform_libraries list name version folder platforms)
   if(EXISTS "${lagrange_sundials}")
     set(sundials --sundials ${lagrange_sundials})
   endif()
   foreach(platform ${platforms})
-    find_platform(${platform})
-    set(library ${folder}/platforms/${platform}/${name}${lagrange_suffix_${platform}})
-    add_custom_command(OUTPUT ${library}
-                       COMMAND ${lagrange_zig} ${lagrange_root}/scripts/cross.py fmu ${platform} ${folder}/system.c ${library} ${sundials}
+    find_platform(${platform} ${version})
+    set(binaries ${folder}/platforms${version})
+    string(REPLACE NAME ${name} libraries "${lagrange_libraries_${platform}_${version}}")
+    list(TRANSFORM libraries PREPEND ${binaries}/)
+    add_custom_command(OUTPUT ${libraries}
+                       COMMAND ${lagrange_zig} ${lagrange_root}/scripts/cross.py fmu ${platform} ${folder}/system.c ${binaries} ${name}
+                               --fmi ${version} ${sundials}
                        DEPENDS ${folder}/system.c ${lagrange_sources} ${lagrange_root}/scripts/cross.py
-                       COMMENT "Compiling ${name} for ${platform}" VERBATIM)
-    list(APPEND ${list} ${library})
+                       COMMENT "Compiling ${name} of FMI ${version} for ${platform}" VERBATIM)
+    list(APPEND ${list} ${libraries})
   endforeach()
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the folder that CMake builds
-# the current one in; NAME is the one in SYSTEM.xml, as pack.cmake checks.
-#   PLATFORMS  of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors) and aarch64-linux, by zig; none: this machine alone, by
-#              the project's compiler
-#   SOLVER     a method of <solver> in place of the system's own, where there is anything that moves
-#   FORM       statements or tables, in place of the form that follows from the system's size
-# The targets are fmu_NAME and, for this machine's library, system_NAME, since a system may be named like another target.
-function(lagrange_add_fmu name system)
-  cmake_parse_arguments(PARSE_ARGV 2 fmu "" "SOLVER;FORM" "PLATFORMS")
-  if(fmu_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, SOLVER or FORM")
+# add_library_here(name version folder): this machine's library of an FMU of this version of FMI, by the project's compiler.
+function(add_library_here name version folder)
+  set(library system_${name})
+  set(binaries linux64)
+  set(map link.map)
+  if(version EQUAL 3)
+    set(library system_3_${name})
+    set(binaries x86_64-linux)
+    set(map link3.map)
   endif()
+  set(exports ${lagrange_root}/src/runtime/fmi${version}/exports.map)
+  add_library(${library} MODULE $<TARGET_OBJECTS:equations_${name}>)
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${name} PREFIX "" LINKER_LANGUAGE C C_VISIBILITY_PRESET hidden C_STANDARD 11
+                        LIBRARY_OUTPUT_DIRECTORY ${folder}/binaries/${binaries})
+  target_compile_options(${library} PRIVATE ${lagrange_compact})
+  target_link_libraries(${library} PRIVATE lagrange_runtime lagrange_fmi${version} m)
+  target_link_options(${library} PRIVATE -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--build-id=none
+                      "SHELL:-Xlinker \"-Map=${folder}/${map}\"" "SHELL:-Xlinker \"--version-script=${exports}\"")
+  if(NOT SANITIZE)
+    target_link_options(${library} PRIVATE -s -Wl,--no-undefined)
+  endif()
+  set_property(TARGET ${library} PROPERTY LINK_DEPENDS ${exports})
+endfunction()
+
+# add_archive(name version folder system platforms): fmu/name.fmu, or fmi3/name.fmu.
+function(add_archive name version folder system platforms)
+  set(library system_${name})
+  set(target fmu_${name})
+  set(fmu ${CMAKE_CURRENT_BINARY_DIR}/fmu/${name}.fmu)
+  if(version EQUAL 3)
+    set(library system_3_${name})
+    set(target fmu_3_${name})
+    set(fmu ${CMAKE_CURRENT_BINARY_DIR}/fmi3/${name}.fmu)
+  endif()
+  if(platforms)
+    add_platform_libraries(libraries ${name} ${version} ${folder} "${platforms}")
+  else()
+    set(libraries $<TARGET_FILE:${library}>)
+  endif()
+  set(scripts ${lagrange_root}/scripts)
+  add_custom_command(OUTPUT ${fmu}
+                     COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
+                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D NAMES=${lagrange_global_names}
+                             -P ${scripts}/pack.cmake
+                     DEPENDS ${folder}/model.png ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
+                             ${scripts}/archive.cmake ${scripts}/one_file.cmake
+                     COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
+  add_custom_target(${target} ALL DEPENDS ${fmu})
+  add_dependencies(${target} icon_${name}) # else each FMU would draw it
+endfunction()
+
+# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the
+# folder that CMake builds the current one in, and fmi3/NAME.fmu where the version 3 is asked for; NAME is the one in SYSTEM.xml, as
+# pack.cmake checks.
+#   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors) and aarch64-linux, by zig; none: this machine alone, by
+#                 the project's compiler
+#   FMI_VERSIONS  2, 3 or both; none: 2
+#   SOLVER        a method of <solver> in place of the system's own, where there is anything that moves
+#   FORM          statements or tables, in place of the form that follows from the system's size
+# The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME, since a system may be named like another target.
+function(lagrange_add_fmu name system)
+  cmake_parse_arguments(PARSE_ARGV 2 fmu "" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
+  if(fmu_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER or FORM")
+  endif()
+  if(NOT fmu_FMI_VERSIONS)
+    set(fmu_FMI_VERSIONS 2)
+  endif()
+  list(REMOVE_DUPLICATES fmu_FMI_VERSIONS)
+  foreach(version ${fmu_FMI_VERSIONS})
+    if(NOT version MATCHES "^[23]$")
+      message(FATAL_ERROR "FMI_VERSIONS: there is no version ${version}; expected 2, 3 or 2;3")
+    endif()
+  endforeach()
   get_filename_component(system ${system} ABSOLUTE)
   if(NOT EXISTS ${system})
     message(FATAL_ERROR "lagrange_add_fmu(${name}): there is no ${system}; expected the file of a system")
@@ -97,33 +162,23 @@ function(lagrange_add_fmu name system)
                      DEPENDS lagrange-fmu::lagc ${dependencies}
                      COMMENT "Deriving ${name}" VERBATIM)
 
-  # This machine's library also draws model.png.
-  set(library system_${name})
-  add_library(${library} MODULE ${folder}/system.c)
-  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${name} PREFIX "" C_VISIBILITY_PRESET hidden C_STANDARD 11
-                        LIBRARY_OUTPUT_DIRECTORY ${folder}/binaries/linux64)
+  add_library(equations_${name} OBJECT ${folder}/system.c)
+  set_target_properties(equations_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden C_STANDARD 11)
   # Generated functions of one type take arguments that not all of them need.
-  target_compile_options(${library} PRIVATE -Wno-unused-parameter -falign-functions=64 ${lagrange_compact})
-  target_link_libraries(${library} PRIVATE lagrange_runtime m)
-  target_link_options(${library} PRIVATE -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--build-id=none
-                      "SHELL:-Xlinker \"-Map=${folder}/link.map\"" "SHELL:-Xlinker \"--version-script=${lagrange_exports}\"")
-  if(NOT SANITIZE)
-    target_link_options(${library} PRIVATE -s -Wl,--no-undefined)
-  endif()
-  set_property(TARGET ${library} PROPERTY LINK_DEPENDS ${lagrange_exports})
+  target_compile_options(equations_${name} PRIVATE -Wno-unused-parameter -falign-functions=64 ${lagrange_compact})
+  target_link_libraries(equations_${name} PRIVATE lagrange_runtime)
 
-  set(libraries)
-  if(fmu_PLATFORMS)
-    add_platform_libraries(libraries ${name} ${folder} "${fmu_PLATFORMS}")
+  # This machine's library of FMI 2.0 also draws model.png.
+  add_library_here(${name} 2 ${folder})
+  add_custom_command(OUTPUT ${folder}/model.png
+                     COMMAND lagrange-fmu::icon $<TARGET_FILE:system_${name}> ${folder}/modelDescription.xml ${folder}/model.png
+                     DEPENDS lagrange-fmu::icon system_${name} ${folder}/system.c
+                     COMMENT "Drawing ${name}" VERBATIM)
+  add_custom_target(icon_${name} DEPENDS ${folder}/model.png)
+  if(3 IN_LIST fmu_FMI_VERSIONS AND NOT fmu_PLATFORMS)
+    add_library_here(${name} 3 ${folder})
   endif()
-  set(fmu ${CMAKE_CURRENT_BINARY_DIR}/fmu/${name}.fmu)
-  set(scripts ${lagrange_root}/scripts)
-  add_custom_command(OUTPUT ${fmu}
-                     COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} -D LIBRARY=$<TARGET_FILE:${library}> "-D LIBRARIES=${libraries}" -D FMU=${fmu}
-                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ICON=$<TARGET_FILE:lagrange-fmu::icon> -D ZIP=${zip}
-                             -D NAMES=${lagrange_global_names} -P ${scripts}/pack.cmake
-                     DEPENDS lagrange-fmu::icon ${library} ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
-                             ${scripts}/archive.cmake ${scripts}/one_file.cmake
-                     COMMENT "Packing ${name}.fmu" VERBATIM)
-  add_custom_target(fmu_${name} ALL DEPENDS ${fmu})
+  foreach(version ${fmu_FMI_VERSIONS})
+    add_archive(${name} ${version} ${folder} ${system} "${fmu_PLATFORMS}")
+  endforeach()
 endfunction()

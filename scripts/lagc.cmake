@@ -1,4 +1,4 @@
-# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found, interface_sources the files of src/runtime that every FMU has.
+# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found, core_sources the files of the runtime's core.
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 
 # The schema becomes a string in the program.
@@ -8,8 +8,8 @@ file(CONFIGURE OUTPUT system_schema.c CONTENT
      "extern const char system_schema[];\nconst char system_schema[] = {${schema}0};\n" @ONLY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/fmu/system.xsd)
 
-# So do the names of the files in every FMU, for FMUs that carry their sources.
-list(TRANSFORM interface_sources REPLACE "^.*/(.*)$" "\"\\1\", " OUTPUT_VARIABLE names)
+# So do the names of the core's files, for FMUs that carry their sources.
+list(TRANSFORM core_sources REPLACE "^.*/(.*)$" "\"\\1\", " OUTPUT_VARIABLE names)
 list(JOIN names "" names)
 file(CONFIGURE OUTPUT runtime_sources.c CONTENT
      "extern const char *const runtime_sources[];\nconst char *const runtime_sources[] = {${names}(const char *)0};\n" @ONLY)

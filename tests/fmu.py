@@ -70,7 +70,7 @@ def alone(lock):
 def bring_up_to_date(build):
     """What build_systems() takes from another build; its lock is that of scripts/build."""
     with alone(build / "build.lock"):
-        tools = ["lagc", "icon", "interface", "solvers"]
+        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers"]
         subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
 
 

@@ -82,6 +82,19 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
   }
 }
 
+void evaluate_advance_inputs(struct Instance *instance, double end) {
+  if (!instance->situation->input_derivatives_set) return;
+  size_t n = lagrangian.input_count;
+  for (size_t i = 0; i < n; i++) {
+    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
+    expand_input(instance, i, end, coefficient);
+    instance->input[i] = coefficient[0];
+    derivative[0] = coefficient[1];
+    derivative[n] = 2.0 * coefficient[2];
+  }
+  instance->situation->changed = 1;
+}
+
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
   if (lagrangian.accelerations == NULL) return derivative + lagrangian.coordinate_count;
   instance->singular = lagrangian.accelerations(point, instance->acceleration);

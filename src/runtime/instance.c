@@ -90,6 +90,12 @@ void instance_destroy(struct Instance *instance) {
   instance->memory.free(instance->situation);
 }
 
+void instance_restore(struct Instance *instance, const void *situation) {
+  memcpy(instance->situation, situation, situation_size());
+  instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->told_singularity = 0;
+}
+
 const char *instance_mode_name(const struct Instance *instance) {
   static const char *const names[MODE_COUNT] = {
       [MODE_INSTANTIATED] = "instantiated",
@@ -100,6 +106,7 @@ const char *instance_mode_name(const struct Instance *instance) {
       [MODE_STEP_FAILED] = "step failed",
       [MODE_TERMINATED] = "terminated",
       [MODE_ERROR] = "error",
+      [MODE_INTERMEDIATE_UPDATE] = "intermediate update mode",
   };
   return names[instance->situation->mode];
 }

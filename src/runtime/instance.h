@@ -22,6 +22,7 @@ enum Mode {
   MODE_STEP_FAILED,
   MODE_TERMINATED,
   MODE_ERROR,
+  MODE_INTERMEDIATE_UPDATE, /* within a communication step, while values of it are told */
   MODE_COUNT
 };
 
@@ -54,6 +55,8 @@ struct Allocator {
   void (*free)(void *block);
 };
 
+struct CommunicationStep;
+
 struct Instance {
   struct Allocator memory;
   struct Log log;
@@ -73,6 +76,9 @@ struct Instance {
   double *projection_work;   /* projection_work_count() */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;
+  /* Is told of each time that the solver comes to within a communication step, see intermediate.h; NULL for none. */
+  void (*observe)(struct Instance *instance, struct CommunicationStep *step, double time);
+  const struct Intermediate *intermediate; /* for it */
 };
 
 /* False, and nothing is allocated, where there is no memory. Logs nothing. */
@@ -81,6 +87,9 @@ void instance_destroy(struct Instance *instance);
 
 /* As after creation: start values, nothing defined. */
 void instance_reset(struct Instance *instance);
+
+/* Goes back to a situation of this instance, situation_size() bytes. */
+void instance_restore(struct Instance *instance, const void *situation);
 
 /* The mode as messages name it. */
 const char *instance_mode_name(const struct Instance *instance);

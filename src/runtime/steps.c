@@ -108,6 +108,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     if (problem != NULL) return problem;
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return solver_resting;
+    if (instance->observe != NULL && last->end < step->end) instance->observe(instance, step, last->end);
   }
   return NULL;
 }
@@ -160,6 +161,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   const char *problem = reach(instance, step);
   if (problem == NULL && take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
+    *reached = step->end; /* an observer may have shortened the step */
     if (problem == NULL) return STEP_DONE;
   }
   *reached = problem != NULL ? last->end : last->start;
@@ -188,20 +190,6 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
   if (solver->run(instance, do_advance, &task)) return task.result;
   solver_lacks_memory(instance);
   return STEP_FAILED;
-}
-
-/* The polynomials of the inputs, continued from the end of the step. */
-static void advance_inputs(struct Instance *instance, double end) {
-  if (!instance->situation->input_derivatives_set) return;
-  size_t n = lagrangian.input_count;
-  for (size_t i = 0; i < n; i++) {
-    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
-    expand_input(instance, i, end, coefficient);
-    instance->input[i] = coefficient[0];
-    derivative[0] = coefficient[1];
-    derivative[n] = 2.0 * coefficient[2];
-  }
-  instance->situation->changed = 1;
 }
 
 /*
@@ -257,7 +245,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   double reached;
   enum StepResult result = run(instance, &step, &reached);
   if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
-  advance_inputs(instance, reached);
+  evaluate_advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;
   situation->time = reached;
   if (result == STEP_DONE) return STATUS_DONE;

@@ -6,6 +6,7 @@
 
 #include "memory.h"
 #include "algebra/kinks.h"
+#include "mechanics/arrays.h"
 #include "mechanics/symbol_names.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
@@ -203,6 +204,25 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   }
 }
 
+static void append_time(struct Interface *interface, const struct Model *model) {
+  struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
+  time->unit = copy_text("s");
+  time->node = model->time;
+}
+
+/* What systems with coordinates have in addition. */
+static void append_mechanics(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  append_places(interface, model, equations);
+  append_reactions(interface, model, equations);
+  append_constraint_forces(interface, model, equations);
+  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
+  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
+  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
+  append_statistics(interface);
+  mark_moved_states(interface, model, equations);
+}
+
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
@@ -210,11 +230,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->output_derivative_order = output_derivative_order(interface, model, equations);
   interface->depends_on_time = uses_time(model, equations);
   interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
-  if (interface->depends_on_time) {
-    struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
-    time->unit = copy_text("s");
-    time->node = model->time;
-  }
+  if (interface->depends_on_time) append_time(interface, model);
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
   struct Variable work = {.name = (char *)"nonConservativeWork",
@@ -241,15 +257,9 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;
   append_calculated(interface, model);
-  if (n == 0) return interface;
-  append_places(interface, model, equations);
-  append_reactions(interface, model, equations);
-  append_constraint_forces(interface, model, equations);
-  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
-  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
-  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
-  append_statistics(interface);
-  mark_moved_states(interface, model, equations);
+  if (n > 0) append_mechanics(interface, model, equations);
+  if (!interface->depends_on_time) append_time(interface, model);
+  arrays_find(interface);
   return interface;
 }
 

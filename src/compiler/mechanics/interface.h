@@ -16,10 +16,13 @@ struct InterfaceVariable {
   Node start;                  /* of a state whose start value follows from parameters; else ZERO */
   bool is_moved_at_start;      /* a state that constraints may move as initialization ends */
   bool is_continued;           /* a result that is computed together with the one before: components of one thing */
+  size_t array_count;          /* elements of the array that begins with this variable; 0 where none does */
+  bool is_further_element;     /* of an array that began before */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
 
+/* The last variable is time where nothing depends on it, which FMI 3.0 wants and FMI 2.0 does not. */
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
@@ -40,6 +43,11 @@ void interface_free(struct Interface *interface);
 
 /* The place in the table of the variable of this kind and index, which there is. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);
+
+/* How many variables there are without a time on which nothing depends. */
+static inline size_t interface_count_in_use(const struct Interface *interface) {
+  return interface->count - (interface->depends_on_time ? 0 : 1);
+}
 
 /* The relative tolerance of the solver. */
 double interface_tolerance(const struct Model *model);

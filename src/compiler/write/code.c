@@ -8,14 +8,17 @@
 #include "write/statements.h"
 #include "write/tables.h"
 
-/* The runtime's files but for solvers, NULL at the end; the build writes it. */
+/* The core's files but for solvers, NULL at the end; the build writes it. */
 extern const char *const runtime_sources[];
 
 static void include_source(FILE *file, const char *name) {
   fprintf(file, "#include \"%s\"\n", name);
 }
 
-/* The files of the runtime that this one needs, for compiling all in one, and for archives whose source is one file. */
+/*
+ * The files of the runtime that this one needs, for compiling all in one, and for archives whose source is one file. The build
+ * adds those of the version of FMI.
+ */
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->interface->method;
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);

@@ -40,6 +40,19 @@ static void write_variables(FILE *file, const struct Interface *interface) {
   fputs("};\n\n", file);
 }
 
+/* False where there are none. */
+static bool write_arrays(FILE *file, const struct Interface *interface) {
+  bool has_arrays = false;
+  for (size_t i = 0; i < interface->count; i++) {
+    if (interface->variables[i].array_count == 0) continue;
+    fprintf(file, "%s{%zu, %zu}", has_arrays ? ", " : "static const struct ArrayVariable arrays[] = {", i,
+            interface->variables[i].array_count);
+    has_arrays = true;
+  }
+  if (has_arrays) fputs("};\n\n", file);
+  return has_arrays;
+}
+
 static void write_results(FILE *file, const struct Program *program) {
   size_t count = program->interface->result_count;
   if (count == 0) return;
@@ -197,7 +210,7 @@ static void write_operations(FILE *file, const struct Program *program) {
 
 /* NULL for a system without coordinates. */
 
-static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
+static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count, bool has_arrays) {
   const struct Interface *interface = program->interface;
   const char *solver = description_solver(program), *lu = description_lu(program);
   if (solver != NULL) fprintf(file, "extern const struct Solver solver_%s;\n\n", solver);
@@ -206,6 +219,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
           program->model->name);
   write_counts(file, program, work_count);
   fputs("    .variables = variables,\n", file);
+  if (has_arrays) fputs("    .arrays = arrays,\n    .array_count = sizeof arrays / sizeof *arrays,\n", file);
   if (solver != NULL)
     fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
             solver);
@@ -226,10 +240,11 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
 
 void description_write(FILE *file, const struct Program *program, size_t work_count) {
   write_variables(file, program->interface);
+  bool has_arrays = write_arrays(file, program->interface);
   write_results(file, program);
   inertia_names_write(file, program);
   write_constraint_names(file, program);
   write_nominals(file, program->interface);
   write_pattern(file, program);
-  write_lagrangian(file, program, work_count);
+  write_lagrangian(file, program, work_count, has_arrays);
 }
