@@ -12,6 +12,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from fmpy.validation import validate_fmu
 
 import fmu
 from fmu import ROOT
@@ -53,14 +54,16 @@ def simulate(archive):
 
 
 def test_foreign_project(tmp_path):
-    """This machine's FMUs by the project's compiler, without SUNDIALS and with it, and one for two platforms."""
+    """This machine's FMUs by the project's compiler, without SUNDIALS and with it, one for two platforms, and those of FMI 3.0."""
     lines = """
       lagrange_add_fmu(SimplePendulum system.xml)
       lagrange_add_fmu(BeadOnHoop bead.xml)
-      lagrange_add_fmu(MyFmu mine.xml PLATFORMS linux64 win64 SOLVER auto)
+      lagrange_add_fmu(MyFmu mine.xml PLATFORMS linux64 win64 SOLVER auto FMI_VERSIONS 2 3)
+      lagrange_add_fmu(ThirdFmu third.xml FMI_VERSIONS 3)
     """
     text = PENDULUM.read_text()
-    systems = {"system.xml": text, "bead.xml": BEAD, "mine.xml": text.replace('"SimplePendulum"', '"MyFmu"', 1)}
+    systems = {"system.xml": text, "bead.xml": BEAD}
+    systems |= {f"{file}.xml": text.replace('"SimplePendulum"', f'"{name}"', 1) for file, name in (("mine", "MyFmu"), ("third", "ThirdFmu"))}
     folder = tmp_path / "a project"
     result = configure(folder, lines, systems=systems)
     assert result.returncode == 0, result.stderr
@@ -68,11 +71,16 @@ def test_foreign_project(tmp_path):
     assert result.returncode == 0, result.stdout + result.stderr
     archives = {path.stem: path for path in (folder / "build" / "fmu").iterdir()}
     assert sorted(archives) == ["BeadOnHoop", "MyFmu", "SimplePendulum"]
+    third = {path.stem: path for path in (folder / "build" / "fmi3").iterdir()}
+    assert sorted(third) == ["MyFmu", "ThirdFmu"]
     for name in ("SimplePendulum", "BeadOnHoop"):
         assert fmpy.supported_platforms(str(archives[name])) == fmpy.supported_platforms(str(fmu.archive(name)))
         np.testing.assert_allclose(simulate(archives[name]), simulate(fmu.archive(name)), rtol=1e-9, atol=1e-12)
     assert set(fmpy.supported_platforms(str(archives["MyFmu"]))) >= {"linux64", "win64"}
-    np.testing.assert_allclose(simulate(archives["MyFmu"]), simulate(fmu.archive("SimplePendulum")), rtol=1e-7, atol=1e-9)
+    assert set(fmpy.supported_platforms(str(third["MyFmu"]))) >= {"x86_64-linux", "x86_64-windows"}
+    for archive in (archives["MyFmu"], *third.values()):
+        np.testing.assert_allclose(simulate(archive), simulate(fmu.archive("SimplePendulum")), rtol=1e-7, atol=1e-9)
+        assert validate_fmu(str(archive)) == []
     description = (Path(fmpy.extract(archives["MyFmu"], tmp_path / "mine")) / "modelDescription.xml").read_text()
     assert "solverHandovers" in description, "it has the solver auto"
 
@@ -82,7 +90,8 @@ def test_foreign_project(tmp_path):
     [
         ("lagrange_add_fmu(Mine missing.xml)", "lagrange_add_fmu(Mine): there is no .*/missing.xml; expected the file of a system"),
         ("lagrange_add_fmu(Mine system.xml PLATFORMS vax)", "the platform 'vax' is not known; expected linux64, win64, darwin64, aarch64-linux"),
-        ("lagrange_add_fmu(Mine system.xml PLATTFORMS win64)", "unknown words 'PLATTFORMS;win64'; expected PLATFORMS, SOLVER or FORM"),
+        ("lagrange_add_fmu(Mine system.xml PLATTFORMS win64)", "unknown words 'PLATTFORMS;win64'; expected PLATFORMS, FMI_VERSIONS, SOLVER or FORM"),
+        ("lagrange_add_fmu(Mine system.xml FMI_VERSIONS 1)", "lagrange_add_fmu(Mine): there is no version 1 of FMI here; expected 2, 3 or both"),
     ],
 )
 def test_mistakes_in_a_project(line, message, tmp_path):

@@ -19,7 +19,7 @@ import fmu
 from fmu import BUILD, ROOT, alone
 
 sys.path.append(str(ROOT / "scripts"))
-from cross import PLATFORMS, Failure, compile_fmu, suffix_of  # noqa: E402
+from cross import PLATFORMS, Failure, compile_fmu, libraries_of  # noqa: E402
 
 FOLDER = BUILD / "platforms"
 ENVIRONMENT = {**os.environ, "WINEPREFIX": str(FOLDER / "wine"), "WINEDEBUG": "-all"}
@@ -56,7 +56,7 @@ def platforms():
         subprocess.run([ROOT / "scripts" / "sundials-all"], check=True)
         systems = ";".join(str(source_of(name)) for name in SYSTEMS)
         words = [f"-DSYSTEMS={systems}", f"-DPLATFORMS={';'.join(PLATFORMS)}", f"-DTOOLS={ROOT / 'build'}", f"-DLAGRANGE_PYTHON={sys.executable}"]
-        subprocess.run([ROOT / "scripts" / "build", FOLDER, *words], check=True)
+        subprocess.run([ROOT / "scripts" / "build", FOLDER, "-DFMI_VERSIONS=2;3", *words], check=True)
         for platform in RUNNERS:
             for program in ("drive", "stepping", "out_of_memory"):
                 compile_program(platform, program)
@@ -80,14 +80,19 @@ def compile_program(platform, program):
 
 
 @functools.cache
-def unpacked(name):
-    folder = platforms() / "unpacked" / f"{name}-{os.getpid()}"
+def unpacked(name, fmi=2):
+    folder = platforms() / "unpacked" / f"{name}-{fmi}-{os.getpid()}"
     shutil.rmtree(folder, ignore_errors=True)
-    return Path(fmpy.extract(platforms() / "fmu" / f"{name}.fmu", folder))
+    return Path(fmpy.extract(platforms() / ("fmu" if fmi == 2 else "fmi3") / f"{name}.fmu", folder))
 
 
-def library(name, platform):
-    return unpacked(name) / "binaries" / platform / f"{name}{PLATFORMS[platform][0]}"
+def libraries(name, platform, fmi=2):
+    return [unpacked(name, fmi) / "binaries" / path for path in libraries_of(platform, name, fmi)]
+
+
+def library(name, platform, fmi=2):
+    [path] = libraries(name, platform, fmi)
+    return path
 
 
 def run(platform, program, name, *words):
@@ -125,6 +130,18 @@ def motion(platform, name):
 def test_archive(name):
     folders = {path.parent.name: path.name for path in unpacked(name).glob("binaries/*/*")}
     assert folders == {platform: f"{name}{suffix}" for platform, (suffix, _) in PLATFORMS.items()}
+    folders = {path.parent.name: path.suffix for path in unpacked(name, 3).glob("binaries/*/*")}
+    assert folders == {"x86_64-linux": ".so", "x86_64-windows": ".dll", "x86_64-darwin": ".dylib", "aarch64-darwin": ".dylib", "aarch64-linux": ".so"}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_same_motion_of_fmi3(name):
+    """By the library for this platform, to the bit."""
+    second, third = (fmpy.simulate_fmu(str(unpacked(name, fmi)), fmi_type="CoSimulation", stop_time=0.5, output_interval=0.1) for fmi in (2, 3))
+    columns = [column for column in second.dtype.names if column in third.dtype.names]
+    assert len(columns) > 1
+    for column in columns:
+        np.testing.assert_array_equal(second[column], third[column])
 
 
 @pytest.mark.parametrize("platform", ["win64", "aarch64-linux"])
@@ -161,42 +178,46 @@ def test_without_memory(name, platform):
     assert re.fullmatch(r"[1-9]\d* allocations\n", run(platform, "out_of_memory", name, output))
 
 
-def functions():
-    """All that FMI 2.0 has."""
-    return sorted(set(re.findall(r"FMI2_EXPORT .*?\b(fmi2\w+)\(", (ROOT / "include" / "fmi2.h").read_text())))
+def functions(fmi):
+    """All that this version of FMI has."""
+    return sorted(set(re.findall(rf"FMI{fmi}_EXPORT [^(;]*\b(fmi{fmi}\w+)\(", (ROOT / "include" / f"fmi{fmi}.h").read_text())))
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("platform", ["linux64", "aarch64-linux"])
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_linux_libraries(name, platform):
+def test_linux_libraries(name, platform, fmi):
     """They export FMI's functions alone, and need nothing newer than glibc 2.17."""
-    table = output_of("llvm-objdump", "-T", library(name, platform)).splitlines()
+    path = library(name, platform, fmi)
+    table = output_of("llvm-objdump", "-T", path).splitlines()
     exported = sorted(line.split()[-1] for line in table if " g " in line and "*UND*" not in line)
-    assert exported == functions()
+    assert exported == functions(fmi)
     versions = {tuple(map(int, found.split("."))) for line in table for found in re.findall(r"GLIBC_([0-9.]+)", line)}
     assert versions and max(versions) <= (2, 17)
-    needed = re.findall(r"NEEDED\s+(\S+)", output_of("llvm-objdump", "-p", library(name, platform)))
+    needed = re.findall(r"NEEDED\s+(\S+)", output_of("llvm-objdump", "-p", path))
     assert set(needed) <= {"libc.so.6", "libm.so.6", "ld-linux-aarch64.so.1"}
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_windows_libraries(name):
+def test_windows_libraries(name, fmi):
     """They export FMI's functions alone, and need what every Windows since 10 has."""
-    text = output_of("llvm-readobj", "--coff-exports", "--coff-imports", library(name, "win64"))
+    text = output_of("llvm-readobj", "--coff-exports", "--coff-imports", library(name, "win64", fmi))
     exports, imports = re.findall(r"Export \{.*?Name: (\S+)", text, re.S), re.findall(r"Import \{\s+Name: (\S+)", text)
-    assert sorted(exports) == functions()
+    assert sorted(exports) == functions(fmi)
     assert imports and all(re.fullmatch(r"KERNEL32\.dll|api-ms-win-crt-\w+-l1-1-0\.dll", name) for name in imports), imports
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_mac_libraries(name):
     """For both processors in one file, which load where the folder of the FMU lies, from macOS 11 on; that for ARM is signed, as it must be."""
-    path = library(name, "darwin64")
-    for processor in ("x86_64", "arm64"):
+    both = library(name, "darwin64")
+    intel, arm = libraries(name, "darwin64", 3)
+    for path, processor, fmi in ((both, "x86_64", 2), (both, "arm64", 2), (intel, "x86_64", 3), (arm, "arm64", 3)):
         dump = functools.partial(output_of, "llvm-objdump", "--macho", f"--arch={processor}")
         exported = re.findall(r"^0x[0-9A-F]+\s+(\S+)$", dump("--exports-trie", path), re.M)
         # zig's linker adds the two by which every library for the Mac finds its own header.
-        assert sorted(set(exported) - {"__mh_dylib_header", "___dso_handle"}) == [f"_{function}" for function in functions()]
+        assert sorted(set(exported) - {"__mh_dylib_header", "___dso_handle"}) == [f"_{function}" for function in functions(fmi)]
         headers = dump("--private-headers", path)
         assert re.search(r"\bDYLIB\b", headers)
         assert re.findall(r"cmd LC_LOAD_DYLIB\s+cmdsize \d+\s+name (\S+)", headers) == ["/usr/lib/libSystem.B.dylib"]
@@ -208,8 +229,9 @@ def test_mac_libraries(name):
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_no_path_of_this_machine(name):
     for platform in PLATFORMS:
-        content = library(name, platform).read_bytes()
-        assert str(ROOT).encode() not in content and str(Path.home()).encode() + b"/" not in content, platform
+        for path in libraries(name, platform) + libraries(name, platform, 3):
+            content = path.read_bytes()
+            assert str(ROOT).encode() not in content and str(Path.home()).encode() + b"/" not in content, path
 
 
 @pytest.mark.parametrize("name", ["StateFeedback", "BeadOnHoop"])
@@ -219,22 +241,22 @@ def test_same_bytes_from_another_folder(name, tmp_path):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / "work").mkdir()
     shutil.copy(platforms() / "systems" / name / "system.c", tmp_path / "work")
-    for platform, (suffix, _) in PLATFORMS.items():
-        path = tmp_path / platform / f"{name}{suffix}"
-        compile_fmu(platform, tmp_path / "work" / "system.c", path, source=tmp_path, sundials=ROOT / "build" / "sundials-all")
-        assert path.read_bytes() == library(name, platform).read_bytes(), platform
-        assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+    for platform in PLATFORMS:
+        compile_fmu(platform, tmp_path / "work" / "system.c", tmp_path, name, source=tmp_path, sundials=ROOT / "build" / "sundials-all")
+        path = library(name, platform)
+        assert (tmp_path / platform / path.name).read_bytes() == path.read_bytes(), platform
+        assert [entry.name for entry in (tmp_path / platform).iterdir()] == [path.name]
 
 
 def test_what_cannot_be_compiled(tmp_path):
     system = tmp_path / "system.c"
     system.write_text("int f(void) { return unknown; }\n")
     with pytest.raises(Failure, match="use of undeclared identifier 'unknown'"):
-        compile_fmu("win64", system, tmp_path / "f.dll")
+        compile_fmu("win64", system, tmp_path, "f")
     with pytest.raises(Failure, match="'vax' is not known; expected linux64, win64, darwin64, aarch64-linux"):
-        suffix_of("vax")
+        libraries_of("vax", "f")
     with pytest.raises(Failure, match="needs SUNDIALS for win64; expected what scripts/sundials-all builds, or another <solver> than erk and bdf"):
-        compile_fmu("win64", platforms() / "systems" / "BeadOnHoop" / "system.c", tmp_path / "BeadOnHoop.dll")
+        compile_fmu("win64", platforms() / "systems" / "BeadOnHoop" / "system.c", tmp_path, "BeadOnHoop")
 
 
 # --- lagc ---------------------------------------------------------------------------------------------------------------

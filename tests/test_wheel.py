@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 
+import fmi3
 import fmu
 import wheel
 from fmu import ROOT
@@ -68,6 +69,20 @@ def test_it_is_the_fmu_of_the_tree(name, tmp_path):
     motions = [fmpy.simulate_fmu(str(path), fmi_type="CoSimulation") for path in (tmp_path / f"{name}.fmu", fmu.archive(name))]
     for column in motions[0].dtype.names:
         np.testing.assert_allclose(motions[0][column], motions[1][column], rtol=1e-8, atol=1e-8)
+
+
+def test_fmi3(tmp_path):
+    """The picture apart, it is what the tree packs, for all that is not compiled."""
+    succeed("build", ROOT / "fmu" / "DoublePendulum", "--fmi", "3", "--platforms", "linux64", "aarch64-linux", cwd=tmp_path)
+    path = tmp_path / "DoublePendulum.fmu"
+    with zipfile.ZipFile(path) as built, zipfile.ZipFile(fmi3.archive("DoublePendulum")) as packed:
+        libraries = {f"binaries/{folder}/DoublePendulum.so" for folder in ("x86_64-linux", "aarch64-linux")}
+        others = set(packed.namelist()) - {"binaries/x86_64-linux/DoublePendulum.so", "terminalsAndIcons/icon.png"}
+        assert set(built.namelist()) == libraries | others
+        for member in others:
+            assert built.read(member) == packed.read(member), member
+    second, third = (fmpy.simulate_fmu(str(archive), fmi_type="CoSimulation", stop_time=1) for archive in (fmu.archive("DoublePendulum"), path))
+    np.testing.assert_allclose(third["theta2"], second["theta2"], rtol=1e-8, atol=1e-8)
 
 
 def test_another_compiler_of_lagc_changes_nothing(tmp_path):
@@ -145,6 +160,8 @@ def test_from_python(tmp_path):
         lagrange_fmu.build(tmp_path / "nothing")
     with pytest.raises(lagrange_fmu.Problem, match="the platform 'win46' is not known; expected linux64"):
         lagrange_fmu.build(ROOT / "fmu" / "SimplePendulum", platforms="win46")
+    with pytest.raises(lagrange_fmu.Problem, match="the version 1 of FMI is not known; expected 2 or 3"):
+        lagrange_fmu.build(ROOT / "fmu" / "SimplePendulum", fmi=1)
 
 
 def test_two_clones_give_the_same_bytes(tmp_path):

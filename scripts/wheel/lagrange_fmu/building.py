@@ -57,38 +57,52 @@ def check(system, solver=None):
     return f"{description.get('modelName')}: {', '.join(f'{count} {kind}' for kind, count in counts.items())}; solver {method}"
 
 
-def compile_libraries(folder, name, platforms, content):
+def compile_libraries(folder, name, platforms, fmi, content):
     if not {"HOME", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"} & set(os.environ):
         os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"lagrange-fmu-{os.getuid()}")
     for platform_name in platforms:
-        library = content / "binaries" / platform_name / f"{name}{PLATFORMS[platform_name][0]}"
-        library.parent.mkdir(parents=True)
         try:
-            compile_fmu(platform_name, folder / "system.c", library, sundials=HERE / "sundials")
+            compile_fmu(platform_name, folder / "system.c", content / "binaries", name, fmi, sundials=HERE / "sundials")
         except Failure as failure:
             raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
 
-def build(system, platforms=None, solver=None, output="."):
+def write_descriptions(folder, name, fmi, content):
+    """What stands beside the libraries; folder holds what lagc wrote."""
+    files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
+    if fmi == 3:
+        files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
+        documentation = (folder / "documentation" / "index.html").read_text(encoding="utf-8")
+        (folder / "documentation" / "index.html").write_text(documentation.replace("../model.png", "../terminalsAndIcons/icon.png"), encoding="utf-8")
+    build_description = folder / "fmi3" / "buildDescription.xml"
+    if build_description.exists():  # then it is complete in C
+        write_sources(folder / "system.c", name, content / "sources" / f"{name}.c", fmi)
+        if fmi == 3:
+            files["sources/buildDescription.xml"] = "fmi3/buildDescription.xml"
+    for member, file in files.items():
+        (content / member).parent.mkdir(exist_ok=True)
+        (folder / file).rename(content / member)
+
+
+def build(system, platforms=None, solver=None, output=".", fmi=2):
     """
     Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
-    `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own.
+    `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own;
+    `fmi` is the version of FMI, 2 or 3.
     """
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORMS:
             raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORMS)}")
+    if fmi not in (2, 3):
+        raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         description = derive(system, folder, solver)
         name = description.find("CoSimulation").get("modelIdentifier")
         content = folder / "content"
-        compile_libraries(folder, name, platforms, content)
-        (content / "documentation").mkdir()
-        for file in ("modelDescription.xml", "documentation/index.html"):
-            (folder / file).rename(content / file)
-        if description.find("CoSimulation/SourceFiles") is not None:
-            write_sources(folder / "system.c", name, content / "sources" / f"{name}.c")
+        compile_libraries(folder, name, platforms, fmi, content)
+        write_descriptions(folder, name, fmi, content)
         archive = Path(output) / f"{name}.fmu"
         archive.parent.mkdir(parents=True, exist_ok=True)
         pack(content, archive)

@@ -17,7 +17,7 @@ def start_value(text):
 
 
 def build_command(arguments):
-    print(build(arguments.system, arguments.platforms, arguments.solver, arguments.output))
+    print(build(arguments.system, arguments.platforms, arguments.solver, arguments.output, arguments.fmi))
 
 
 def run_command(arguments):
@@ -51,6 +51,7 @@ def parse(words):
     one.add_argument("system", **system)
     one.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORMS)}; {NATIVE} where none are given")
     one.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
+    one.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="the version of FMI; 2 where none is given")
     one.add_argument("-o", "--output", default=".", metavar="FOLDER", help="where the FMU goes; else the current folder")
     one = add("run", run_command, "Builds the FMU of a system and simulates it; leaves a CSV, a plot and an animation.")
     one.add_argument("system", **system | {"help": system["help"] + "; or an FMU"})
