@@ -51,14 +51,14 @@ function(add_platform_libraries list name version folder platforms)
   foreach(platform ${platforms})
     find_platform(${platform} ${version})
     set(binaries ${folder}/platforms${version})
-    string(REPLACE NAME ${name} libraries "${lagrange_libraries_${platform}_${version}}")
-    list(TRANSFORM libraries PREPEND ${binaries}/)
-    add_custom_command(OUTPUT ${libraries}
+    string(REPLACE NAME ${name} outputs "${lagrange_libraries_${platform}_${version}}")
+    list(TRANSFORM outputs PREPEND ${binaries}/)
+    add_custom_command(OUTPUT ${outputs}
                        COMMAND ${lagrange_zig} ${lagrange_root}/scripts/cross.py fmu ${platform} ${folder}/system.c ${binaries} ${name}
                                --fmi ${version} ${sundials}
                        DEPENDS ${folder}/system.c ${lagrange_sources} ${lagrange_root}/scripts/cross.py
                        COMMENT "Compiling ${name} of FMI ${version} for ${platform}" VERBATIM)
-    list(APPEND ${list} ${libraries})
+    list(APPEND ${list} ${outputs})
   endforeach()
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
