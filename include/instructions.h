@@ -68,6 +68,7 @@ enum Opcode {
   INVERSE_ROOT,   /* 1 / sqrt(a) */
   LESS_THAN,      /* 1 where a < b, else 0 */
   SIGN_OF,        /* -1, 0 or 1 */
+  GATE_OF,        /* b where a > 0, else 0 */
   CALL,           /* a function of a */
   CALL_OF_TWO,    /* a function of a and b */
   CHECK_POSITIVE, /* return the number r unless a > 0 */
@@ -99,6 +100,7 @@ enum Opcode {
   SERIES_ABSOLUTE,          /* of the row a */
   SERIES_LARGER,            /* b_k where the row a is positive at first, else c_k */
   SERIES_SMALLER,           /* b_k where the row a is negative at first, else c_k */
+  SERIES_GATE,              /* b_k where the value a is positive, else 0 */
   SERIES_REST,              /* a_k - the product of the rows b and c without b_0 c_k */
   SERIES_SOLVE,             /* the block r */
   SERIES_STATE,             /* r_(k+1) = a_k / (k + 1) */
@@ -116,6 +118,9 @@ struct BlockTable {
   void (*solve)(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
   void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                        double *x);
+  /* oblique_solve() of a block with forces that follow from others, NULL of others */
+  void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                          double *x);
 };
 
 /* What all tables of a system share. */
@@ -168,6 +173,8 @@ struct LimitCheck {
   const char *function; /* the name for messages */
   double share;
   Place exponent;
+  bool is_gated; /* matters only where the value of the opener is positive */
+  Place opener;
 };
 
 void instructions_limit(const struct Frame *frame, const struct LimitCheck *checks, size_t count,

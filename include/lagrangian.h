@@ -40,11 +40,20 @@ enum VariableKind {
   VARIABLE_DERIVATIVE, /* of the state with the same index */
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
+  VARIABLE_MODE,     /* that the author declared; the index is that of a parameter, among which all modes stand last */
+  VARIABLE_CONTACT,  /* the mode of a contact or friction, likewise */
   VARIABLE_RESULT,   /* computed when read */
   VARIABLE_STATISTIC /* the index is an enum Statistic */
 };
 
-enum Statistic { STATISTIC_STEPS, STATISTIC_DERIVATIVES, STATISTIC_JACOBIANS, STATISTIC_HANDOVERS, STATISTIC_COUNT };
+enum Statistic {
+  STATISTIC_STEPS,
+  STATISTIC_DERIVATIVES,
+  STATISTIC_JACOBIANS,
+  STATISTIC_HANDOVERS,
+  STATISTIC_EVENTS,
+  STATISTIC_COUNT
+};
 
 /* A ScalarVariable; its value reference is its place in the table. */
 struct ScalarVariable {
@@ -73,6 +82,12 @@ static inline bool has_following_start(const struct ScalarVariable *variable) {
 /* One that may be read in initialization mode, and be differentiated along the knowns. */
 static inline bool is_unknown(const struct ScalarVariable *variable) {
   return variable->is_output || variable->kind == VARIABLE_DERIVATIVE || variable->follows_from != NULL;
+}
+
+/* One that has values within a communication step. */
+static inline bool is_intermediate(const struct ScalarVariable *variable) {
+  return variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_DERIVATIVE ||
+         (variable->kind == VARIABLE_RESULT && !is_calculated_parameter(variable));
 }
 
 /* Variables that follow each other in the table and are the elements 1, 2, ... of one array. */
@@ -108,9 +123,73 @@ struct Guide {
   size_t input, rates;
 };
 
+/*
+ * What switches a system. A mode is constant between events, and stands among the parameters at the index that is given
+ * here.
+ */
+struct BranchFacts {
+  size_t mode;          /* the sign of the indicator: -1, 0 or 1 */
+  const char *function; /* that has the pieces, in messages */
+  long line;            /* of system.xml; 0 where it is not known */
+};
+
+struct ContactFacts {
+  size_t mode;       /* 1 while it is closed, else 0 */
+  size_t constraint; /* which holds while it is closed */
+  const char *name;
+};
+
+struct FrictionFacts {
+  size_t mode;       /* the sign of the velocity while it slides, 0 while it sticks */
+  size_t constraint; /* which holds while it sticks */
+  const char *name;
+};
+
+/* What an event sets: a state, or a mode. */
+struct AssignmentFacts {
+  enum VariableKind kind;
+  size_t index;
+};
+
+struct EventFacts {
+  size_t first_condition, condition_count, first_assignment, assignment_count;
+  const char *when; /* as written */
+};
+
+struct ContactLaws;
+
+struct SwitchTable {
+  size_t mode_count; /* of the last parameters */
+  size_t branch_count, contact_count, friction_count, event_count, condition_count, assignment_count;
+  const struct BranchFacts *branches;
+  const struct ContactFacts *contacts;
+  const struct FrictionFacts *frictions;
+  const struct EventFacts *events;
+  const struct AssignmentFacts *assignments;
+  const struct ContactLaws *contact_laws; /* settlement.h; NULL without contacts */
+  const bool
+      *rests_on; /* of each friction, for each contact: whether it follows from its force; NULL where none does */
+  /*
+   * indicator[] of the branches, the contacts and the frictions: each changes its sign where a mode may change.
+   * acceleration as for result().
+   */
+  void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
+  /*
+   * value[]: the indicators of the branches, their time derivatives; of each contact the gap, its first and second time
+   * derivative and the restitution; of each friction the velocity, its time derivative and the stiction; the conditions of
+   * the events; what they assign.
+   */
+  void (*values)(const struct Point *point, const double *acceleration, double *value);
+};
+
+static inline size_t indicator_count(const struct SwitchTable *switches) {
+  return switches == NULL ? 0 : switches->branch_count + switches->contact_count + switches->friction_count;
+}
+
 struct Lu;
 struct Projection;
 struct Solver;
+struct Switching;
 
 struct Lagrangian {
   const char *name, *guid;
@@ -142,6 +221,8 @@ struct Lagrangian {
   size_t guide_count;
   const bool *coordinate_is_fixed;     /* at the start; NULL where none is */
   const struct Projection *projection; /* projection.h; NULL without constraints */
+  const struct SwitchTable *switches;  /* NULL where nothing switches, as is */
+  const struct Switching *switching;   /* switching.h */
 
   /*
    * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive

@@ -70,17 +70,28 @@ void write_experiment(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
+bool has_start(const struct ScalarVariable *entry) {
+  return entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT || entry->kind == VARIABLE_PARAMETER ||
+         entry->kind == VARIABLE_MODE;
+}
+
+/* Changes at events and communication points alone. */
+static bool is_discrete(const struct ScalarVariable *entry) {
+  return entry->kind == VARIABLE_STATISTIC || entry->kind == VARIABLE_MODE || entry->kind == VARIABLE_CONTACT;
+}
+
 /* Causality, variability and initial by the tables of FMI 2.0.4, section 2.2.7, and FMI 3.0, section 2.4.7.4. */
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
   static const char *const causalities[] = {
       [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
       [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
-      [VARIABLE_STATISTIC] = "local",
+      [VARIABLE_STATISTIC] = "local",  [VARIABLE_MODE] = "local",          [VARIABLE_CONTACT] = "local",
   };
   static const char *const initials[] = {
-      [VARIABLE_STATE] = "exact",       [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
-      [VARIABLE_RESULT] = "calculated", [VARIABLE_STATISTIC] = "calculated",
+      [VARIABLE_STATE] = "exact",        [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
+      [VARIABLE_RESULT] = "calculated",  [VARIABLE_STATISTIC] = "calculated",  [VARIABLE_MODE] = "exact",
+      [VARIABLE_CONTACT] = "calculated",
   };
   bool is_calculated = is_calculated_parameter(entry);
   write_attribute(writer, "causality",
@@ -89,7 +100,7 @@ void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariabl
                                    : causalities[entry->kind]);
   write_attribute(writer, "variability",
                   entry->kind == VARIABLE_PARAMETER || is_calculated ? "tunable"
-                  : entry->kind == VARIABLE_STATISTIC                ? "discrete"
+                  : is_discrete(entry)                               ? "discrete"
                                                                      : "continuous");
   if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
     write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);

@@ -14,6 +14,9 @@ void write_log_categories(xmlTextWriterPtr writer);
 /* The element DefaultExperiment. */
 void write_experiment(xmlTextWriterPtr writer, const struct Model *model);
 
+/* Whether the description gives a start value. */
+bool has_start(const struct ScalarVariable *entry);
+
 /* The attributes causality, variability and initial. */
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable);
 

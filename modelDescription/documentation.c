@@ -201,7 +201,7 @@ static void write_variable_row(xmlTextWriterPtr writer, const struct InterfaceVa
   static const char *const kinds[] = {
       [VARIABLE_TIME] = "time",           [VARIABLE_STATE] = "state",         [VARIABLE_DERIVATIVE] = "derivative",
       [VARIABLE_INPUT] = "input",         [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "computed",
-      [VARIABLE_STATISTIC] = "statistic",
+      [VARIABLE_STATISTIC] = "statistic", [VARIABLE_MODE] = "mode",           [VARIABLE_CONTACT] = "mode",
   };
   const struct ScalarVariable *entry = &variable->entry;
   char start[NUMBER_LENGTH] = "";

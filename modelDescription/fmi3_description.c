@@ -25,8 +25,9 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   const struct Model *model = program->model;
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_abilities(writer, model);
-  /* A step is asked for whether its state has drifted from the constraints. */
-  if (model->constraints.count > 0) write_attribute(writer, "needsCompletedIntegratorStep", "true");
+  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  if (model->constraints.count > 0 || program->expressions->switching != NULL)
+    write_attribute(writer, "needsCompletedIntegratorStep", "true");
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
   write_abilities(writer, model);
@@ -61,16 +62,6 @@ static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable 
   close_text(file, &text, &length);
   write_attribute(writer, "start", text);
   free(text);
-}
-
-static bool has_start(const struct ScalarVariable *entry) {
-  return entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT || entry->kind == VARIABLE_PARAMETER;
-}
-
-/* What can be read within a communication step. */
-static bool is_intermediate(const struct ScalarVariable *entry) {
-  return entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_DERIVATIVE ||
-         (entry->kind == VARIABLE_RESULT && !is_calculated_parameter(entry));
 }
 
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,

@@ -92,6 +92,7 @@ static char *name_or_function(struct Text *text) {
   text->at += length;
   if (take(text, "(")) {
     char *arguments = sum(text, "").math;
+    if (take(text, ">")) arguments = around("%s<mo>&gt;</mo>%s", arguments, sum(text, "").math);
     while (take(text, ",")) arguments = around("%s<mo>,</mo>%s", arguments, sum(text, "").math);
     text->wrong |= !take(text, ")");
     math = application(name, arguments);

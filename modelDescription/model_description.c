@@ -27,8 +27,9 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
                                              "providesDirectionalDerivative"};
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
-  /* A step is asked for whether its state has drifted from the constraints. */
-  if (model->constraints.count == 0) write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
+  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  if (model->constraints.count == 0 && program->expressions->switching == NULL)
+    write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
   xmlTextWriterEndElement(writer);
@@ -52,8 +53,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
   if (!isnan(variable->entry.maximum)) write_number(writer, "max", variable->entry.maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
-  if (kind == VARIABLE_STATE || kind == VARIABLE_INPUT || kind == VARIABLE_PARAMETER)
-    write_number(writer, "start", variable->entry.start);
+  if (has_start(&variable->entry)) write_number(writer, "start", variable->entry.start);
   if (kind == VARIABLE_DERIVATIVE)
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
                                       interface_find(interface, VARIABLE_STATE, variable->entry.index) + 1);
@@ -103,7 +103,9 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   if (model->description != NULL) write_attribute(writer, "description", model->description);
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
-  write_attribute(writer, "numberOfEventIndicators", "0");
+  const struct SwitchingExpressions *switching = program->expressions->switching;
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "numberOfEventIndicators", "%zu",
+                                    switching != NULL ? switching->indicator_count : 0);
   write_interfaces(writer, program);
   write_units(writer, interface, interface_count_in_use(interface));
   write_log_categories(writer);

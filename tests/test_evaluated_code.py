@@ -64,7 +64,8 @@ def program(method, form, folder):
     flags = ["-O1", "-DSERIES_ROLLED", f"-I{ROOT}/include", "-include", "lagrangian.h"]
     name = {"taylor": "taylor", "bdf": "bdf"}[method]
     stub = folder / "solver.c"  # the functions are called without their solver
-    stub.write_text(f"struct Solver {{ int unused; }};\nextern const struct Solver solver_{name};\nconst struct Solver solver_{name} = {{0}};\n")
+    stub.write_text(f"struct Solver {{ int unused; }};\nextern const struct Solver solver_{name};\nconst struct Solver solver_{name} = {{0}};\n"
+                    "struct Switching { int unused; };\nextern const struct Switching switching;\nconst struct Switching switching = {0};\n")
     subprocess.run(["gcc", *flags, *sources, stub, BUILD / "libsolvers.a", "-lm", "-o", folder / "evaluate"], check=True)
     return folder / "evaluate"
 

@@ -77,7 +77,7 @@ def test_foreign_project(tmp_path):
         assert fmpy.supported_platforms(str(archives[name])) == fmpy.supported_platforms(str(fmu.archive(name)))
         np.testing.assert_allclose(simulate(archives[name]), simulate(fmu.archive(name)), rtol=1e-9, atol=1e-12)
     assert set(fmpy.supported_platforms(str(archives["MyFmu"]))) >= {"linux64", "win64"}
-    assert set(fmpy.supported_platforms(str(third["MyFmu"]))) >= {"x86_64-linux", "x86_64-windows"}
+    assert set(fmpy.supported_platforms(str(third["MyFmu"]))) >= {"linux64", "win64"}
     for archive in (archives["MyFmu"], *third.values()):
         np.testing.assert_allclose(simulate(archive), simulate(fmu.archive("SimplePendulum")), rtol=1e-7, atol=1e-9)
         assert validate_fmu(str(archive)) == []

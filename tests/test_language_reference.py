@@ -97,6 +97,36 @@ def block(t):
     return {"x": 2 * moving - 0.3 * 9.81 * moving**2 / 2, "v": 2 - 0.3 * 9.81 * moving}
 
 
+def dropped_ball(t):
+    """Parabolas between bounces, each with half the velocity of the one before."""
+    flight, velocity = 2 * np.sqrt(2 / 9.81), np.sqrt(2 * 9.81)
+    t += flight / 2
+    while t >= flight and flight > 1e-14:
+        t, flight, velocity = t - flight, flight / 2, velocity / 2
+    h = velocity * t - 9.81 * t**2 / 2 if t < flight else 0.0
+    return {"h": h, "ground.force": 9.81 if t >= flight else 0.0}
+
+
+def thermostat(t):
+    """rate = u/10 + (rate0 - u/10) exp(-10 s) from switch to switch, which bisection finds."""
+    T, rate, u, turns = 20.0, 0.0, 1.0, 0
+    motion = lambda s: T + u / 10 * s + (rate - u / 10) * (1 - np.exp(-10 * s)) / 10
+    while True:
+        crossing = lambda s: (motion(s) - (20 + 0.2 * u)) * u
+        first, last = 1e-3, t + 1e-3
+        if crossing(last) <= 0:
+            break
+        while last - first > 1e-15 * t:
+            middle = (first + last) / 2
+            first, last = (middle, last) if crossing(middle) < 0 else (first, middle)
+            if middle in (first, last) and last - first < 1e-13:
+                break
+        if first > t:
+            break
+        T, rate, u, turns, t = motion(first), u / 10 + (rate - u / 10) * np.exp(-10 * first), -u, turns + (u > 0), t - first
+    return {"T": motion(t), "heats": float(u > 0), "turns": turns}
+
+
 def hand_and_bob(t):
     angle = pendulum_angle(1, np.sqrt(9.81 / 0.5), t)
     return {"x": 0.1, "theta": angle, "hand.force": -2 * 9.81 * (3 * np.cos(angle) - 2 * np.cos(1)) * np.sin(angle)}
@@ -152,7 +182,9 @@ MOTIONS = {
     "HandAndBob": (hand_and_bob, 1e-5),
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
-    "SlidingBlock": (block, 1e-4),
+    "SlidingBlock": (block, 1e-12),
+    "DroppedBall": (dropped_ball, 1e-12),
+    "Thermostat": (thermostat, 1e-9),
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),
     "Swing": (swing, 0.0),

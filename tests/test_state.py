@@ -223,7 +223,7 @@ def test_truncated_and_foreign_bytes_are_refused(open_fmu):
 
 HEADER = 64  # bytes; the last eight are the checksum of the situation, which follows
 # The situation: six integers, the statistics, seven numbers, and then values.
-MODE, CHANGED, STATISTICS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 56
+MODE, CHANGED, STATISTICS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 64
 NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end"]
 VALUES = TIME + 8 * len(NUMBERS)
 
@@ -365,7 +365,7 @@ def test_reset_is_a_new_instance(name, open_fmu):
         instance.step(0.02)
         instance.reset()
     instance.initialize(tolerance=1e-6)
-    counts = [v.name for v in instance.description.modelVariables if v.type == "Integer"]
+    counts = [v.name for v in instance.description.modelVariables if v.type == "Integer" and "." not in v.name]  # without modes
     assert instance.fmu.getInteger(instance.vr(*counts)) == [0] * len(counts)
     assert drive(instance, name, 5) == fresh
 

@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+#include "initial_state.h"
+#include "switching.h"
+
 const char *evaluate_state_name(size_t state) {
   for (size_t i = 0; i < lagrangian.variable_count; i++)
     if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == state)
@@ -34,6 +37,10 @@ enum Status discard_for_singularity(struct Instance *instance) {
 }
 
 enum Status evaluate_prepare(struct Instance *instance) {
+  if (lagrangian.switching != NULL && is_before_start(instance) && !instance->is_starting) {
+    lagrangian.switching->guess(instance);
+    instance->prepared_is_stale = true;
+  }
   if (!instance->prepared_is_stale) return STATUS_DONE;
   instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
   if (instance->singular != 0) return discard_for_singularity(instance);
@@ -138,7 +145,9 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_TIME: result = instance->situation->time; break;
   case VARIABLE_STATE: result = instance->state[variable->index]; break;
   case VARIABLE_INPUT: result = instance->input[variable->index]; break;
-  case VARIABLE_PARAMETER: result = instance->parameter[variable->index]; break;
+  case VARIABLE_PARAMETER:
+  case VARIABLE_MODE:
+  case VARIABLE_CONTACT: result = instance->parameter[variable->index]; break;
   case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
   case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
   case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */

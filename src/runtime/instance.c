@@ -5,6 +5,7 @@
 #include "initial_state.h"
 #include "projection.h"
 #include "solver.h"
+#include "switching.h"
 
 static size_t set_count(void) {
   return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
@@ -36,7 +37,8 @@ void instance_reset(struct Instance *instance) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (variable->kind == VARIABLE_STATE) instance->state[variable->index] = variable->start;
     if (variable->kind == VARIABLE_INPUT) instance->input[variable->index] = variable->start;
-    if (variable->kind == VARIABLE_PARAMETER) instance->parameter[variable->index] = variable->start;
+    if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
+      instance->parameter[variable->index] = variable->start;
   }
   initial_state_follow(instance);
   instance->situation->changed = 1;
@@ -50,9 +52,14 @@ static size_t acceleration_count(void) {
   return lagrangian.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraint_count;
 }
 
+static size_t switching_work_count(void) {
+  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + lagrangian.state_count : 0;
+}
+
 static size_t evaluation_count(void) {
-  return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + 2 * acceleration_count() +
-         3 * lagrangian.state_count + 2 * lagrangian.input_count + lagrangian.parameter_count + 1;
+  return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + switching_work_count() +
+         2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+         lagrangian.parameter_count + 1;
 }
 
 /* Divides the blocks of memory among the arrays. */
@@ -66,7 +73,9 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->prepared = evaluation;
   instance->point_work = instance->prepared + lagrangian.prepared_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;
-  instance->acceleration = instance->projection_work + projection_work_count();
+  instance->switching_work = instance->projection_work + projection_work_count();
+  instance->acceleration = instance->switching_work + switching_work_count();
+  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? lagrangian.state_count : 0);
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 

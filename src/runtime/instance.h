@@ -66,6 +66,7 @@ struct Instance {
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
+  bool is_starting;          /* the modes of the start are being found */
   bool solver_is_stale;      /* the situation was replaced: what the solver keeps outside of it no longer counts */
   bool told_early_reading;   /* that a variable was read before it should be, since the last reset */
   uint64_t told_singularity; /* the checksum of the situation whose lack of accelerations was logged last */
@@ -74,6 +75,9 @@ struct Instance {
   double *work;              /* 3 state_count + 2 input_count + parameter_count, for evaluations */
   double *point_work;        /* lagrangian.work_count, for generated functions */
   double *projection_work;   /* projection_work_count() */
+  double *switching_work;    /* switching->work_count() */
+  double departure;          /* the sign with which a branch that rested at 0 leaves it, as found last */
+  double *event_state;       /* state_count, in FMUs that switch: the state behind the last event */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;
   /* Is told of each time that the solver comes to within a communication step, see intermediate.h; NULL for none. */

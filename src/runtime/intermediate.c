@@ -8,9 +8,7 @@
 
 /* Gives the instance the values of a time within the step. False where they do not exist. */
 static bool move_to(struct Instance *instance, double time) {
-  if (!lagrangian.solver->interpolate(instance, time, instance->state) ||
-      !are_finite(instance->state, lagrangian.state_count) || solver_project(instance, time, instance->state) != NULL)
-    return false;
+  if (!solver_take_state(instance, time) || solver_project(instance, time, instance->state) != NULL) return false;
   evaluate_advance_inputs(instance, time); /* from the time of the situation */
   instance->situation->time = time;
   instance->situation->mode = MODE_INTERMEDIATE_UPDATE;

@@ -6,6 +6,7 @@
 #include "check.h"
 #include "evaluate.h"
 #include "projection.h"
+#include "switching.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
   if (!isfinite(time)) return log_error(instance, "%s: the time is %g; expected a finite number", function, time);
@@ -50,31 +51,43 @@ enum Status exchange_get_nominals(struct Instance *instance, double *nominal, si
   return STATUS_DONE;
 }
 
-size_t exchange_event_indicator_count(void) {
-  return 0;
-}
-
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count,
                                           const char *function) {
-  size_t expected = exchange_event_indicator_count();
-  if (count == expected)
-    return check_array(instance, indicator, count, function, "the array") ? STATUS_DONE : STATUS_ERROR;
-  return log_error(instance, "%s: %zu elements; expected %zu", function, count, expected);
+  size_t expected = indicator_count(lagrangian.switches);
+  if (count != expected)
+    return log_error(instance, "%s: %zu elements; expected %zu, the number of event indicators", function, count,
+                     expected);
+  if (count == 0) return STATUS_DONE;
+  if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
+  return lagrangian.switching->indicators(instance, indicator) ? STATUS_DONE : discard_for_singularity(instance);
 }
 
-bool exchange_needs_event(struct Instance *instance) {
+static bool has_drifted(struct Instance *instance) {
   if (lagrangian.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
   return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
 }
 
+bool exchange_needs_event(struct Instance *instance) {
+  return has_drifted(instance) || (lagrangian.switching != NULL && lagrangian.switching->is_due(instance));
+}
+
+/* Brings the modes into agreement with the state. */
+static enum Status settle(struct Instance *instance, bool *changed) {
+  if (lagrangian.switching == NULL) return STATUS_DONE;
+  const char *problem =
+      lagrangian.switching->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
+  return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
+}
+
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
-  if (lagrangian.projection == NULL) return STATUS_DONE;
-  enum Status status = evaluate_prepare(instance);
+  enum Status status = settle(instance, states_changed);
+  if (status != STATUS_DONE || lagrangian.projection == NULL) return status;
+  status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);
   if (!isfinite(moved))
     return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
-  *states_changed = moved > 0.0;
+  *states_changed |= moved > 0.0;
   return STATUS_DONE;
 }

@@ -1,6 +1,6 @@
 /*
- * What an importer that integrates asks for. The only events are those in which a state that drifted from the constraints
- * is brought back. Messages come under the name of the function that the caller called.
+ * What an importer that integrates asks for. In an event modes may change, and a state that drifted from the constraints is
+ * brought back. Messages come under the name of the function that the caller called.
  */
 #ifndef MODEL_EXCHANGE_H
 #define MODEL_EXCHANGE_H
@@ -15,17 +15,14 @@ enum Status exchange_get_states(struct Instance *instance, double *state, size_t
 enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count, const char *function);
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count, const char *function);
 
-/* How many event indicators the system has. */
-size_t exchange_event_indicator_count(void);
-
-/* The array has as many elements; another count is an error. */
+/* The array has an element for each event indicator; another count is an error. */
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count,
                                           const char *function);
 
-/* Whether the state has drifted from the constraints by more than the tolerance, so that an event is needed. */
+/* Whether an event is needed: the state has drifted from the constraints by more than the tolerance, or a mode must change. */
 bool exchange_needs_event(struct Instance *instance);
 
-/* Brings the state back to the constraints, and tells whether it was moved. */
+/* Brings the modes into agreement with the state, and this back to the constraints; tells whether it was moved. */
 enum Status exchange_update(struct Instance *instance, bool *states_changed);
 
 #endif

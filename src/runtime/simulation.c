@@ -5,6 +5,7 @@
 #include "evaluate.h"
 #include "initial_state.h"
 #include "projection.h"
+#include "switching.h"
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
@@ -36,9 +37,11 @@ static bool has_accelerations(struct Instance *instance) {
 
 enum Status simulation_start(struct Instance *instance, const char *function) {
   if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
+  if (lagrangian.switching != NULL) lagrangian.switching->guess(instance);
   bool is_ready = is_prepared(instance);
   if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, function))
     return STATUS_ERROR;
+  if (is_ready && lagrangian.switching != NULL && !lagrangian.switching->start(instance, function)) return STATUS_ERROR;
   if (!is_ready || !has_accelerations(instance)) {
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return log_error(instance, "%s: the system has no acceleration at its start values", function);

@@ -9,6 +9,7 @@
 #include "guides.h"
 #include "projection.h"
 #include "solver.h"
+#include "switching.h"
 
 enum StepResult {
   STEP_DONE,
@@ -79,6 +80,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set. */
     if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return STEP_PARTIAL;
+    if (lagrangian.switching != NULL && !lagrangian.switching->resume(instance, step->start)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -99,23 +101,31 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
   const struct Span *last = &instance->situation->last_step;
+  const struct Switching *switcher = lagrangian.switching;
+  struct EventProgress progress = {.searched = step->start};
   int resting = 0;
-  for (; last->end < step->end; step->count++) {
+  for (;; step->count++) {
+    const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    if (problem != NULL) return problem;
+    bool is_inside = last->end > step->start && last->end < step->end;
+    if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
+    if (last->end >= step->end) return NULL;
     if (step->count == lagrangian.max_steps)
       return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
     if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);
-    const char *problem = lagrangian.solver->advance(instance, step);
+    problem = lagrangian.solver->advance(instance, step);
+    if (problem != NULL && switcher != NULL) problem = switcher->pass_barrier(instance, step, problem, &progress);
     if (problem != NULL) return problem;
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return solver_resting;
-    if (instance->observe != NULL && last->end < step->end) instance->observe(instance, step, last->end);
   }
-  return NULL;
 }
 
-/* False where the state is not known or not finite. */
-static bool take_state(struct Instance *instance, double time) {
-  if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
+bool solver_take_state(struct Instance *instance, double time) {
+  const struct Span *last = &instance->situation->last_step;
+  bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
+  if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
+  else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
   return are_finite(instance->state, lagrangian.state_count);
 }
 
@@ -135,9 +145,10 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
                             double reached) {
   const struct Solver *solver = lagrangian.solver;
   const char *function = instance->limited_by;
-  if (!take_state(instance, reached)) return STEP_FAILED;
+  if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
-  if (solver_project(instance, reached, instance->state) != NULL && !take_state(instance, reached)) return STEP_FAILED;
+  if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
+    return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   if (lagrangian.projection != NULL) log_weakest(instance, reached);
   const char *others = solver->alternatives;
@@ -159,7 +170,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     return readiness;
   }
   const char *problem = reach(instance, step);
-  if (problem == NULL && take_state(instance, step->end)) {
+  if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
     if (problem == NULL) return STEP_DONE;

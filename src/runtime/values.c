@@ -28,7 +28,8 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
-    if (variable->kind == VARIABLE_PARAMETER) {
+    if (variable->kind == VARIABLE_CONTACT) evaluate_prepare(instance); /* before the start it follows from the state */
+    if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_CONTACT) {
       value[i] = (int)instance->parameter[variable->index];
       continue;
     }
@@ -55,6 +56,7 @@ static bool is_settable(const struct Instance *instance, const struct ScalarVari
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return instance->situation->mode != MODE_CONTINUOUS_TIME;
+  case VARIABLE_MODE:
   case VARIABLE_STATE: return is_before_start(instance);
   default: return false;
   }
@@ -104,7 +106,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->situation->changed = 1;
-  if (variable->kind == VARIABLE_PARAMETER) instance->prepared_is_stale = true;
+  if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,

@@ -15,9 +15,10 @@ static void *zeros(size_t count, size_t size) {
   return values;
 }
 
-static double *read_numbers(size_t count) {
+/* As many numbers, the first of which are read. */
+static double *read_numbers(size_t count, size_t read) {
   double *numbers = zeros(count, sizeof *numbers);
-  for (size_t i = 0; i < count; i++)
+  for (size_t i = 0; i < read; i++)
     if (scanf("%lf", &numbers[i]) != 1) exit(3);
   return numbers;
 }
@@ -61,16 +62,31 @@ static void print_series(const struct Point *point) {
   free(derivative);
 }
 
+/* The modes of branches are the signs of their indicators, which may rest on one another. */
+static void set_modes(const struct Point *point, double *parameter) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  double *indicator = zeros(indicator_count(switches), sizeof *indicator);
+  for (size_t round = 0; switches != NULL && round <= switches->branch_count; round++) {
+    if (lagrangian.prepare(parameter, (double *)point->prepared) != 0) exit(1);
+    switches->indicators(point, NULL, indicator);
+    for (size_t i = 0; i < switches->branch_count; i++)
+      parameter[switches->branches[i].mode] = (double)((indicator[i] > 0.0) - (indicator[i] < 0.0));
+  }
+  free(indicator);
+}
+
 int main(void) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count, parameters = lagrangian.parameter_count;
+  size_t modes = lagrangian.switches != NULL ? lagrangian.switches->mode_count : 0;
   size_t count = 1 + states + inputs + parameters, n = lagrangian.coordinate_count;
-  double *at = read_numbers(count), *direction = read_numbers(count);
+  double *at = read_numbers(count, count - modes), *direction = read_numbers(count, count - modes);
   double *prepared = zeros(lagrangian.prepared_count, sizeof *prepared);
   double *work = zeros(lagrangian.work_count, sizeof *work);
   double *derivative = zeros(states, sizeof *derivative), *along = zeros(states, sizeof *along);
-  const double *parameter = at + 1 + states + inputs;
+  double *parameter = at + 1 + states + inputs;
   struct Point point = {at[0], at + 1, at + 1 + states, parameter, prepared, work};
   struct Seed seed = {direction[0], direction + 1, direction + 1 + states, direction + 1 + states + inputs};
+  set_modes(&point, parameter);
   if (lagrangian.prepare(parameter, prepared) != 0 || lagrangian.derivatives(&point, derivative) != 0 ||
       lagrangian.directional(&point, &seed, along) != 0)
     return 1;

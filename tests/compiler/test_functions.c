@@ -19,6 +19,10 @@ static long double one_if_less(long double a, long double b) {
   return a < b ? 1.0L : 0.0L;
 }
 
+static long double if_positive(long double x, long double y) {
+  return x > 0 ? y : 0;
+}
+
 static long double sign_of(long double x) {
   return x == 0 ? 0 : copysignl(1.0L, x);
 }
@@ -42,6 +46,7 @@ static const struct Reference {
     {"min", "fmin", NULL, fminl, NULL, "sign"},
     {"max", "fmax", NULL, fmaxl, NULL, "sign"},
     {"less", NULL, NULL, one_if_less, NULL, "sign"},
+    {"gate", NULL, NULL, if_positive, NULL, NULL},
     {"sin", "sin", sinl, NULL, NULL, NULL},
     {"cos", "cos", cosl, NULL, NULL, NULL},
     {"tan", "tan", tanl, NULL, "tangent", NULL},
@@ -166,7 +171,8 @@ static void test_the_language_follows(void **state) {
     char one[40], two[40];
     snprintf(one, sizeof one, "%s(x)", name);
     snprintf(two, sizeof two, "%s(x, y)", name);
-    bool is_internal = is_leaf(operation) || operation == ADD || operation == MULTIPLY || operation == LESS;
+    bool is_internal = is_leaf(operation) || operation == ADD || operation == MULTIPLY || operation == LESS ||
+                       operation == GATE;
     bool has_two = operation_arity(operation) == 2;
     Node first = parse(&e, one);
     assert_int_equal(e.diagnostics.errors, is_internal || has_two ? 1 : 0);
@@ -214,7 +220,7 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
   enum Operation operation = e->graph->vertices[node].operation;
   const struct Function *row = &functions[operation];
   const struct Reference *reference = reference_of(operation);
-  if (row->recurrence == ARITHMETIC) return;
+  if (row->recurrence == ARITHMETIC || row->recurrence == GATED) return;
   double a = value_at(e, row->auxiliary(e->graph, node), x, y, 0), sign = (a > 0) - (a < 0);
   double by_x = slope(reference, x, y, 0), here = (double)value(reference, x, y);
   switch (row->recurrence) {
@@ -234,6 +240,7 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
     assert_near(0, by_x, "the slope", operation, x, y);
     assert_near(operation == LESS ? a < 0 : sign, here, "the piece", operation, x, y);
     return;
+  case GATED:
   case ARITHMETIC: return;
   }
 }

@@ -28,6 +28,19 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
   return multiply(graph, multiply(graph, function(graph, LOGARITHM, base, ZERO), node), seed);
 }
 
+/*
+ * weight by, where what is gated may have no value while its gate is closed: the gates of the weight are put around the
+ * product.
+ */
+static Node gated_product(struct Graph *graph, Node weight, Node by) {
+  const struct Vertex vertex = graph->vertices[weight];
+  if (vertex.operation == GATE) return function(graph, GATE, vertex.left, gated_product(graph, vertex.right, by));
+  bool is_sum_of_gates = vertex.operation == ADD && graph->vertices[vertex.left].operation == GATE &&
+                         graph->vertices[vertex.right].operation == GATE;
+  if (!is_sum_of_gates) return multiply(graph, weight, by);
+  return add(graph, gated_product(graph, vertex.left, by), gated_product(graph, vertex.right, by));
+}
+
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   struct Cone *cone = graph->cone;
   if (graph_limit(graph) != NULL) count = 0; /* the derivatives are then what they were, and have no meaning */
@@ -42,6 +55,10 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
     Node along_left = along[cone_place(cone, vertex.left)];
     Node along_right = arity == 2 ? along[cone_place(cone, vertex.right)] : ZERO;
     if (along_left == ZERO && along_right == ZERO) continue;
+    if (vertex.operation == GATE) {
+      along[place] = function(graph, GATE, vertex.left, along_right);
+      continue;
+    }
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
     along[place] = multiply(graph, by_left, along_left);
@@ -67,7 +84,7 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
 static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node operand, Node weight, Node by) {
   if ((graph->vertices[operand].kinds & kinds) == 0) return;
   Node *sum = &adjoint[cone_place(graph->cone, operand)];
-  *sum = add(graph, *sum, multiply(graph, weight, by));
+  *sum = add(graph, *sum, gated_product(graph, weight, by));
 }
 
 /* Moves what symbols of the kinds have in adjoint, one element for each member of the cone. */
@@ -95,6 +112,10 @@ struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, cons
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
     if (adjoint[place] == ZERO || arity == 0) continue;
+    if (vertex.operation == GATE) {
+      add_adjoint(graph, kinds, adjoint, vertex.right, function(graph, GATE, vertex.left, adjoint[place]), ONE);
+      continue;
+    }
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
     add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[place], by_left);

@@ -143,6 +143,14 @@ static void print_term(struct Printer *printer, Node node, bool first) {
 }
 
 static void print_function(struct Printer *printer, const struct Vertex *vertex) {
+  if (vertex->operation == GATE) {
+    fputs("if(", printer->file);
+    print(printer, vertex->left, IN_SUM);
+    fputs(" > 0, ", printer->file);
+    print(printer, vertex->right, IN_SUM);
+    fputs(", 0)", printer->file);
+    return;
+  }
   fprintf(printer->file, "%s(", operation_name(vertex->operation));
   print(printer, vertex->left, IN_SUM);
   if (operation_arity(vertex->operation) == 2) {

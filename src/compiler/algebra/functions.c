@@ -18,6 +18,10 @@ static double is_less(double left, double right) {
   return left < right ? 1.0 : 0.0;
 }
 
+static double gate_of(double opener, double x) {
+  return opener > 0.0 ? x : 0.0;
+}
+
 static double sign_of(double x) {
   return (double)((x > 0.0) - (x < 0.0));
 }
@@ -165,6 +169,11 @@ static void along_maximum(struct Graph *graph, Node node, Node *by_left, Node *b
   *by_left = subtract(graph, ONE, *by_right);
 }
 
+static void along_gate(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+  *by_left = ZERO;
+  *by_right = function(graph, GATE, operand(graph, node), ONE);
+}
+
 static void along_absolute(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   (void)by_right;
   *by_left = function(graph, SIGN, operand(graph, node), ZERO);
@@ -222,6 +231,13 @@ const struct Function functions[OPERATION_COUNT] = {
               .auxiliary = difference,
               .has_pieces = true,
               .auxiliary_limit = "sign"},
+    [GATE] = {.name = "gate",
+              .is_internal = true,
+              .of_two = gate_of,
+              .units = UNIT_LOST,
+              .recurrence = GATED,
+              .auxiliary = operand,
+              .partial_derivatives = along_gate},
     [SINE] = {.name = "sin",
               .c_name = "sin",
               .of_one = sine,

@@ -29,13 +29,14 @@ struct Domain {
  * give the derivative of f as well; the others have partial derivatives of their own.
  */
 enum Recurrence {
-  ARITHMETIC,        /* sums, products and powers, by the rules for each */
-  INTEGRAL,          /* y' = sign x' a */
-  RATIO,             /* y' = sign x' / a */
-  ANGLE,             /* of atan2(y, x): a = x^2 + y^2, a angle' = y' x - x' y */
-  REFLECTION,        /* abs: x or -x, by the sign of a = x */
-  CHOICE,            /* min and max: one of the operands, by the sign of a = left - right */
-  PIECEWISE_CONSTANT /* y' = 0 but where the sign of a changes */
+  ARITHMETIC,         /* sums, products and powers, by the rules for each */
+  INTEGRAL,           /* y' = sign x' a */
+  RATIO,              /* y' = sign x' / a */
+  ANGLE,              /* of atan2(y, x): a = x^2 + y^2, a angle' = y' x - x' y */
+  REFLECTION,         /* abs: x or -x, by the sign of a = x */
+  CHOICE,             /* min and max: one of the operands, by the sign of a = left - right */
+  PIECEWISE_CONSTANT, /* y' = 0 but where the sign of a changes */
+  GATED               /* the coefficients of the right operand, or 0 */
 };
 
 struct Function {

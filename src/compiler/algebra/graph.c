@@ -142,7 +142,7 @@ bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind
 }
 
 bool graph_is_constant_in_time(const struct Graph *graph, Node node) {
-  return (graph->vertices[node].kinds & ~(1u << PARAMETER)) == 0;
+  return (graph->vertices[node].kinds & ~(1u << PARAMETER | 1u << MODE)) == 0;
 }
 
 void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags) {

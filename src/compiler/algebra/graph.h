@@ -23,6 +23,7 @@ enum Operation {
   MINIMUM,
   MAXIMUM,
   LESS, /* 1 where the left operand is less than the right one, else 0 */
+  GATE, /* the right operand where the left one is positive, else 0, whatever the right one is */
   SINE,
   COSINE,
   TANGENT,
@@ -52,6 +53,7 @@ enum SymbolKind {
   INPUT,
   DISPLACEMENT, /* a virtual one, always 0: index 2 i of the i-th, 2 i + 1 of its rate */
   REACTION,     /* the force along a displacement, or of the drive of a coordinate */
+  MODE,         /* changes at events alone; its index counts on behind the parameters */
   SEED_PARAMETER,
   SEED_TIME,
   SEED_COORDINATE,
@@ -133,7 +135,7 @@ double operation_evaluate(enum Operation operation, double left, double right);
 /* Whether the node depends on a symbol of this kind. */
 bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind);
 
-/* Whether the node is made of numbers and parameters alone, so that it does not change in time. */
+/* Whether the node is made of numbers, parameters and modes alone, so that it does not change between events. */
 bool graph_is_constant_in_time(const struct Graph *graph, Node node);
 
 /* Marks every node that the targets need, themselves included; flags has one element a node, zeroed here. */

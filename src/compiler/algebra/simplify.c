@@ -309,12 +309,22 @@ Node subtract(struct Graph *graph, Node left, Node right) {
   return add(graph, left, negate(graph, right));
 }
 
+/* What is open, or closed, for good, or opened by a gate of 1 alone, needs none of its own. */
+static Node gate(struct Graph *graph, Node opener, Node node) {
+  const struct Vertex *vertex = &graph->vertices[opener];
+  if (graph_is_constant(graph, opener)) return graph_value(graph, opener) > 0.0 ? node : ZERO;
+  if (node == ZERO) return ZERO;
+  if (vertex->operation == GATE && vertex->right == ONE) opener = vertex->left;
+  return graph_node(graph, GATE, opener, node);
+}
+
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right) {
   if (operation_arity(operation) == 1) right = ZERO;
   if (graph_is_constant(graph, left) && graph_is_constant(graph, right))
     return graph_constant(graph, operation_evaluate(operation, graph_value(graph, left), graph_value(graph, right)));
   if ((operation == MINIMUM || operation == MAXIMUM) && left == right) return left;
   if (operation == ABSOLUTE && is_never_negative(graph, left)) return left;
+  if (operation == GATE) return gate(graph, left, right);
   Node base;
   if (coefficient_of(graph, left, &base) < 0) {
     enum Parity parity = functions[operation].parity;
@@ -322,4 +332,10 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
     if (parity == EVEN) return graph_node(graph, operation, negate(graph, left), right);
   }
   return graph_node(graph, operation, left, right);
+}
+
+Node choose_node(struct Graph *graph, Node condition, Node positive, Node other) {
+  Node is_positive = function(graph, GATE, condition, ONE);
+  return add(graph, function(graph, GATE, condition, positive),
+             function(graph, GATE, subtract(graph, ONE, is_positive), other));
 }

@@ -21,6 +21,9 @@ Node power_number(struct Graph *graph, Node base, double exponent);
 /* A function of one or two operands; right is ignored for one. */
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right);
 
+/* The first node where the condition is positive, else the other. */
+Node choose_node(struct Graph *graph, Node condition, Node positive, Node other);
+
 /* node = coefficient * base with base free of a numeric factor; a number has the base ONE. */
 double coefficient_of(const struct Graph *graph, Node node, Node *base);
 

@@ -20,6 +20,28 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
   gradient_free(&gradient);
 }
 
+static bool has_element(const struct Elements *elements, size_t row, size_t column) {
+  bool has = false;
+  for (size_t k = 0; k < elements->count; k++)
+    has |= elements->positions[k].row == row && elements->positions[k].column == column;
+  return has;
+}
+
+/* Forces that follow from those of constraints; the pattern of J holds their places too. */
+static void append_oblique(struct Constraints *constraints, const struct Model *model) {
+  struct Graph *graph = model->graph;
+  size_t n = model->coordinates.count;
+  for (size_t i = 0; i < n; i++) {
+    struct Gradient gradient = gradient_by_kinds(graph, model->forces[i].node, 1u << ACCELERATION);
+    for (size_t k = 0; k < gradient.count && !model->drives[i].given; k++) {
+      size_t row = (size_t)graph_symbol_of(graph, gradient.symbols[k])->index - n;
+      elements_append(&constraints->oblique, row, i, negate(graph, gradient.values[k]));
+      if (!has_element(&constraints->jacobian, row, i)) elements_append(&constraints->jacobian, row, i, ZERO);
+    }
+    gradient_free(&gradient);
+  }
+}
+
 struct Constraints *constraints_derive(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t count = model->constraints.count;
@@ -42,6 +64,7 @@ struct Constraints *constraints_derive(const struct Model *model) {
   }
   free(seeds);
   free(seeds_of_rest);
+  append_oblique(constraints, model);
   return constraints;
 }
 
@@ -49,6 +72,7 @@ void constraints_free(struct Constraints *constraints) {
   if (constraints == NULL) return;
   elements_free(&constraints->jacobian);
   elements_free(&constraints->driven);
+  elements_free(&constraints->oblique);
   free(constraints->position);
   free(constraints->velocity);
   free(constraints->acceleration);

@@ -18,7 +18,12 @@ struct Constraints {
   Node *acceleration;       /* the time derivative of velocity */
   Node *acceleration_rest;  /* the same with 0 for the accelerations */
   struct Elements jacobian; /* J: constraints and coordinates */
-  struct Elements driven;   /* the elements of driven coordinates, which no constraint moves, so that J has none */
+  /*
+   * What the force of a constraint adds to the left side of a coordinate's equation beside J^T, where a force follows from
+   * it, as the friction of a contact: constraints and coordinates.
+   */
+  struct Elements oblique;
+  struct Elements driven; /* the elements of driven coordinates, which no constraint moves, so that J has none */
 };
 
 struct Constraints *constraints_derive(const struct Model *model);

@@ -75,12 +75,35 @@ static struct Inertia *create_blocks(size_t count, size_t constraint_count, stru
   return inertia;
 }
 
+/* The column of a force that others follow from, which is new where there is none yet. */
+static size_t oblique_column(struct InertiaBlock *block, size_t force) {
+  for (size_t k = 0; k < block->force_count; k++)
+    if (block->forces[k] == force) return k;
+  size_t count = block->force_count++;
+  block->forces = reallocate(block->forces, count + 1, sizeof *block->forces);
+  block->oblique = reallocate(block->oblique, (count + 1) * block->count, sizeof *block->oblique);
+  for (size_t i = 0; i < block->count; i++) block->oblique[count * block->count + i] = ZERO;
+  block->forces[count] = force;
+  return count;
+}
+
+static void add_oblique(struct Inertia *inertia, const struct Elements *oblique) {
+  for (size_t k = 0; k < oblique->count; k++) {
+    size_t row = inertia->coordinate_count + oblique->positions[k].row, column = oblique->positions[k].column;
+    struct InertiaBlock *block = &inertia->blocks[inertia->block_of[row]];
+    size_t place = oblique_column(block, inertia->place_of[row]);
+    block->oblique[place * block->count + inertia->place_of[column]] = oblique->nodes[k];
+  }
+}
+
 /* The same matrix with the borders J and J^T. */
 static struct Inertia *border(size_t count, struct Elements *elements, const struct Constraints *constraints) {
   const struct Elements *jacobian = &constraints->jacobian;
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
-  return create_blocks(count + constraints->count, constraints->count, elements);
+  struct Inertia *inertia = create_blocks(count + constraints->count, constraints->count, elements);
+  add_oblique(inertia, &constraints->oblique);
+  return inertia;
 }
 
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
@@ -116,6 +139,8 @@ void inertia_free(struct Inertia *inertia) {
     free(block->column);
     free(block->mass);
     free(block->factor);
+    free(block->forces);
+    free(block->oblique);
   }
   free(inertia->blocks);
   free(inertia->block_of);

@@ -28,7 +28,10 @@ struct InertiaBlock {
   size_t *coordinates;     /* its rows in the order of elimination */
   bool is_unrolled;        /* solved symbolically, as straight-line code; others by ldlt.h at run time */
   size_t *start, *column;
-  Node *mass;   /* the elements of K; ZERO where L fills in */
+  Node *mass; /* the elements of K; ZERO where L fills in */
+  /* Of the forces that others follow from: how many, the row of each, and the columns that they add to K, see oblique.h. */
+  size_t force_count, *forces;
+  Node *oblique;
   Node *factor; /* of unrolled blocks: the elements of L, and those of D on the diagonal; NULL in others */
 };
 

@@ -6,7 +6,9 @@
 
 #include "memory.h"
 #include "algebra/kinks.h"
+#include "algebra/simplify.h"
 #include "mechanics/arrays.h"
+#include "mechanics/switching.h"
 #include "mechanics/symbol_names.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
@@ -109,6 +111,18 @@ static void append_reactions(struct Interface *interface, const struct Model *mo
   }
 }
 
+/* That of a friction which slides belongs to no constraint. */
+static Node whole_force(const struct Model *model, size_t constraint, Node force) {
+  struct Graph *graph = model->graph;
+  for (size_t i = 0; i < model->switches.friction_count; i++) {
+    const struct Friction *friction = &model->switches.frictions[i];
+    if (friction->constraint != constraint) continue;
+    Node sliding = multiply(graph, friction->mode, friction->sliding);
+    return choose_node(graph, power_number(graph, friction->mode, 2.0), sliding, force);
+  }
+  return force;
+}
+
 /* In the constraint's own unit, energy is force times it. */
 static void append_constraint_forces(struct Interface *interface, const struct Model *model,
                                      const struct Equations *equations) {
@@ -118,7 +132,7 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     const char *description = constraint->description != NULL ? constraint->description : constraint->name;
     char *text = format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->constraint_forces[i];
-    append_result(interface, name, "", force, text);
+    append_result(interface, name, "", whole_force(model, i, force), text);
     struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
     free(variable->unit);
     struct Dimension energy;
@@ -131,12 +145,41 @@ static void append_constraint_forces(struct Interface *interface, const struct M
   }
 }
 
+static void append_mode(struct Interface *interface, const struct Model *model, enum VariableKind kind, Node mode,
+                        const char *name, const char *description) {
+  size_t index = (size_t)graph_symbol_of(model->graph, mode)->index;
+  struct InterfaceVariable *variable = append(interface, kind, index, name, description);
+  variable->node = mode;
+  if (kind == VARIABLE_CONTACT) variable->entry.type = TYPE_INTEGER;
+}
+
+static void append_modes(struct Interface *interface, const struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < model->modes.count; i++) {
+    const struct Variable *mode = &model->modes.items[i];
+    append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
+    interface->variables[interface->count - 1].entry.start = mode->start;
+    interface->variables[interface->count - 1].unit = variable_unit(mode);
+  }
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    char *name = format_text("%s.closed", model->constraints.items[switches->contacts[i].constraint].name);
+    append_mode(interface, model, VARIABLE_CONTACT, switches->contacts[i].mode, name, "1 while it is closed, else 0");
+    free(name);
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
+    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].mode, name,
+                "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
+    free(name);
+  }
+}
+
 static void append_statistic(struct Interface *interface, enum Statistic statistic, const char *name,
                              const char *description) {
   append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
 }
 
-static void append_statistics(struct Interface *interface) {
+static void append_statistics(struct Interface *interface, const struct Model *model) {
   append_statistic(interface, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
   if (interface->method->evaluations != NULL)
     append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", interface->method->evaluations);
@@ -144,6 +187,8 @@ static void append_statistics(struct Interface *interface) {
     append_statistic(interface, STATISTIC_JACOBIANS, "jacobianEvaluations", "evaluations of the Jacobian matrix");
   if (interface->method->hands_over)
     append_statistic(interface, STATISTIC_HANDOVERS, "solverHandovers", "handovers between the methods of the solver");
+  if (has_switches(&model->switches))
+    append_statistic(interface, STATISTIC_EVENTS, "events", "events that changed a mode or a velocity");
 }
 
 static bool uses_time(const struct Model *model, const struct Equations *equations) {
@@ -193,14 +238,25 @@ static int output_derivative_order(const struct Interface *interface, const stru
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 
+/* Whether a constraint of the block holds from the start; contacts are open then, and move nothing. */
+static bool is_held_at_start(const struct Model *model, const struct InertiaBlock *block) {
+  bool is_held = false;
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row < model->coordinates.count) continue;
+    is_held |= !graph_depends_on(model->graph, model->constraints.items[row - model->coordinates.count].node, MODE);
+  }
+  return is_held;
+}
+
 /* Those of coordinates that stand in constraints and are not fixed. */
 static void mark_moved_states(struct Interface *interface, const struct Model *model,
                               const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < 2 * n && equations->constraints->count > 0; i++) {
     struct InterfaceVariable *state = &interface->variables[interface_find(interface, VARIABLE_STATE, i)];
-    state->is_moved_at_start =
-        inertia_block_of(equations->inertia, i % n)->constraint_count > 0 && !model->coordinates.items[i % n].is_fixed;
+    state->is_moved_at_start = is_held_at_start(model, inertia_block_of(equations->inertia, i % n)) &&
+                               !model->coordinates.items[i % n].is_fixed;
   }
 }
 
@@ -219,7 +275,10 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
-  append_statistics(interface);
+  for (size_t i = 0; i < interface->count; i++)
+    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
+      interface->variables[i].node = without_branches(model, interface->variables[i].node);
+  append_statistics(interface, model);
   mark_moved_states(interface, model, equations);
 }
 
@@ -252,6 +311,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
   append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
   append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_modes(interface, model);
   append_list(interface, model, &model->outputs, VARIABLE_RESULT, 0);
   for (size_t i = 0; i < model->outputs.count; i++)
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];

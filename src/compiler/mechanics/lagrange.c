@@ -11,6 +11,7 @@
 #include "mechanics/inertial_forces.h"
 #include "mechanics/reactions.h"
 #include "mechanics/time_derivative.h"
+#include "mechanics/switching.h"
 #include "memory.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
@@ -78,6 +79,19 @@ static void give_motion(const struct Model *model, struct Equations *equations, 
   equations->residual[i] = subtract(graph, model->accelerations[i], drive->acceleration);
 }
 
+/* Those that follow from the forces of constraints belong to the matrix. */
+static Node without_forces(const struct Model *model, Node node) {
+  struct Graph *graph = model->graph;
+  if (model->switches.friction_count == 0 || !graph_depends_on(graph, node, ACCELERATION)) return node;
+  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  for (size_t j = 0; j < model->constraints.count; j++)
+    symbols[graph->vertices[model->constraint_forces[j]].left] = ZERO;
+  substitute(graph, &node, 1, symbols, &node);
+  free(symbols);
+  return node;
+}
+
 /* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
 static void derive_motion(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
@@ -99,7 +113,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
   shorten_inertial_forces(model, equations->inertia, left);
   for (size_t i = 0; i < n; i++) {
     Node right = add(graph, force[i], gradient[i]);
-    equations->right_side[i] = subtract(graph, right, left[0][i]);
+    equations->right_side[i] = without_forces(model, subtract(graph, right, left[0][i]));
     equations->residual[i] = subtract(graph, left[1][i], right);
     if (model->drives[i].given) give_motion(model, equations, i);
   }
@@ -183,8 +197,10 @@ struct Equations *equations_create(const struct Model *model) {
 
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->outputs.count; i++)
-    equations->outputs[i] = with_reactions(model, equations->reactions, model->outputs.items[i].node);
-  for (size_t i = 0; i < model->places.count; i++) equations->places[i] = model->places.items[i].node;
+    equations->outputs[i] =
+        without_branches(model, with_reactions(model, equations->reactions, model->outputs.items[i].node));
+  for (size_t i = 0; i < model->places.count; i++)
+    equations->places[i] = without_branches(model, model->places.items[i].node);
 }
 
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics) {

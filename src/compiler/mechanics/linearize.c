@@ -304,7 +304,7 @@ static void fill_row(const struct Model *model, const struct Equations *equation
     Node slope = simplify_fraction(graph, slopes.values[k]);
     Node *elements = symbol->kind == INPUT ? b : symbol->kind == VELOCITY ? a + n : a;
     elements[symbol->index] = slope;
-    if (!graph_is_constant_in_time(graph, slope))
+    if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
       report_error(diagnostics, model->solver_line,
                    "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
                    model->velocities.items[row].name, symbol->name);

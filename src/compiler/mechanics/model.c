@@ -26,6 +26,8 @@ void model_free(struct Model *model) {
   free_variables(&model->calculated);
   free_variables(&model->definitions);
   free_variables(&model->displacements);
+  free_variables(&model->modes);
+  switches_clear(&model->switches);
   free_variables(&model->reactions);
   free_variables(&model->constraints);
   free_variables(&model->places);

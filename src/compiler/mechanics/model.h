@@ -6,6 +6,7 @@
 #include "diagnostics.h"
 #include "mechanics/kinematics.h"
 #include "mechanics/methods.h"
+#include "mechanics/switches.h"
 #include "variable_type.h"
 
 struct Variable {
@@ -87,6 +88,8 @@ struct Model {
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
   struct VariableList displacements;
+  struct VariableList modes; /* that the author declared; those of switches have no names */
+  struct Switches switches;
   struct VariableList reactions; /* forces along the displacements, then of the drives */
   Node *input_rates;             /* of each input: the one that is its time derivative; ZERO for none */
   bool inputs_move;              /* positions or energies depend on inputs */

@@ -7,6 +7,7 @@
 #include "algebra/formula.h"
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
+#include "mechanics/switching.h"
 #include "memory.h"
 
 /* Mere numbers and variables read as well by themselves. */
@@ -31,7 +32,9 @@ static struct NodeNames author_names(const struct Model *model) {
 }
 
 /* The expression as it is, or multiplied out where that is shorter to read. */
-static Node readable(struct Graph *graph, const struct NodeNames *names, Node node) {
+static Node readable(const struct Model *model, const struct NodeNames *names, Node node) {
+  struct Graph *graph = model->graph;
+  node = without_branches(model, node);
   Node expanded = simplify_fraction(graph, node);
   if (expanded == node) return node;
   char *text = expression_text_with_names(graph, node, names);
@@ -53,7 +56,7 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
   }
-  return readable(graph, names, sum);
+  return readable(model, names, sum);
 }
 
 static size_t at_most(size_t count, size_t limit) {
@@ -67,10 +70,10 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
   *summary = (struct Summary){
       .names = names,
-      .lagrangian_kinetic = readable(graph, &names, model->kinetic.node),
-      .kinetic = readable(graph, &names, equations->kinetic),
-      .potential = readable(graph, &names, model->linearized ? equations->potential : model->potential.node),
-      .power = readable(graph, &names, equations->stated_power),
+      .lagrangian_kinetic = readable(model, &names, model->kinetic.node),
+      .kinetic = readable(model, &names, equations->kinetic),
+      .potential = readable(model, &names, model->linearized ? equations->potential : model->potential.node),
+      .power = readable(model, &names, equations->stated_power),
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = at_most(equations->count, SHOWN_LIMIT),
       .reaction_count = at_most(model->reactions.count, SHOWN_LIMIT),
@@ -80,13 +83,13 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   summary->outputs = allocate(summary->output_count, sizeof(Node));
   for (size_t i = 0; i < summary->motion_count; i++) {
     summary->inertial[i] = inertial_side(model, equations, &names, i);
-    summary->right_side[i] = readable(graph, &names, equations->right_side[i]);
+    summary->right_side[i] = readable(model, &names, equations->right_side[i]);
   }
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));
   for (size_t i = 0; i < summary->reaction_count; i++)
-    summary->reactions[i] = readable(graph, &names, equations->reactions[i]);
+    summary->reactions[i] = readable(model, &names, equations->reactions[i]);
   for (size_t i = 0; i < summary->output_count; i++)
-    summary->outputs[i] = readable(graph, &names, equations->outputs[i]);
+    summary->outputs[i] = readable(model, &names, equations->outputs[i]);
   return summary;
 }
 

@@ -3,7 +3,15 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "oblique.h"
 #include "saddle.h"
+
+static size_t mass_count_of(const struct InertiaBlock *block) {
+  size_t elements = block->start[block->count];
+  if (block->constraint_count == 0) return elements;
+  if (block->force_count == 0) return SADDLE_MASS(elements);
+  return SADDLE_MASS(elements) + OBLIQUE_MASS(block->count, block->force_count);
+}
 
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
   struct LoopedBlocks blocks = {0};
@@ -13,9 +21,10 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
   for (size_t i = 0; i < inertia->block_count; i++) {
     const struct InertiaBlock *block = &inertia->blocks[i];
     if (block->is_unrolled) continue;
-    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count};
     bool is_saddle = block->constraint_count > 0;
-    blocks.mass_count += is_saddle ? SADDLE_MASS(block->start[block->count]) : block->start[block->count];
+    size_t count = mass_count_of(block);
+    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count, count};
+    blocks.mass_count += count;
     blocks.side_count += is_saddle ? SADDLE_SIDE(block->count) : block->count;
   }
   return blocks;
@@ -23,6 +32,11 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
 
 bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
   return graph_is_constant_in_time(graph, pivot->value) && graph_is_constant_in_time(graph, pivot->scale);
+}
+
+void append_elements(struct NodeList *targets, const struct InertiaBlock *block) {
+  append_nodes(targets, block->mass, block->start[block->count]);
+  append_nodes(targets, block->oblique, block->force_count * block->count);
 }
 
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations) {
@@ -33,7 +47,7 @@ struct NodeList accelerations_targets(const struct Graph *graph, const struct Eq
   const struct Inertia *inertia = equations->inertia;
   for (size_t i = 0; !equations->explicit_form && i < inertia->block_count; i++) {
     const struct InertiaBlock *block = &inertia->blocks[i];
-    if (!block->is_unrolled) append_nodes(&targets, block->mass, block->start[block->count]);
+    if (!block->is_unrolled) append_elements(&targets, block);
   }
   for (size_t i = 0; i < inertia->pivot_count; i++) {
     const struct Pivot *pivot = &inertia->pivots[i];
@@ -75,6 +89,9 @@ void append_masses(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
     values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count]);
+  for (size_t i = 0; i < block->force_count * block->count; i++)
+    values_copy(values, place_in(SPACE_MASS, first + i), block->oblique[i]);
 }
 
 void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
@@ -85,7 +102,10 @@ void append_factor(struct Values *values, const struct LoopedBlocks *blocks, siz
 void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct InertiaBlock *block = blocks->items[b].block;
-    values_compute(values, block->mass, block->start[block->count], false);
+    struct NodeList elements = {0};
+    append_elements(&elements, block);
+    values_compute(values, elements.nodes, elements.count, false);
+    free(elements.nodes);
     append_masses(values, &blocks->items[b]);
     append_factor(values, blocks, b);
   }
@@ -101,7 +121,8 @@ static void append_block(struct Values *values, const struct Equations *equation
   append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, right_side);
-  if (with_forces && block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
+  if (with_forces && block->constraint_count > 0 && block->force_count == 0)
+    routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
       routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),

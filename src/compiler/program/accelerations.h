@@ -9,6 +9,7 @@
 struct LoopedBlock {
   const struct InertiaBlock *block;
   size_t first_mass, first_side;
+  size_t mass_count; /* numbers of its part of the masses */
 };
 
 struct LoopedBlocks {
@@ -19,6 +20,9 @@ struct LoopedBlocks {
 
 /* Free items with free(). */
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations);
+
+/* The elements of K in a block. */
+void append_elements(struct NodeList *targets, const struct InertiaBlock *block);
 
 /* All nodes that the accelerations rest on. Free its nodes with free(). */
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations);

@@ -56,7 +56,7 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct InertiaBlock *block = program->blocks.items[b].block;
     if (block->constraint_count == 0) continue;
-    append_nodes(&targets, block->mass, block->start[block->count]);
+    append_elements(&targets, block);
     for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
   }
   values_compute(values, targets.nodes, targets.count, false);

@@ -20,9 +20,10 @@ static Node *create_seeds(struct Graph *graph) {
   size_t count = graph->symbol_count;
   Node *seeds = allocate(2 * count, sizeof *seeds);
   for (size_t i = 0; i < count; i++) {
-    if (graph->symbols[i].kind == DISPLACEMENT || graph->symbols[i].kind == REACTION) continue; /* 0, or replaced */
+    enum SymbolKind kind = graph->symbols[i].kind;
+    if (kind == DISPLACEMENT || kind == REACTION || kind == MODE) continue; /* 0, replaced, or held */
     char *name = format_text("d %s", graph->symbols[i].name);
-    seeds[i] = graph_symbol(graph, seed_kinds[graph->symbols[i].kind], graph->symbols[i].index, name);
+    seeds[i] = graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, name);
     free(name);
   }
   return seeds;
@@ -132,6 +133,9 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
   if (expressions->equations->constraints->count > 0)
     report_error(diagnostics, model->solver_line,
                  "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
+  if (model->switches.contact_count + model->switches.friction_count + model->switches.event_count > 0)
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' knows no events; expected another method for a system that switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
     report_error(diagnostics, model->solver_line,
@@ -182,6 +186,7 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
+  expressions->switching = switching_derive(model, equations);
   if (graph_limit(model->graph) != NULL)
     report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
   if (diagnostics->errors == errors) return expressions;
@@ -214,6 +219,10 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
+  if (expressions->switching != NULL) {
+    append_nodes(&targets, expressions->switching->indicators, expressions->switching->indicator_count);
+    append_nodes(&targets, expressions->switching->values, expressions->switching->value_count);
+  }
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series};
   for (int i = 0; i < 2; i++)
     if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets.nodes, plans[i]->targets.count);
@@ -226,6 +235,7 @@ void expressions_free(struct Expressions *expressions) {
   series_plan_free(expressions->series);
   series_plan_free(expressions->output_series);
   jacobian_free(expressions->jacobian);
+  switching_free(expressions->switching);
   free(expressions->along);
   free(expressions->initial);
   free(expressions->initial_along);

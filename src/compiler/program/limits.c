@@ -6,6 +6,7 @@
 
 #include "algebra/functions.h"
 #include "memory.h"
+#include "program/openers.h"
 
 static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
     [LIMIT_EXPONENTIAL] = {.name = "exponential", .has_function = true},
@@ -35,21 +36,26 @@ struct Check {
   double share;  /* for powers with a number as exponent, else NAN */
   size_t next;   /* 1 + the next check of the same first row, 0 for none */
   bool is_covered;
+  Node opener; /* of the gate under which it matters; ZERO for always */
 };
 
 struct CheckList {
   const struct SeriesBuilder *builder;
   struct Check *items;
   size_t count, capacity;
-  size_t *first; /* for each node: 1 + the first check of this row, 0 for none */
+  size_t *first;                 /* for each node: 1 + the first check of this row, 0 for none */
+  const struct Openers *openers; /* under which the present node matters; NULL for always */
 };
 
 /* One check serves all powers of a base; of two, the one with the smaller share shortens more. */
-static void append(struct CheckList *list, struct Check check) {
+static void append_under(struct CheckList *list, struct Check check, Node opener) {
+  check.opener = opener;
   size_t *end = &list->first[check.rows[0]];
   for (; *end != 0; end = &list->items[*end - 1].next) {
     struct Check *other = &list->items[*end - 1];
-    if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent) continue;
+    if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent ||
+        other->opener != check.opener)
+      continue;
     if (check.share < other->share) other->share = check.share;
     return;
   }
@@ -57,6 +63,16 @@ static void append(struct CheckList *list, struct Check check) {
   *end = number;
   list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
   list->items[list->count++] = check;
+}
+
+/* A check for each gate under which the present node matters. */
+static void append(struct CheckList *list, struct Check check) {
+  const struct Openers *openers = list->openers;
+  if (openers == NULL || openers->always) {
+    append_under(list, check, ZERO);
+    return;
+  }
+  for (size_t i = 0; i < openers->count; i++) append_under(list, check, openers->nodes[i]);
 }
 
 static bool can_have_row(const struct SeriesBuilder *builder, Node node) {
@@ -146,7 +162,8 @@ static void find_covered(struct CheckList *list) {
     struct Check *check = &list->items[i];
     if (check->rule != LIMIT_DIVISION) continue;
     for (size_t j = list->first[check->rows[0]]; j != 0; j = list->items[j - 1].next)
-      check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share;
+      check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share &&
+                           list->items[j - 1].opener == check->opener;
   }
 }
 
@@ -160,6 +177,8 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
     taken->row = series_row(builder, check->rows[0]);
     if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
     if (check->exponent != ZERO) taken->exponent = values_place(builder->values, check->exponent);
+    taken->is_gated = check->opener != ZERO;
+    if (taken->is_gated) taken->opener = values_place(builder->values, check->opener);
   }
   return checks;
 }
@@ -169,8 +188,10 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
                            .capacity = 16,
                            .items = allocate(16, sizeof *list.items),
                            .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct Openers *openers = openers_of(builder->graph, builder->plan);
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
+    list.openers = openers != NULL ? &openers[node] : NULL;
     struct Form form = form_of(builder->needs, node);
     if (form.kind == FORM_POWER) check_power(&list, node);
     else if (form.kind == FORM_FUNCTION) check_function(&list, node);
@@ -179,6 +200,7 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
   }
   find_covered(&list);
   struct LimitChecks checks = take_rows(builder, &list);
+  free(openers);
   free(list.items);
   free(list.first);
   return checks;

@@ -240,6 +240,13 @@ static void create_results(struct Program *program, struct Values *values) {
   }
 }
 
+static void create_switching(struct Program *program, struct Values *values) {
+  const struct SwitchingExpressions *switching = program->expressions->switching;
+  if (switching == NULL) return;
+  program->indicators = result_routine(values, switching->indicators, switching->indicator_count);
+  program->switching_values = result_routine(values, switching->values, switching->value_count);
+}
+
 /* The methods of SUNDIALS need the series for its limits alone. */
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
@@ -260,7 +267,8 @@ size_t instruction_count(const struct Program *program) {
                  count_of(program->jacobian) + count_of(program->accelerations) +
                  count_of(program->accelerations_along) + count_of(program->correct_positions) +
                  count_of(program->correct_velocities) + count_of(program->start_positions) +
-                 count_of(program->start_velocities) + count_of(program->initial) + count_of(program->initial_along);
+                 count_of(program->start_velocities) + count_of(program->initial) + count_of(program->initial_along) +
+                 count_of(program->indicators) + count_of(program->switching_values);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -308,6 +316,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   if (expressions->linear != NULL) program->linear = linear_routine(expressions->linear, values);
   create_initial(program, values);
   create_results(program, values);
+  create_switching(program, values);
   create_series(program, values);
   values_free(values);
   choose_form(program, form);
@@ -321,6 +330,8 @@ void program_free(struct Program *program) {
   routine_free(program->directional);
   routine_free(program->jacobian);
   routine_free(program->linear);
+  routine_free(program->indicators);
+  routine_free(program->switching_values);
   routine_free(program->initial);
   routine_free(program->initial_along);
   routine_free(program->accelerations);

@@ -25,7 +25,8 @@ struct Program {
   struct Routine *start_positions, *start_velocities;     /* where some coordinates are fixed at the start */
   /* Of each result, or of it and those that it is continued by; along is NULL unless it is an output. */
   struct Routine **result, **result_along;
-  size_t *leader; /* of each result: the first of those that are computed together */
+  size_t *leader;                                /* of each result: the first of those that are computed together */
+  struct Routine *indicators, *switching_values; /* NULL where nothing switches */
   struct SeriesProgram *series, *output_series;
   bool is_table; /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */

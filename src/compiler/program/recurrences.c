@@ -187,6 +187,10 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
     append(builder, SERIES_ABSOLUTE, series_coefficient(builder, node), series_row(builder, operand), 0, 0);
     return;
   case PIECEWISE_CONSTANT: append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0); return;
+  case GATED:
+    append(builder, SERIES_GATE, series_coefficient(builder, node), value_of(builder, operand),
+           series_coefficient(builder, vertex->right), 0);
+    return;
   case ARITHMETIC: return; /* no function */
   }
 }

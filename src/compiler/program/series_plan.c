@@ -22,12 +22,13 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
     const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
     size_t row = equations->inertia->place_of[i];
     for (size_t k = block->start[row]; k < block->start[row + 1]; k++) append_node(&plan->targets, block->mass[k]);
+    for (size_t k = 0; k < block->force_count; k++) append_node(&plan->targets, block->oblique[k * block->count + row]);
   }
 }
 
 /* The time derivative of a node that is linear in time, whatever the motion; ZERO where it is not. */
 static Node slope_of(struct Graph *graph, Node node, Node time) {
-  if ((graph->vertices[node].kinds & ~(1u << PARAMETER)) != 1u << TIME) return ZERO;
+  if ((graph->vertices[node].kinds & ~(1u << PARAMETER | 1u << MODE)) != 1u << TIME) return ZERO;
   Node slope = derivative_by(graph, node, time);
   return graph_is_constant_in_time(graph, slope) ? slope : ZERO;
 }
@@ -77,6 +78,7 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
 
 /* The plan with its targets given. */
 static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
+  plan->root_count = plan->targets.count;
   close(plan, graph);
   append_slopes(plan, graph);
   size_t size = graph->count;

@@ -11,6 +11,7 @@
  */
 struct SeriesPlan {
   struct NodeList targets;
+  size_t root_count; /* of the targets, those that are no auxiliary nodes */
   Node
       *slope; /* for each node of the graph: its constant time derivative where it is linear in time; ZERO: it is not */
   Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */

@@ -141,6 +141,11 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
     Place sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
     for (size_t e = rows.start[i]; e < rows.start[i + 1]; e++)
       sum = append_rest(builder, sum, rows.mass[e], block->coordinates[rows.column[e]]);
+    for (size_t k = 0; k < block->force_count; k++) {
+      Node oblique = block->oblique[k * block->count + i];
+      if (!is_constant_series(builder, oblique))
+        sum = append_rest(builder, sum, oblique, block->coordinates[block->forces[k]]);
+    }
     routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
   }
   routine_append(builder->order, SERIES_SOLVE, (Place)number, 0, 0, 0);

@@ -35,7 +35,8 @@ struct Routine *values_begin(struct Values *values) {
 static Place place_of_symbol(const struct Values *values, const struct Symbol *symbol) {
   size_t index = (size_t)symbol->index, n = values->coordinates;
   switch (symbol->kind) {
-  case PARAMETER: return place_in(SPACE_PARAMETER, index);
+  case PARAMETER:
+  case MODE: return place_in(SPACE_PARAMETER, index);
   case TIME: return place_in(SPACE_TIME, 0);
   case COORDINATE: return place_in(SPACE_STATE, index);
   case VELOCITY: return place_in(SPACE_STATE, n + index);
@@ -79,6 +80,7 @@ static enum Opcode opcode_of_power(double exponent) {
 static void append_function(struct Values *values, enum Operation function, Place result, struct Form form) {
   Place left = values_place(values, form.left), right = form.arity == 2 ? values_place(values, form.right) : 0;
   if (function == LESS) routine_append(values->routine, LESS_THAN, result, left, right, 0);
+  else if (function == GATE) routine_append(values->routine, GATE_OF, result, left, right, 0);
   else if (function == SIGN) routine_append(values->routine, SIGN_OF, result, left, 0, 0);
   else routine_append_call(values->routine, function, result, left, right);
 }

@@ -110,6 +110,14 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
   return value;
 }
 
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  struct Switches *switches = reader->scope->switches;
+  reader->scope->switches = NULL;
+  struct Quantity value = expression_text_of(reader, node, what, kinds);
+  reader->scope->switches = switches;
+  return value;
+}
+
 struct Dimension unit_of(const char *text) {
   struct Dimension dimension;
   const char *problem;

@@ -34,7 +34,7 @@ struct Reader {
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
   Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
-  size_t constraints_read;
+  size_t constraints_read, contacts_read, frictions_read;
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
@@ -42,12 +42,13 @@ struct Reader {
 
 enum {
   IN_MASS = KIND(PARAMETER),
-  IN_DRIVE = KIND(PARAMETER) | KIND(TIME) | KIND(INPUT),
-  IN_INERTIA = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
+  IN_DRIVE = KIND(PARAMETER) | KIND(MODE) | KIND(TIME) | KIND(INPUT),
+  IN_INERTIA = KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
   WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
   IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
-  IN_CONSTRAINT = KIND(PARAMETER) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT) | WITH_RATES,
+  IN_CONSTRAINT =
+      KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT) | WITH_RATES,
   IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
 };
@@ -87,6 +88,9 @@ struct Matrix matrix_without_displacements(struct Reader *reader, long line, con
 
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
+/* The same where no event waits for its pieces: abs, min and the like stay whole. */
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);

@@ -63,23 +63,27 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
 
 void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  const struct Graph *graph = model->graph;
   struct Variable *constraint = &model->constraints.items[reader->constraints_read++];
-  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
+  struct Quantity value = whole_expression_of(reader, node, "the constraint", IN_CONSTRAINT);
   constraint->node = value.node;
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
-  if (reader->diagnostics->errors > 0) return;
-  if (!graph_depends_on(graph, value.node, COORDINATE) && !graph_depends_on(graph, value.node, VELOCITY))
+  if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
+}
+
+void check_constraint(struct Reader *reader, const struct Variable *constraint) {
+  struct Model *model = reader->model;
+  const struct Graph *graph = model->graph;
+  if (!graph_depends_on(graph, constraint->node, COORDINATE) && !graph_depends_on(graph, constraint->node, VELOCITY))
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' holds no coordinate; expected an expression of coordinates that is 0 at all "
                  "times, or none "
                  "where it is 0 by itself",
                  constraint->name);
-  else if (!is_linear_in_velocities(model->graph, value.node))
+  else if (!is_linear_in_velocities(model->graph, constraint->node))
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' is not linear in the velocities; expected one of coordinates and time, or one "
                  "linear in the velocities, as of rolling without slipping",
                  constraint->name);
-  else if (is_moving(model, value.node)) model->moving_constraint = constraint;
-  if (graph_depends_on(graph, value.node, INPUT)) require_rates(reader, constraint);
+  else if (is_moving(model, constraint->node)) model->moving_constraint = constraint;
+  if (graph_depends_on(graph, constraint->node, INPUT)) require_rates(reader, constraint);
 }

@@ -16,6 +16,7 @@
 #include "algebra/simplify.h"
 #include "read/parameters.h"
 #include "read/similar.h"
+#include "read/switching_reader.h"
 #include "read/start_expressions.h"
 #include "read/tables.h"
 
@@ -183,7 +184,7 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
 static void read_output(struct Reader *reader, xmlNodePtr node) {
   struct Variable output = common_attributes(reader, node);
   char *what = format_text("the output '%s'", output.name);
-  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
+  struct Quantity value = whole_expression_of(reader, node, what, IN_OUTPUT);
   require_unit(reader, output.line, what, value, output.dimension);
   if (!output.dimension.known) output.dimension = value.dimension;
   output.node = value.node = without_displacements(reader, output.line, what, value.node);
@@ -274,6 +275,10 @@ static void read_declaration(struct Reader *reader, xmlNodePtr node, const char 
   else if (strcmp(element, "frame") == 0) declare_frame(reader, node);
   else if (strcmp(element, "table") == 0) read_table(reader, node);
   else if (strcmp(element, "constraint") == 0) declare_constraint(reader, node);
+  else if (strcmp(element, "mode") == 0) declare_mode(reader, node);
+  else if (strcmp(element, "contact") == 0) declare_contact(reader, node);
+  else if (strcmp(element, "stop") == 0) declare_stop(reader, node);
+  else if (strcmp(element, "friction") == 0) declare_friction(reader, node);
   else if (reader->source->outer != NULL) return;
   else if (strcmp(element, "solver") == 0) read_solver(reader, node);
   else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
@@ -306,6 +311,10 @@ static void read_expression(struct Reader *reader, xmlNodePtr node, const char *
   else if (strcmp(element, "frame") == 0) add_stillness_of_norm(reader, node);
   else if (strcmp(element, "output") == 0) read_output(reader, node);
   else if (strcmp(element, "constraint") == 0) read_constraint(reader, node);
+  else if (strcmp(element, "contact") == 0) read_contact(reader, node);
+  else if (strcmp(element, "stop") == 0) read_stop(reader, node);
+  else if (strcmp(element, "friction") == 0) read_friction(reader, node);
+  else if (strcmp(element, "event") == 0) read_event(reader, node);
 }
 
 void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {

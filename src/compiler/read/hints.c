@@ -12,11 +12,11 @@ static const struct Hint of_text[] = {
     {"**", "; write ^ for a power"},
     {"*", "; write one * for a product and ^ for a power"},
     {"%", "; there are no remainders and no percent"},
-    {"!", "; there are no conditions: min, max, abs and sign make pieces"},
-    {"?", "; there are no conditions: min, max, abs and sign make pieces"},
-    {"&", "; there are no conditions: min, max, abs and sign make pieces"},
-    {"<", "; there are no conditions: min, max, abs and sign make pieces"},
-    {">", "; there are no conditions: min, max, abs and sign make pieces"},
+    {"!", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"?", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"&", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"<", "; write if(x > 0, ..., ...) for values that depend on a condition"},
+    {">", "; write if(x > 0, ..., ...) for values that depend on a condition"},
     {"=", "; write the value alone, without a name and ="},
     {"[", "; write round parentheses, and [...] only for the index of a name"},
     {"{", "; write round parentheses"},
@@ -43,7 +43,6 @@ static const struct Hint of_functions[] = {
     {"ln", "; write log for the natural logarithm"},
     {"log10", "; write log(x)/log(10)"},
     {"log2", "; write log(x)/log(2)"},
-    {"if", "; there are no conditions: min, max, abs and sign make pieces"},
     {"arcsin", "; write asin"},
     {"arccos", "; write acos"},
     {"arctan", "; write atan"},
@@ -82,7 +81,6 @@ static const struct Hint of_elements[] = {
     {"spring", "write <potential>k*x^2/2</potential> with the elongation x"},
     {"damper", "write <dissipation>b*v^2/2</dissipation>"},
     {"damping", "write <dissipation>b*v^2/2</dissipation>"},
-    {"friction", "write <dissipation>b*v^2/2</dissipation>"},
     {"mass", "write <particle mass=\"m\" x=\"...\"/>, or <body> with an inertia and an angle"},
     {"link", "write <frame> and a <body> in it"},
     {"joint", "write a <frame> that is turned or moved by a coordinate"},
@@ -95,6 +93,10 @@ static const struct Hint of_elements[] = {
     {"curve", "write <table name=\"...\">, whose name is a function in expressions"},
     {"array", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
     {"vector", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
+    {"collision", "write <contact gap=\"...\" restitution=\"...\"/>"},
+    {"impact", "write <contact gap=\"...\" restitution=\"...\"/>"},
+    {"limit", "write <stop coordinate=\"...\" min=\"...\" max=\"...\"/>"},
+    {"when", "write <event when=\"...\"> with <set> in it"},
     {"state", "write <coordinate>, whose velocity is a state too"},
 };
 
@@ -139,6 +141,7 @@ const char *hint_for_function(const char *name) {
 }
 
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
+  allowed &= ~(1u << MODE);
   if (allowed == 0) return "; expected numbers and constants";
   if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";

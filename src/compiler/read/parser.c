@@ -9,6 +9,7 @@
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/conditions.h"
 #include "read/hints.h"
 #include "read/quantities.h"
 #include "read/tables.h"
@@ -25,6 +26,7 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [ACCELERATION] = "accelerations",
     [DISPLACEMENT] = "displacements",
     [REACTION] = "forces of reaction",
+    [MODE] = "modes",
 };
 
 /* What names the argument of der(...) in messages begins so. */
@@ -37,7 +39,6 @@ static bool is_derived(const char *what) {
 
 static const struct Quantity nothing = {.node = ZERO};
 
-static struct Quantity parse_sum(struct Parser *parser);
 static struct Quantity parse_sign(struct Parser *parser);
 
 long current_line(struct Parser *parser) {
@@ -53,7 +54,7 @@ static void enter(struct Parser *parser) {
          parser->place.what, NESTING_LIMIT);
 }
 
-static void skip_space(struct Parser *parser) {
+void skip_space(struct Parser *parser) {
   while (isspace((unsigned char)*parser->next)) parser->next++;
 }
 
@@ -69,16 +70,16 @@ static const char *found(const struct Parser *parser, char buffer[32]) {
   return buffer;
 }
 
-static bool accept(struct Parser *parser, char c) {
+bool accept_character(struct Parser *parser, char c) {
   skip_space(parser);
   if (*parser->next != c) return false;
   parser->next++;
   return true;
 }
 
-static void expect(struct Parser *parser, char c, const char *context) {
+void expect_character(struct Parser *parser, char c, const char *context) {
   char buffer[32];
-  if (parser->failed || accept(parser, c)) return;
+  if (parser->failed || accept_character(parser, c)) return;
   FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
        c == ']' ? "" : hint_for_text(parser->text, parser->next));
 }
@@ -136,7 +137,7 @@ static char *read_index(struct Parser *parser, char *name) {
     long index = parse_whole(parser, "the index in brackets");
     if (index < 0)
       FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
-    expect(parser, ']', "after the only index of a name");
+    expect_character(parser, ']', "after the only index of a name");
     char *indexed = format_text("%s[%ld]", name, index);
     free(name);
     name = indexed;
@@ -233,15 +234,15 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
          parser->place.what, found(parser, buffer));
   char *index_name = read_identifier(parser), *index = scope_full_name(parser->scope, index_name);
-  expect(parser, ',', "after the index of sum(index, first, last, expression)");
+  expect_character(parser, ',', "after the index of sum(index, first, last, expression)");
   const char *bounds = parser->next;
   long first = parse_whole(parser, "the first index of sum(...)");
-  expect(parser, ',', "after the first index");
+  expect_character(parser, ',', "after the first index");
   long last = parse_whole(parser, "the last index of sum(...)");
   if (last < first - 1 && bounds_are_numbers(bounds, parser->next))
     FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
          first, last);
-  expect(parser, ',', "after the last index");
+  expect_character(parser, ',', "after the last index");
   if (!parser->failed && scope_find(parser->scope, index) != NULL)
     FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
          index_name);
@@ -258,7 +259,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   scope_remove(parser->scope, index);
   free(index_name);
   free(index);
-  expect(parser, ')', "at the end of sum(...)");
+  expect_character(parser, ')', "at the end of sum(...)");
   return total;
 }
 
@@ -272,7 +273,7 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   struct Quantity value = parse_sum(parser);
   parser->place = place;
   free(what);
-  expect(parser, ')', "at the end of der(...)");
+  expect_character(parser, ')', "at the end of der(...)");
   Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
     if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
@@ -288,9 +289,9 @@ static struct Quantity parse_derivative(struct Parser *parser) {
 static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
   bool has_two = table_has_two_arguments(table);
   struct Quantity arguments[2] = {parse_sum(parser), nothing};
-  if (has_two) expect(parser, ',', "between the two arguments of a table");
+  if (has_two) expect_character(parser, ',', "between the two arguments of a table");
   if (has_two && !parser->failed) arguments[1] = parse_sum(parser);
-  expect(parser, ')', has_two ? "after the two arguments of a table" : "after the argument of a table");
+  expect_character(parser, ')', has_two ? "after the two arguments of a table" : "after the argument of a table");
   return parser->failed ? nothing : table_at(parser, table, name, arguments);
 }
 
@@ -307,6 +308,7 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (table != NULL) return parse_table(parser, table, name);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
+  if (strcmp(name, "if") == 0) return parse_choice(parser);
   bool is_root = strcmp(name, "sqrt") == 0;
   enum Operation operation = is_root ? POWER : find_function(name);
   if (operation == OPERATION_COUNT) {
@@ -317,12 +319,12 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   struct Quantity a = parse_sum(parser), b = nothing;
   if (arity == 2) {
     char *context = format_text("between the two arguments of %s", name);
-    expect(parser, ',', context);
+    expect_character(parser, ',', context);
     free(context);
     if (!parser->failed) b = parse_sum(parser);
   }
   char *context = format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name);
-  expect(parser, ')', context);
+  expect_character(parser, ')', context);
   free(context);
   if (parser->failed) return nothing;
   if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
@@ -348,7 +350,7 @@ static struct Quantity parse_primary(struct Parser *parser) {
   if (c == '(') {
     parser->next++;
     struct Quantity value = parse_sum(parser);
-    expect(parser, ')', "to close a parenthesis");
+    expect_character(parser, ')', "to close a parenthesis");
     return value;
   }
   if (!isalpha((unsigned char)c) && c != '_') {
@@ -358,12 +360,12 @@ static struct Quantity parse_primary(struct Parser *parser) {
   }
   char *name = read_identifier(parser);
   const char *end = parser->next;
-  bool call = accept(parser, '(');
+  bool call = accept_character(parser, '(');
   if (!call) {
     parser->next = end; /* an error about the name is on its line */
     name = read_name_suffix(parser, name);
     end = parser->next;
-    call = !parser->failed && find_table(parser, name) != NULL && accept(parser, '(');
+    call = !parser->failed && find_table(parser, name) != NULL && accept_character(parser, '(');
     if (!call) parser->next = end;
   }
   struct Quantity value = nothing;
@@ -374,7 +376,7 @@ static struct Quantity parse_primary(struct Parser *parser) {
 
 static struct Quantity parse_power(struct Parser *parser) {
   struct Quantity base = parse_primary(parser);
-  if (parser->failed || !accept(parser, '^')) return base;
+  if (parser->failed || !accept_character(parser, '^')) return base;
   enter(parser);
   struct Quantity exponent = parser->failed ? nothing : parse_sign(parser);
   parser->nesting--;
@@ -393,8 +395,8 @@ static struct Quantity parse_sign(struct Parser *parser) {
 static struct Quantity parse_term(struct Parser *parser) {
   struct Quantity value = parse_sign(parser);
   while (!parser->failed) {
-    bool is_product = accept(parser, '*');
-    if (!is_product && !accept(parser, '/')) break;
+    bool is_product = accept_character(parser, '*');
+    if (!is_product && !accept_character(parser, '/')) break;
     struct Quantity factor = parse_sign(parser);
     if (parser->failed) break;
     value = (is_product ? quantity_multiply : quantity_divide)(parser, value, factor);
@@ -402,13 +404,13 @@ static struct Quantity parse_term(struct Parser *parser) {
   return value;
 }
 
-static struct Quantity parse_sum(struct Parser *parser) {
+struct Quantity parse_sum(struct Parser *parser) {
   enter(parser);
   if (parser->failed) return nothing;
   struct Quantity value = parse_term(parser);
   while (!parser->failed) {
-    bool is_plus = accept(parser, '+');
-    if (!is_plus && !accept(parser, '-')) break;
+    bool is_plus = accept_character(parser, '+');
+    if (!is_plus && !accept_character(parser, '-')) break;
     struct Quantity term = parse_term(parser);
     if (parser->failed) break;
     value = (is_plus ? quantity_add : quantity_subtract)(parser, value, term);
@@ -423,11 +425,12 @@ static struct Parser parser_of(struct Scope *scope, const char *text, struct Pla
 }
 
 /* False where the text has a mistake; the value is then nothing. */
-static bool read_expression(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
+static bool read_text(struct Scope *scope, const char *text, struct Place place,
+                      struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
   struct Parser parser = parser_of(scope, text, place);
   char buffer[32];
   scope->graph->not_finite = false;
-  *value = parse_sum(&parser);
+  *value = read(&parser);
   skip_space(&parser);
   if (!parser.failed && *parser.next == ')')
     FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
@@ -439,10 +442,26 @@ static bool read_expression(struct Scope *scope, const char *text, struct Place 
   return !parser.failed;
 }
 
+static bool read_expression(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
+  return read_text(scope, text, place, parse_sum, value);
+}
+
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
   struct Quantity value;
   read_expression(scope, text, place, &value);
   return value;
+}
+
+static struct Quantity condition_as_quantity(struct Parser *parser) {
+  return (struct Quantity){.node = parse_condition(parser)};
+}
+
+bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value) {
+  bool compares = strpbrk(text, "<>") != NULL;
+  struct Quantity quantity;
+  bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
+  *value = is_right ? quantity.node : ZERO;
+  return is_right && (compares || graph_is_constant_in_time(scope->graph, quantity.node));
 }
 
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {

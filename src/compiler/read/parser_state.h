@@ -17,6 +17,17 @@ struct Parser {
   bool failed;
 };
 
+/* An expression from the reading position on, as far as it goes. */
+struct Quantity parse_sum(struct Parser *parser);
+
+void skip_space(struct Parser *parser);
+
+/* Whether the character comes next, which is then passed. */
+bool accept_character(struct Parser *parser, char c);
+
+/* The same of one that must come; context completes "expected '('". */
+void expect_character(struct Parser *parser, char c, const char *context);
+
 /* The line of the reading position. */
 long current_line(struct Parser *parser);
 

@@ -6,6 +6,7 @@
 #include "memory.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/branches.h"
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
@@ -111,9 +112,10 @@ static void check_function(struct Parser *parser, enum Operation operation, Node
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
                                   struct Quantity b) {
   bool has_two = operation_arity(operation) == 2;
-  struct Quantity result = {.node = function(parser->graph, operation, a.node, b.node),
-                            .dimension = dimension_one,
-                            .literal = a.literal && (!has_two || b.literal)};
+  Node node = functions[operation].has_pieces
+                  ? pieces_of(parser->scope, operation, a.node, b.node, current_line(parser))
+                  : function(parser->graph, operation, a.node, b.node);
+  struct Quantity result = {.node = node, .dimension = dimension_one, .literal = a.literal && (!has_two || b.literal)};
   check_function(parser, operation, a.node);
   if (functions[operation].units == PURE_NUMBERS) {
     char *what = format_text("the argument of %s", operation_name(operation));

@@ -17,6 +17,7 @@
 #include "read/parser.h"
 #include "read/robot_system.h"
 #include "read/start_expressions.h"
+#include "read/switching_reader.h"
 #include "read/xml.h"
 
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 100 };
@@ -210,6 +211,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   check_repetitions(reader, root);
   check_definitions_used(reader);
   check_given(reader);
+  number_modes(reader);
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
   append_reactions(reader->model, reader->scope);
@@ -246,6 +248,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   } else if (root != NULL) {
     model = model_create();
     *scope = language_of(model, &local);
+    if (depth == 0 && !options->linearize) (*scope)->switches = &model->switches;
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
     includes_begin(&reader, path, root);
     reader.bodies = names_create();

@@ -8,6 +8,7 @@
 #include "read/names.h"
 
 struct Definitions;
+struct Switches;
 
 struct Scope {
   struct Graph *graph;
@@ -17,6 +18,7 @@ struct Scope {
   struct Requirements requirements; /* of all expressions read */
   struct Names *tables;             /* full name -> struct Table, see tables.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
+  struct Switches *switches;        /* the model's; NULL where expressions stay whole, as for a linearisation */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
   const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
   long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */

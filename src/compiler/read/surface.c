@@ -58,17 +58,18 @@ static void add_interval(struct Graph *graph, struct Cardinals *cardinals, size_
   cardinals->value[i + 1] = add(graph, cardinals->value[i + 1], rise);
 }
 
-static struct Cardinals cardinals_at(struct Graph *graph, const double *knots, size_t count, bool is_linear,
+static struct Cardinals cardinals_at(struct Scope *scope, const double *knots, size_t count, bool is_linear,
                                      bool is_constant_outside, Node x) {
+  struct Graph *graph = scope->graph;
   struct Cardinals cardinals = {allocate(count, sizeof(Node)), allocate(count, sizeof(Node)), count};
   cardinals.value[0] = ONE;
   if (!is_constant_outside) {
-    cardinals.slope[0] = way_before(graph, x, knots[0]);
-    cardinals.slope[count - 1] = way_behind(graph, x, knots[count - 1]);
+    cardinals.slope[0] = way_before(scope, x, knots[0]);
+    cardinals.slope[count - 1] = way_behind(scope, x, knots[count - 1]);
   }
   for (size_t i = 0; i + 1 < count; i++) {
     double h = knots[i + 1] - knots[i];
-    Node t = scale(graph, 1 / h, way_in(graph, x, knots[i], knots[i + 1]));
+    Node t = scale(graph, 1 / h, way_in(scope, x, knots[i], knots[i + 1]));
     add_interval(graph, &cardinals, i, t, h, is_linear);
   }
   return cardinals;
@@ -90,10 +91,11 @@ static Node column_at(struct Graph *graph, const struct Cardinals *along_y, cons
   return sum;
 }
 
-Node surface_at(struct Graph *graph, const struct Surface *surface, bool is_constant_outside, Node x, Node y) {
+Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y) {
+  struct Graph *graph = scope->graph;
   bool is_linear = surface->interpolation == LINEAR;
-  struct Cardinals along_x = cardinals_at(graph, surface->x, surface->columns, is_linear, is_constant_outside, x);
-  struct Cardinals along_y = cardinals_at(graph, surface->y, surface->rows, is_linear, is_constant_outside, y);
+  struct Cardinals along_x = cardinals_at(scope, surface->x, surface->columns, is_linear, is_constant_outside, x);
+  struct Cardinals along_y = cardinals_at(scope, surface->y, surface->rows, is_linear, is_constant_outside, y);
   Node sum = ZERO;
   for (size_t i = 0; i < surface->columns; i++) {
     Node value = column_at(graph, &along_y, surface->value + i, surface->along_y + i, surface->columns);

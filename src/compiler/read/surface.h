@@ -5,7 +5,7 @@
 #ifndef SURFACE_H
 #define SURFACE_H
 
-#include "algebra/graph.h"
+#include "read/scope.h"
 #include "read/curve.h"
 
 /* The value at x[column] and y[row], and the derivatives there, are in row * columns + column. */
@@ -23,7 +23,7 @@ void surface_interpolate(struct Surface *surface, enum Interpolation interpolati
  * The value at x and y; outside it goes on with the slope of the border, or is constant. As a sum over the grid of values
  * times functions of x and of y, which are 1 at their own knot and 0 at the others.
  */
-Node surface_at(struct Graph *graph, const struct Surface *surface, bool is_constant_outside, Node x, Node y);
+Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y);
 
 void surface_free(struct Surface *surface);
 

@@ -186,14 +186,15 @@ static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i,
 }
 
 /* The first value and what each interval adds to it: its cubic of the way in it. */
-static Node curve_at(struct Graph *graph, const struct Curve *curve, bool is_constant_outside, Node x) {
+static Node curve_at(struct Scope *scope, const struct Curve *curve, bool is_constant_outside, Node x) {
+  struct Graph *graph = scope->graph;
   size_t last = curve->count - 1;
   Node value = graph_constant(graph, curve->y[0]);
-  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], way_before(graph, x, curve->x[0])));
+  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], way_before(scope, x, curve->x[0])));
   for (size_t i = 0; i < last; i++)
-    value = add(graph, value, polynomial(graph, curve, i, way_in(graph, x, curve->x[i], curve->x[i + 1])));
+    value = add(graph, value, polynomial(graph, curve, i, way_in(scope, x, curve->x[i], curve->x[i + 1])));
   if (is_constant_outside) return value;
-  return add(graph, value, scale(graph, curve->b[last], way_behind(graph, x, curve->x[last])));
+  return add(graph, value, scale(graph, curve->b[last], way_behind(scope, x, curve->x[last])));
 }
 
 struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name,
@@ -202,8 +203,8 @@ struct Quantity table_at(struct Parser *parser, const struct Table *table, const
   bool outside = table->is_constant_outside, has_two = table->has_two_arguments;
   if (!check_argument(parser, table->arguments[0], name, has_two ? "first " : "", arguments[0])) return value;
   if (has_two && !check_argument(parser, table->arguments[1], name, "second ", arguments[1])) return value;
-  value.node = has_two ? surface_at(parser->graph, &table->surface, outside, arguments[0].node, arguments[1].node)
-                       : curve_at(parser->graph, &table->curve, outside, arguments[0].node);
+  value.node = has_two ? surface_at(parser->scope, &table->surface, outside, arguments[0].node, arguments[1].node)
+                       : curve_at(parser->scope, &table->curve, outside, arguments[0].node);
   return value;
 }
 

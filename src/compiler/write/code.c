@@ -6,6 +6,7 @@
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
+#include "write/switching.h"
 #include "write/tables.h"
 
 /* The core's files but for solvers, NULL at the end; the build writes it. */
@@ -13,6 +14,12 @@ extern const char *const runtime_sources[];
 
 static void include_source(FILE *file, const char *name) {
   fprintf(file, "#include \"%s\"\n", name);
+}
+
+static bool has_oblique_block(const struct Program *program) {
+  bool has = false;
+  for (size_t i = 0; i < program->blocks.count; i++) has |= program->blocks.items[i].block->force_count > 0;
+  return has;
 }
 
 /*
@@ -31,7 +38,15 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->is_table) include_source(file, "instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");
   if (program->accelerations != NULL) include_source(file, "saddle.c");
+  if (has_oblique_block(program)) include_source(file, "oblique.c");
   if (program->accelerations != NULL) include_source(file, "projection.c");
+  if (program->indicators != NULL) {
+    include_source(file, "settlement.c");
+    include_source(file, "switching.c");
+    include_source(file, "event_search.c");
+    include_source(file, "event_passing.c");
+  }
+  if (program->model->switches.contact_count > 0) include_source(file, "contacts.c");
   fputs("#endif\n", file);
 }
 
@@ -47,10 +62,11 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
   if (program->accelerations != NULL) fputs("#include \"projection.h\"\n#include \"saddle.h\"\n", file);
+  if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
   fputs("\n", file);
 }
 
-/* The numbers of a block's coordinates, from 1 on, and negative ones of its constraints, from -1 on. */
+/* The numbers of a block's coordinates, from 1 on, and negative ones of its constraints, from -1 on; see also oblique.h. */
 static void write_numbers(FILE *file, const char *name, const struct InertiaBlock *block, size_t coordinates) {
   fprintf(file, "static const int %s[] = {", name);
   for (size_t i = 0; i < block->count; i++) {
@@ -58,6 +74,8 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
     if (row < coordinates) fprintf(file, "%zu, ", row + 1);
     else fprintf(file, "-%zu, ", row - coordinates + 1);
   }
+  if (block->force_count > 0) fprintf(file, "%zu, ", block->force_count);
+  for (size_t k = 0; k < block->force_count; k++) fprintf(file, "%zu, ", block->forces[k]);
   fputs("};\n\n", file);
 }
 
@@ -109,6 +127,7 @@ static void write_as_statements(FILE *file, const struct Program *program) {
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
+  switching_write(file, program);
   description_write(file, program, 0);
 }
 
@@ -120,6 +139,7 @@ static void write_as_tables(FILE *file, const struct Program *program) {
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) tables_output_series(file, tables);
   tables_results(file, tables);
+  switching_write(file, program);
   description_write(file, program, tables_work_count(tables));
   table_context_free(tables);
 }

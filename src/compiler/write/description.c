@@ -15,6 +15,8 @@ static void write_variables(FILE *file, const struct Interface *interface) {
       [VARIABLE_DERIVATIVE] = "VARIABLE_DERIVATIVE",
       [VARIABLE_INPUT] = "VARIABLE_INPUT",
       [VARIABLE_PARAMETER] = "VARIABLE_PARAMETER",
+      [VARIABLE_MODE] = "VARIABLE_MODE",
+      [VARIABLE_CONTACT] = "VARIABLE_CONTACT",
       [VARIABLE_RESULT] = "VARIABLE_RESULT",
       [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
   };
@@ -153,7 +155,8 @@ static void write_counts(FILE *file, const struct Program *program, size_t work_
   fprintf(file, "    .coordinate_count = %zu,\n    .state_count = %zu,\n    .input_count = %zu,\n",
           program->equations->count, interface->state_count, program->model->inputs.count);
   fprintf(file, "    .parameter_count = %zu,\n    .prepared_count = %zu,\n    .variable_count = %zu,\n",
-          program->model->parameters.count, program->prepared->count + scratch, interface->count);
+          program->model->parameters.count + program->model->switches.mode_count, program->prepared->count + scratch,
+          interface->count);
   fprintf(file, "    .result_count = %zu,\n    .work_count = %zu,\n", interface->result_count, work_count);
 }
 
@@ -178,6 +181,7 @@ static void write_functions(FILE *file, const struct Program *program) {
             program->expressions->jacobian->count);
   if (program->linear != NULL) fputs("    .linear = linear,\n", file);
   write_constraints(file, program);
+  if (program->indicators != NULL) fputs("    .switches = &switches,\n    .switching = &switching,\n", file);
 }
 
 static double operations_of(const struct Routine *routine) {

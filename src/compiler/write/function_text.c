@@ -90,6 +90,18 @@ const struct FunctionText result_along_text = {
     NULL,
     RETURNS_VALUE,
     IN_ARGUMENT};
+const struct FunctionText indicators_text = {"What changes its sign at events",
+                                             "indicators",
+                                             "const struct Point *point, const double *a, double *indicator",
+                                             "indicator",
+                                             RETURNS_NOTHING,
+                                             IN_ARGUMENT};
+const struct FunctionText switching_values_text = {"What decides on the modes",
+                                                   "switching_values",
+                                                   "const struct Point *point, const double *a, double *value",
+                                                   "value",
+                                                   RETURNS_NOTHING,
+                                                   IN_ARGUMENT};
 const struct FunctionText series_text = {
     "Taylor coefficients of the state up to the order",
     "series",

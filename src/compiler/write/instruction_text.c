@@ -67,15 +67,17 @@ static void write_block_call(FILE *file, const struct Program *program, const ch
 
 static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {
   unsigned number = instruction->result;
-  bool has_constraints = program->blocks.items[number].block->constraint_count > 0;
+  const struct InertiaBlock *block = program->blocks.items[number].block;
+  bool has_constraints = block->constraint_count > 0, is_oblique = block->force_count > 0;
   if (instruction->opcode == FACTOR) {
     fprintf(file, "const size_t singular%u = ", number);
-    write_block_call(file, program, has_constraints ? "saddle_factor" : "ldlt_factor", has_constraints, number);
+    const char *factor = is_oblique ? "oblique_factor" : has_constraints ? "saddle_factor" : "ldlt_factor";
+    write_block_call(file, program, factor, has_constraints, number);
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
     bool is_least = instruction->opcode == LEAST_FORCES;
-    const char *solve = has_constraints ? "saddle_solve" : "ldlt_solve";
-    write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least, number);
+    const char *solve = is_oblique ? "oblique_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
+    write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_oblique, number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
   }
 }

@@ -46,7 +46,7 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
                              size_t level) {
   struct Access *mass = accesses->of[SPACE_MASS] + looped->first_mass;
   struct Access *side = accesses->of[SPACE_SIDE] + looped->first_side;
-  size_t elements = looped->block->start[looped->block->count];
+  size_t elements = looped->mass_count;
   for (size_t i = 0; i < elements; i++)
     level = later(level, factors ? later(mass[i].written, mass[i].read) : mass[i].written);
   for (size_t i = 0; i < looped->block->count && !factors; i++)

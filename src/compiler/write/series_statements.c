@@ -120,7 +120,13 @@ static void write_series(FILE *file, const struct Program *program) {
 
 static void write_check(FILE *file, const struct Program *program, const struct LimitCheck *check) {
   const struct LimitFacts *facts = limit_facts(check->rule);
-  fprintf(file, "  series_limit_%s(limit, ", facts->name);
+  fputs("  ", file);
+  if (check->is_gated) {
+    fputs("if (", file);
+    write_place(file, program, check->opener, VALUE, NULL);
+    fputs(" > 0.0) ", file);
+  }
+  fprintf(file, "series_limit_%s(limit, ", facts->name);
   write_place(file, program, check->row, ROW, NULL);
   if (facts->has_two_rows) {
     fputs(", ", file);
@@ -145,6 +151,7 @@ static void write_limit(FILE *file, const struct Program *program) {
     const struct LimitCheck *check = &checks->items[i];
     spaces.spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
     if (limit_facts(check->rule)->has_exponent) spaces.spaces |= 1u << space_of(check->exponent);
+    if (check->is_gated) spaces.spaces |= 1u << space_of(check->opener);
   }
   write_head(file, &limit_text, "", checks->count);
   declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));

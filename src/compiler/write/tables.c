@@ -114,8 +114,9 @@ static void write_blocks(FILE *file, const struct Program *program) {
     if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
     else fprintf(file, "start%zu, column%zu, ", i, i);
     fprintf(file, "coordinate%zu, %s},\n", i,
-            looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve, saddle_least_forces"
-                                                : "NULL, NULL, NULL");
+            looped->block->force_count > 0        ? "oblique_factor, NULL, saddle_least_forces, oblique_solve"
+            : looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve, saddle_least_forces, NULL"
+                                                  : "NULL, NULL, NULL, NULL");
   }
   fputs(program->blocks.count == 0 ? "    {0}};\n" : "};\n", file);
 }
@@ -294,7 +295,8 @@ static void write_limit(FILE *file, const struct TableContext *context) {
     else fputs("NULL", file);
     fputs(", ", file);
     write_c_number(file, check->share);
-    fprintf(file, ", %u},\n", facts->has_exponent ? encoded(context, check->exponent) : 0u);
+    fprintf(file, ", %u, %s, %u},\n", facts->has_exponent ? encoded(context, check->exponent) : 0u,
+            check->is_gated ? "true" : "false", check->is_gated ? encoded(context, check->opener) : 0u);
   }
   fputs("};\n\n", file);
   write_head(file, &limit_text, "", checks->count);

@@ -43,12 +43,7 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
     return false;
   }
   for (size_t i = 0; i < count; i++) {
-    bool exists = references[i] < lagrangian.variable_count;
-    const struct ScalarVariable *variable = exists ? &lagrangian.variables[references[i]] : NULL;
-    if (exists && variable->kind != VARIABLE_TIME && variable->kind != VARIABLE_INPUT &&
-        variable->kind != VARIABLE_PARAMETER && variable->kind != VARIABLE_STATISTIC &&
-        !is_calculated_parameter(variable))
-      continue;
+    if (references[i] < lagrangian.variable_count && is_intermediate(&lagrangian.variables[references[i]])) continue;
     log_write(log, STATUS_ERROR,
               "%s: the value reference %u among requiredIntermediateVariables is of no variable with "
               "intermediateUpdate=\"true\"",

@@ -96,7 +96,7 @@ static fmi3Status get_count(fmi3Instance c, size_t count, size_t *value, const c
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *nEventIndicators) {
-  return get_count(c, exchange_event_indicator_count(), nEventIndicators, __func__, "nEventIndicators");
+  return get_count(c, indicator_count(lagrangian.switches), nEventIndicators, __func__, "nEventIndicators");
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *nContinuousStates) {

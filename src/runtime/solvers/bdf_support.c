@@ -76,8 +76,10 @@ bool bdf_configure(struct Instance *instance) {
 
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   const struct Bdf *bdf = instance->solver_memory;
+  (void)step;
   sundials_load(instance, state, safety);
-  return sundials_succeeded(instance, CVodeReInit(bdf->cvode, step->start, bdf->sundials.state), "CVodeReInit") &&
+  return sundials_succeeded(instance, CVodeReInit(bdf->cvode, instance->situation->last_step.end, bdf->sundials.state),
+                            "CVodeReInit") &&
          set_tolerances(instance, bdf);
 }
 

@@ -46,7 +46,9 @@ static int factor(const struct Frame *frame, size_t number) {
 static void solve(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
   double *mass = frame->base[SPACE_MASS] + block->first_mass, *side = frame->base[SPACE_SIDE] + block->first_side;
-  if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, side);
+  if (block->solve_obliquely != NULL)
+    block->solve_obliquely(block->count, block->start, block->column, block->coordinate, mass, side);
+  else if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, side);
   else ldlt_solve(block->count, block->start, block->column, mass, side);
 }
 
@@ -94,6 +96,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     case SQUARE_ROOT: EACH(2, R = sqrt(A));
     case INVERSE_ROOT: EACH(2, R = 1.0 / sqrt(A));
     case LESS_THAN: EACH(3, R = A < B ? 1.0 : 0.0);
+    case GATE_OF: EACH(3, R = A > 0.0 ? B : 0.0);
     case SIGN_OF: EACH(2, R = A > 0.0 ? 1.0 : A < 0.0 ? -1.0 : 0.0);
     case CALL: {
       double (*function)(double) = frame->tables->functions[*code++];
@@ -187,6 +190,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_SUM: EACH(3, R = A + B);
     case SERIES_DIFFERENCE: EACH(3, R = A - B);
     case SERIES_NEGATION: EACH(2, R = -A);
+    case SERIES_GATE: EACH(3, R = *ROW_A > 0.0 ? B : 0.0);
     case SERIES_MULTIPLE: EACH(3, R = *ROW_A * B);
     case SERIES_SHARE: EACH(3, R = A / *ROW_B);
     case SERIES_PRODUCT: EACH_UNROLLED(3, R = series_product(K, ROW_A, ROW_B));
@@ -223,6 +227,7 @@ void instructions_limit(const struct Frame *frame, const struct LimitCheck *chec
                         struct SeriesLimit *limit) {
   for (size_t i = 0; i < count; i++) {
     const struct LimitCheck *check = &checks[i];
+    if (check->is_gated && !(*at(frame->base, check->opener) > 0.0)) continue;
     const double *u = at(frame->base, check->row);
     switch (check->rule) {
     case LIMIT_EXPONENTIAL: series_limit_exponential(limit, u, check->function); break;

@@ -222,7 +222,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraint_count; j++)
-    if (isinf(work->pivot[j]))
+    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* one of an open contact has no slope */
       log_message(
           instance, STATUS_DONE,
           "time %g: the constraint '%s' follows from the others; their forces are the least that carry the load",
@@ -261,7 +261,9 @@ static size_t find_vanishing(struct Instance *instance, double time, const doubl
   for (size_t i = 0; i < lagrangian.state_count; i++)
     nearby[i] = state[i] + (i < n ? (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i) : 0.0);
   if (!evaluate_lack(instance, time, nearby, VELOCITIES)) return lagrangian.constraint_count;
-  while (found < lagrangian.constraint_count && !(work.first_slope[found] <= vanishing * work.slope[found])) found++;
+  while (found < lagrangian.constraint_count &&
+         (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
+    found++; /* one of an open contact has no slope anywhere */
   return found;
 }
 

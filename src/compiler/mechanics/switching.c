@@ -1,0 +1,169 @@
+#include "mechanics/switching.h"
+
+#include <stdlib.h>
+
+#include "algebra/cone.h"
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "mechanics/time_derivative.h"
+#include "memory.h"
+
+struct List {
+  Node *nodes;
+  size_t count;
+};
+
+static void append(struct List *list, Node node) {
+  list->nodes = reallocate(list->nodes, list->count + 1, sizeof *list->nodes);
+  list->nodes[list->count++] = node;
+}
+
+/* What decides on the motion. */
+static struct List roots_of(const struct Model *model, const struct Equations *equations) {
+  const struct Switches *switches = &model->switches;
+  struct List roots = {0};
+  for (size_t i = 0; i < row_count(equations); i++) append(&roots, equations->residual[i]);
+  append(&roots, equations->power);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    append(&roots, switches->contacts[i].gap);
+    append(&roots, switches->contacts[i].restitution);
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    append(&roots, switches->frictions[i].velocity);
+    append(&roots, switches->frictions[i].stiction);
+  }
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    append(&roots, event->conditions[0]);
+    append(&roots, event->conditions[1]);
+    for (size_t j = 0; j < event->assignment_count; j++) append(&roots, event->assignments[j].value);
+  }
+  return roots;
+}
+
+/* The branches whose modes stand in the roots, or in the indicators of such branches. */
+static void find_branches(const struct Model *model, struct List *roots, struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  struct Cone *cone = model->graph->cone;
+  bool *is_used = allocate(switches->count, sizeof *is_used);
+  for (bool grown = switches->count > 0; grown;) {
+    grown = false;
+    cone_collect(cone, model->graph, roots->nodes, roots->count, NULL);
+    for (size_t i = 0; i < switches->count; i++) {
+      if (is_used[i] || !cone_has(cone, switches->items[i].mode)) continue;
+      is_used[i] = grown = true;
+    }
+    for (size_t i = 0; i < switches->count && grown; i++)
+      if (is_used[i]) append(roots, switches->items[i].indicator);
+  }
+  switching->branches = allocate(switches->count, sizeof *switching->branches);
+  for (size_t i = 0; i < switches->count; i++)
+    if (is_used[i]) switching->branches[switching->branch_count++] = &switches->items[i];
+  free(is_used);
+}
+
+static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
+  Node rate;
+  derivative_along(model->graph, &node, 1, seeds, &rate);
+  return rate;
+}
+
+static Node indicator_of_contact(const struct Model *model, const struct Contact *contact) {
+  return choose_node(model->graph, contact->mode, model->constraint_forces[contact->constraint], contact->gap);
+}
+
+static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
+  struct Graph *graph = model->graph;
+  Node force = model->constraint_forces[friction->constraint];
+  Node left = subtract(graph, power_number(graph, friction->stiction, 2.0), power_number(graph, force, 2.0));
+  Node along = multiply(graph, friction->mode, friction->velocity);
+  return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
+}
+
+static void append_indicators(const struct Model *model, const struct SwitchingExpressions *switching,
+                              struct List *list) {
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    append(list, indicator_of_contact(model, &switches->contacts[i]));
+  for (size_t i = 0; i < switches->friction_count; i++)
+    append(list, indicator_of_friction(model, &switches->frictions[i]));
+}
+
+static void append_values(const struct Model *model, struct SwitchingExpressions *switching, struct List *list) {
+  const struct Switches *switches = &model->switches;
+  Node *seeds = time_seeds(model, true);
+  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switching->branch_count; i++)
+    append(list, rate_of(model, switching->branches[i]->indicator, seeds));
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const struct Contact *contact = &switches->contacts[i];
+    Node rate = rate_of(model, contact->gap, seeds);
+    append(list, contact->gap);
+    append(list, rate);
+    append(list, rate_of(model, rate, seeds));
+    append(list, contact->restitution);
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    append(list, friction->velocity);
+    append(list, rate_of(model, friction->velocity, seeds));
+    append(list, friction->stiction);
+  }
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (int k = 0; k < 2; k++) {
+      if (switches->events[i].conditions[k] == ZERO) continue;
+      append(list, switches->events[i].conditions[k]);
+      switching->condition_count++;
+    }
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
+      append(list, switches->events[i].assignments[j].value);
+      switching->assignment_count++;
+    }
+  free(seeds);
+}
+
+struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
+  if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
+  struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
+  struct List roots = roots_of(model, equations), indicators = {0}, values = {0};
+  find_branches(model, &roots, switching);
+  append_indicators(model, switching, &indicators);
+  append_values(model, switching, &values);
+  free(roots.nodes);
+  switching->indicators = indicators.nodes;
+  switching->indicator_count = indicators.count;
+  switching->values = values.nodes;
+  switching->value_count = values.count;
+  if (switching->indicator_count > 0) return switching;
+  switching_free(switching);
+  return NULL;
+}
+
+void switching_free(struct SwitchingExpressions *switching) {
+  if (switching == NULL) return;
+  free(switching->branches);
+  free(switching->indicators);
+  free(switching->values);
+  free(switching);
+}
+
+Node without_branches(const struct Model *model, Node node) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  if (switches->count == 0) return node;
+  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
+  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < switches->count; i++)
+    replacements[graph->vertices[switches->items[i].mode].left] =
+        function(graph, SIGN, switches->items[i].indicator, ZERO);
+  /* An indicator may rest on branches itself, of expressions that were read before. */
+  for (size_t depth = 0; depth <= switches->count && graph_depends_on(graph, node, MODE); depth++) {
+    Node before = node;
+    substitute(graph, &node, 1, replacements, &node);
+    if (node == before) break;
+  }
+  free(replacements);
+  return node;
+}

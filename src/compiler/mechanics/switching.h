@@ -1,0 +1,33 @@
+/* What an FMU must know to switch: the indicators of events, and all that decides on the modes behind one. */
+#ifndef SWITCHING_H
+#define SWITCHING_H
+
+#include "mechanics/lagrange.h"
+
+struct SwitchingExpressions {
+  const struct Switch **branches; /* those that the motion rests on */
+  size_t branch_count, condition_count, assignment_count;
+  /*
+   * Each changes its sign where a mode may change: of branches, then of contacts, the gap while they are open and the force
+   * while they are closed, then of frictions, the velocity while they slide and what is left of the stiction while they
+   * stick.
+   */
+  Node *indicators;
+  size_t indicator_count;
+  /*
+   * The indicators of the branches and their time derivatives; of each contact the gap, its first and second time
+   * derivative and the restitution; of each friction the velocity, its time derivative and the stiction; the conditions of
+   * the events, and what these assign.
+   */
+  Node *values;
+  size_t value_count;
+};
+
+/* NULL for a system that does not switch. Both hold the acceleration symbols. Free with switching_free(). */
+struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations);
+void switching_free(struct SwitchingExpressions *switching);
+
+/* The node with the modes of branches replaced by the signs that they stand for, as results that no event waits for. */
+Node without_branches(const struct Model *model, Node node);
+
+#endif

@@ -1,0 +1,44 @@
+#include "read/branches.h"
+
+#include <stdlib.h>
+
+#include "algebra/functions.h"
+#include "algebra/simplify.h"
+#include "mechanics/switches.h"
+#include "memory.h"
+
+/* The mode of the switch with this indicator; a new one where there is none. */
+static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line) {
+  struct Switches *switches = scope->switches;
+  for (size_t i = switches->count; i-- > 0;)
+    if (switches->items[i].indicator == indicator) return switches->items[i].mode;
+  char *name = format_text("branch %zu", switches->count);
+  Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  free(name);
+  append_switch(switches, (struct Switch){mode, indicator, function, scope_line(scope, line)});
+  return mode;
+}
+
+Node branch_of(struct Scope *scope, Node node, const char *function_name, long line) {
+  struct Graph *graph = scope->graph;
+  if (scope->switches == NULL || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
+  Node base;
+  double factor = coefficient_of(graph, node, &base);
+  Node mode = mode_of(scope, base, function_name, line);
+  return factor < 0.0 ? negate(graph, mode) : mode;
+}
+
+Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
+  struct Graph *graph = scope->graph;
+  bool has_two = operation_arity(operation) == 2;
+  Node turning = has_two ? subtract(graph, left, right) : left;
+  if (scope->switches == NULL || graph_is_constant_in_time(graph, turning))
+    return function(graph, operation, left, right);
+  Node sign = branch_of(scope, turning, functions[operation].name, line);
+  switch (operation) {
+  case ABSOLUTE: return multiply(graph, sign, left);
+  case SIGN: return sign;
+  case MAXIMUM: return choose_node(graph, sign, left, right);
+  default: return choose_node(graph, negate(graph, sign), left, right);
+  }
+}

@@ -1,0 +1,19 @@
+/*
+ * abs, sign, min, max, if and the knots of tables are smooth pieces. Which of them holds is a mode, the sign of a switching
+ * function, that events alone change: so every expression is smooth between events, and its pieces have series.
+ */
+#ifndef BRANCHES_H
+#define BRANCHES_H
+
+#include "read/scope.h"
+
+/*
+ * The sign of a node: -1, 0 or 1, a mode where it may change along the motion. function and line say what needs it, for
+ * messages.
+ */
+Node branch_of(struct Scope *scope, Node node, const char *function, long line);
+
+/* abs, sign, min or max of nodes, by their pieces. */
+Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
+
+#endif

@@ -1,0 +1,22 @@
+/* <mode>, <event>, <stop>, <contact> and <friction>: what switches a system. */
+#ifndef SWITCHING_READER_H
+#define SWITCHING_READER_H
+
+#include "read/attributes.h"
+
+/* Make the modes and the constraints of an element known. */
+void declare_mode(struct Reader *reader, xmlNodePtr node);
+void declare_contact(struct Reader *reader, xmlNodePtr node);
+void declare_stop(struct Reader *reader, xmlNodePtr node);
+void declare_friction(struct Reader *reader, xmlNodePtr node);
+
+/* After all declarations: modes count on behind the parameters. */
+void number_modes(struct Reader *reader);
+
+/* Read their expressions, in the order of their declarations. */
+void read_contact(struct Reader *reader, xmlNodePtr node);
+void read_stop(struct Reader *reader, xmlNodePtr node);
+void read_friction(struct Reader *reader, xmlNodePtr node);
+void read_event(struct Reader *reader, xmlNodePtr node);
+
+#endif

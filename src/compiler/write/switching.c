@@ -1,0 +1,120 @@
+#include "write/switching.h"
+
+#include "algebra/cone.h"
+#include "write/c_text.h"
+#include "write/statements.h"
+
+static int mode_index(const struct Program *program, Node mode) {
+  return graph_symbol_of(program->model->graph, mode)->index;
+}
+
+static void write_branches(FILE *file, const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->expressions->switching;
+  if (switching->branch_count == 0) return;
+  fputs("static const struct BranchFacts branch_facts[] = {", file);
+  for (size_t i = 0; i < switching->branch_count; i++) {
+    const struct Switch *branch = switching->branches[i];
+    fprintf(file, "{%d, ", mode_index(program, branch->mode));
+    write_c_string(file, branch->function);
+    fprintf(file, ", %ld}, ", branch->line);
+  }
+  fputs("};\n\n", file);
+}
+
+static void write_held(FILE *file, const struct Program *program, size_t constraint, Node mode) {
+  fprintf(file, "{%d, %zu, ", mode_index(program, mode), constraint);
+  write_c_string(file, program->model->constraints.items[constraint].name);
+  fputs("}, ", file);
+}
+
+static void write_contacts(FILE *file, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  if (switches->contact_count > 0) fputs("extern const struct ContactLaws contact_laws;\n\n", file);
+  if (switches->contact_count > 0) fputs("static const struct ContactFacts contact_facts[] = {", file);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    write_held(file, program, switches->contacts[i].constraint, switches->contacts[i].mode);
+  if (switches->contact_count > 0) fputs("};\n\n", file);
+  if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    write_held(file, program, switches->frictions[i].constraint, switches->frictions[i].mode);
+  if (switches->friction_count > 0) fputs("};\n\n", file);
+}
+
+/* Whether the friction follows from the force of the contact. */
+static bool rests_on(const struct Program *program, size_t friction, size_t contact) {
+  const struct Model *model = program->model;
+  struct Cone *cone = model->graph->cone;
+  cone_collect(cone, model->graph, &model->switches.frictions[friction].sliding, 1, NULL);
+  return cone_has(cone, model->constraint_forces[model->switches.contacts[contact].constraint]);
+}
+
+static bool any_rests(const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  bool any = false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    for (size_t j = 0; j < switches->contact_count; j++) any |= rests_on(program, i, j);
+  return any;
+}
+
+static void write_rests(FILE *file, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  if (!any_rests(program)) return;
+  fputs("static const bool rests_on[] = {", file);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    for (size_t j = 0; j < switches->contact_count; j++) fputs(rests_on(program, i, j) ? "true, " : "false, ", file);
+  fputs("};\n\n", file);
+}
+
+static void write_assignments(FILE *file, const struct Program *program, const struct Event *event) {
+  for (size_t i = 0; i < event->assignment_count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(program->model->graph, event->assignments[i].symbol);
+    size_t first = symbol->kind == VELOCITY ? program->equations->count : 0;
+    fprintf(file, "{%s, %zu}, ", symbol->kind == MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
+            first + (size_t)symbol->index);
+  }
+}
+
+static void write_events(FILE *file, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  if (switches->event_count == 0) return;
+  fputs("static const struct AssignmentFacts assignment_facts[] = {", file);
+  for (size_t i = 0; i < switches->event_count; i++) write_assignments(file, program, &switches->events[i]);
+  fputs("};\n\nstatic const struct EventFacts event_facts[] = {", file);
+  size_t condition = 0, assignment = 0;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    size_t conditions = event->conditions[1] == ZERO ? 1 : 2;
+    fprintf(file, "{%zu, %zu, %zu, %zu, ", condition, conditions, assignment, event->assignment_count);
+    write_c_string(file, event->text);
+    fputs("}, ", file);
+    condition += conditions;
+    assignment += event->assignment_count;
+  }
+  fputs("};\n\n", file);
+}
+
+void switching_write(FILE *file, const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->expressions->switching;
+  if (switching == NULL) return;
+  const struct Switches *switches = &program->model->switches;
+  fputs("extern const struct Switching switching;\n\n", file);
+  statements_function(file, program, &indicators_text, "", program->indicators);
+  statements_function(file, program, &switching_values_text, "", program->switching_values);
+  write_branches(file, program);
+  write_contacts(file, program);
+  write_rests(file, program);
+  write_events(file, program);
+  fprintf(file,
+          "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
+          "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
+          "    .condition_count = %zu,\n    .assignment_count = %zu,\n    .indicators = indicators,\n"
+          "    .values = switching_values,\n",
+          switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
+          switches->event_count, switching->condition_count, switching->assignment_count);
+  if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
+  if (any_rests(program)) fputs("    .rests_on = rests_on,\n", file);
+  if (switches->friction_count > 0) fputs("    .frictions = friction_facts,\n", file);
+  if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
+  fputs("};\n\n", file);
+}

@@ -1,0 +1,76 @@
+/* How a communication step goes through events: the solver starts anew behind each of them. */
+#include <float.h>
+#include <math.h>
+
+#include "evaluate.h"
+#include "solver.h"
+#include "switching.h"
+
+/* So many events within the rounding of time have no end. */
+enum { EVENT_LIMIT = 200 };
+
+static const char gathering[] =
+    "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
+static const char no_modes[] = "the parameters leave no acceleration there";
+
+bool switching_start(struct Instance *instance, const char *function) {
+  bool changed;
+  double time = instance->situation->time;
+  instance->is_starting = true;
+  const char *problem = switching.settle(instance, time, instance->state, AT_START, 0, &changed);
+  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
+  instance->is_starting = false;
+  if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
+  return problem == NULL;
+}
+
+bool switching_resume(struct Instance *instance, double time) {
+  bool changed;
+  const char *problem = switching.settle(instance, time, instance->state, AT_CHANGE, 0, &changed);
+  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
+  if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
+  return problem == NULL;
+}
+
+/* Goes through an event, whose state is in event_state. NULL, or the reason why the motion ends there. */
+static const char *pass_event(struct Instance *instance, const struct CommunicationStep *step, double time,
+                              size_t indicator) {
+  const struct Solver *solver = lagrangian.solver;
+  bool changed;
+  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
+  const char *problem = switching.settle(instance, time, instance->event_state, AT_EVENT, indicator, &changed);
+  instance->situation->last_step = (struct Span){time, time};
+  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
+  if (solver->restart != NULL && !solver->restart(instance, instance->event_state, step))
+    return "there is no memory for the solver";
+  return problem;
+}
+
+const char *switching_pass(struct Instance *instance, const struct CommunicationStep *step,
+                           struct EventProgress *progress) {
+  double end = fmin(instance->situation->last_step.end, step->end), time;
+  size_t indicator;
+  if (!(progress->searched < end)) return NULL;
+  if (!switching.find(instance, progress->searched, end, &time, &indicator)) {
+    progress->searched = end;
+    progress->gathered = 0;
+    return NULL;
+  }
+  if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
+  progress->gathered = solver_rests(time, time - progress->searched) ? progress->gathered + 1 : 0;
+  progress->searched = time;
+  if (progress->gathered == EVENT_LIMIT) return gathering;
+  if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
+  return pass_event(instance, step, time, indicator);
+}
+
+const char *switching_pass_barrier(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+                                   struct EventProgress *progress) {
+  double time;
+  size_t indicator;
+  if (++progress->gathered >= EVENT_LIMIT) return problem;
+  if (!switching.jump(instance, &time, instance->event_state, &indicator)) return problem;
+  if (time > step->end) time = step->end;
+  progress->searched = time;
+  return pass_event(instance, step, time, indicator);
+}

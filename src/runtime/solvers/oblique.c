@@ -1,0 +1,93 @@
+#include "oblique.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "saddle.h"
+
+/* A pivot of 1 + E^T S C below this says that the forces have no solution, or many: friction that locks. */
+static const double smallest_locking_pivot = 1e-12;
+
+/* Where the parts of m behind those of the symmetric matrix are. */
+struct Oblique {
+  size_t count;     /* r */
+  const int *force; /* the row of each */
+  size_t c;         /* C */
+  size_t response;  /* S C */
+  size_t factor;    /* 1 + E^T S C, later its factors L U, by rows */
+  size_t pivot;     /* the row that was taken for each column */
+  size_t side;      /* SADDLE_SIDE(n) */
+};
+
+static struct Oblique oblique_of(size_t n, const size_t *start, const int *coordinate) {
+  struct Oblique oblique = {.count = (size_t)coordinate[n], .force = coordinate + n + 1};
+  oblique.c = SADDLE_MASS(start[n]);
+  oblique.response = oblique.c + n * oblique.count;
+  oblique.factor = oblique.response + n * oblique.count;
+  oblique.pivot = oblique.factor + oblique.count * oblique.count;
+  oblique.side = oblique.pivot + oblique.count;
+  return oblique;
+}
+
+static void swap_rows(double *a, size_t columns, size_t first, size_t second) {
+  for (size_t j = 0; j < columns && first != second; j++) {
+    double other = a[first * columns + j];
+    a[first * columns + j] = a[second * columns + j];
+    a[second * columns + j] = other;
+  }
+}
+
+/* Gauss elimination of r rows a. False where the matrix is singular. */
+static bool eliminate_small(size_t r, double *a, double *pivot) {
+  for (size_t k = 0; k < r; k++) {
+    size_t best = k;
+    for (size_t i = k + 1; i < r; i++)
+      if (fabs(a[i * r + k]) > fabs(a[best * r + k])) best = i;
+    pivot[k] = (double)best;
+    if (!(fabs(a[best * r + k]) > smallest_locking_pivot)) return false;
+    swap_rows(a, r, best, k);
+    for (size_t i = k + 1; i < r; i++) {
+      double share = a[i * r + k] /= a[k * r + k];
+      for (size_t j = k + 1; j < r; j++) a[i * r + j] -= share * a[k * r + j];
+    }
+  }
+  return true;
+}
+
+static void solve_small(size_t r, const double *a, const double *pivot, double *x) {
+  for (size_t k = 0; k < r; k++) swap_rows(x, 1, (size_t)pivot[k], k);
+  for (size_t i = 0; i < r; i++)
+    for (size_t j = 0; j < i; j++) x[i] -= a[i * r + j] * x[j];
+  for (size_t i = r; i-- > 0;) {
+    for (size_t j = i + 1; j < r; j++) x[i] -= a[i * r + j] * x[j];
+    x[i] /= a[i * r + i];
+  }
+}
+
+size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
+  size_t singular = saddle_factor(n, start, column, coordinate, m);
+  if (singular != 0) return singular;
+  struct Oblique oblique = oblique_of(n, start, coordinate);
+  double *side = m + oblique.side, *factor = m + oblique.factor;
+  for (size_t k = 0; k < oblique.count; k++) {
+    memcpy(side, m + oblique.c + k * n, n * sizeof *side);
+    saddle_solve(n, start, column, m, side);
+    memcpy(m + oblique.response + k * n, side, n * sizeof *side);
+    for (size_t i = 0; i < oblique.count; i++)
+      factor[i * oblique.count + k] = (i == k ? 1.0 : 0.0) + side[oblique.force[i]];
+  }
+  bool is_regular = eliminate_small(oblique.count, factor, m + oblique.pivot);
+  return is_regular ? 0 : 1;
+}
+
+void oblique_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                   double *x) {
+  struct Oblique oblique = oblique_of(n, start, coordinate);
+  double *push = x + n; /* is free, as r < n */
+  saddle_solve(n, start, column, m, x);
+  for (size_t i = 0; i < oblique.count; i++) push[i] = x[oblique.force[i]];
+  solve_small(oblique.count, m + oblique.factor, m + oblique.pivot, push);
+  for (size_t k = 0; k < oblique.count; k++)
+    for (size_t i = 0; i < n; i++) x[i] -= push[k] * m[oblique.response + k * n + i];
+}

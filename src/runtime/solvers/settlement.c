@@ -1,0 +1,107 @@
+#include "settlement.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluate.h"
+#include "solver.h"
+
+/* A state is not told from others nearer than the last digit of this share of its nominal value. */
+static const double least_share = 0.1;
+
+static size_t decision_count(const struct SwitchTable *switches) {
+  return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
+         FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count;
+}
+
+static size_t rows_of_matrix(void) {
+  return lagrangian.coordinate_count + lagrangian.constraint_count;
+}
+
+static size_t search_work_count(void) {
+  return 2 * lagrangian.state_count + (SEARCH_NODES + 2) * indicator_count(lagrangian.switches);
+}
+
+size_t settlement_work_count(void) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
+  return search_work_count() + 2 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
+         switches->contact_count + rows_of_matrix() + switches->mode_count + 3 * lagrangian.state_count + corrections;
+}
+
+struct Settlement settlement_of(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t values = decision_count(switches), indicators = indicator_count(switches);
+  struct Settlement settlement = {.instance = instance, .switches = switches};
+  settlement.value = instance->switching_work + search_work_count();
+  settlement.noise = settlement.value + values;
+  settlement.condition = settlement.noise + values;
+  settlement.flips = settlement.condition + switches->condition_count;
+  settlement.was_opened = settlement.flips + indicators;
+  settlement.acceleration = settlement.was_opened + switches->contact_count;
+  settlement.kept_modes = settlement.acceleration + rows_of_matrix();
+  settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
+  settlement.rounded = settlement.kept_velocities + lagrangian.state_count;
+  settlement.derivative = settlement.rounded + lagrangian.state_count;
+  settlement.correction = settlement.derivative + lagrangian.state_count;
+  memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
+  return settlement;
+}
+
+void switching_round(const double *state, double *rounded) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
+    double change = (double)(1 + i * 7 % 5) * DBL_EPSILON * size;
+    rounded[i] = state[i] + (i % 2 == 0 ? change : -change);
+  }
+}
+
+bool settlement_values(struct Settlement *settlement, const double *state, double *value) {
+  struct Instance *instance = settlement->instance;
+  struct Point point = solver_point(instance, settlement->time, state);
+  const double *acceleration = settlement->acceleration;
+  if (lagrangian.accelerations != NULL) instance->singular = lagrangian.accelerations(&point, settlement->acceleration);
+  else {
+    instance->singular = lagrangian.derivatives(&point, settlement->derivative);
+    acceleration = settlement->derivative + lagrangian.coordinate_count;
+  }
+  if (instance->singular != 0) return false;
+  settlement->switches->values(&point, acceleration, value);
+  return true;
+}
+
+bool settlement_evaluate(struct Settlement *settlement) {
+  size_t count = decision_count(settlement->switches);
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  switching_round(settlement->state, settlement->rounded);
+  if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
+  if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
+  for (size_t i = 0; i < count; i++) {
+    double noise = 8.0 * fabs(settlement->noise[i] - settlement->value[i]);
+    settlement->noise[i] = isfinite(noise) ? noise : 0.0;
+  }
+  return true;
+}
+
+double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate) {
+  return settlement->noise[place] + 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->value[rate]);
+}
+
+void settlement_set_mode(struct Settlement *settlement, size_t mode, double value) {
+  settlement->instance->parameter[mode] = value;
+  settlement->instance->prepared_is_stale = true;
+  settlement->changed = true;
+}
+
+bool settlement_push(struct Settlement *settlement, double factor) {
+  struct Instance *instance = settlement->instance;
+  double *velocity = settlement->state + lagrangian.coordinate_count;
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += factor * settlement->correction[i];
+  settlement->changed = true;
+  return true;
+}

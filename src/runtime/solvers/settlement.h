@@ -1,0 +1,88 @@
+/* What finds the modes behind an event: switching.c and contacts.c share it. */
+#ifndef SETTLEMENT_H
+#define SETTLEMENT_H
+
+#include "switching.h"
+
+/* Parts of value[], see struct SwitchTable. */
+enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
+enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_VALUES };
+
+struct Settlement {
+  struct Instance *instance;
+  const struct SwitchTable *switches;
+  double time;
+  double *state;
+  enum Occasion occasion;
+  size_t indicator;           /* for AT_EVENT */
+  double *value, *noise;      /* value[], and what rounding may make of it */
+  double *condition;          /* as it was before the last change */
+  double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *acceleration;       /* and forces of constraints */
+  double *kept_modes, *kept_velocities;
+  double *rounded, *derivative, *correction;
+  bool changed, jumped; /* jumped: velocities did */
+  int impacts;
+};
+
+/* What contacts do; FMUs without any do not hold it. */
+struct ContactLaws {
+  /*
+   * One impact, or contacts that come to rest, or one that parts; *again where there was any. NULL, or the reason why the
+   * motion cannot go on.
+   */
+  const char *(*act)(struct Settlement *settlement, bool *again);
+  /* Logs a contact that is penetrated at the start; NULL where there is none, else the reason to refuse it. */
+  const char *(*check_start)(const struct Settlement *settlement);
+};
+
+/* Numbers of workspace, and where they are. */
+size_t settlement_work_count(void);
+struct Settlement settlement_of(struct Instance *instance);
+
+/* Brings all values up to date with the modes and the state; false where there are no accelerations. */
+bool settlement_evaluate(struct Settlement *settlement);
+
+/* The values at a state, without what rounding may make of them. */
+bool settlement_values(struct Settlement *settlement, const double *state, double *value);
+
+/*
+ * Changes the velocities by a factor of the way to the constraints that hold, the least in the metric of M, and by what
+ * friction adds to that. False where there is none.
+ */
+bool settlement_push(struct Settlement *settlement, double factor);
+
+static inline size_t contact_place(const struct Settlement *settlement, size_t contact, size_t part) {
+  return 2 * settlement->switches->branch_count + CONTACT_VALUES * contact + part;
+}
+
+static inline size_t friction_place(const struct Settlement *settlement, size_t friction, size_t part) {
+  return contact_place(settlement, settlement->switches->contact_count, 0) + FRICTION_VALUES * friction + part;
+}
+
+static inline size_t condition_place(const struct Settlement *settlement) {
+  return friction_place(settlement, settlement->switches->friction_count, 0);
+}
+
+static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {
+  return settlement->switches->branch_count + contact;
+}
+
+static inline size_t indicator_of_friction(const struct Settlement *settlement, size_t friction) {
+  return settlement->switches->branch_count + settlement->switches->contact_count + friction;
+}
+
+static inline bool is_hit(const struct Settlement *settlement, size_t indicator) {
+  return settlement->occasion == AT_EVENT && settlement->indicator == indicator;
+}
+
+static inline double mode_of(const struct Settlement *settlement, size_t mode) {
+  return settlement->instance->parameter[mode];
+}
+
+void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
+
+/* What rounding of the state and the time leaves of a value that changes at a rate. */
+double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate);
+
+#endif

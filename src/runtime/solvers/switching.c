@@ -1,0 +1,270 @@
+/*
+ * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; frictions that stick or slip;
+ * branches; and the events of the system, each of which happens when its condition comes to hold.
+ */
+#include "switching.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluate.h"
+#include "projection.h"
+#include "settlement.h"
+#include "solver.h"
+
+enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
+
+/* Whether some constraint of a contact or friction holds, so that indicators are forces. */
+static bool holds_any(const struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool holds = false;
+  for (size_t i = 0; i < switches->contact_count; i++) holds |= instance->parameter[switches->contacts[i].mode] > 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    holds |= instance->parameter[switches->frictions[i].mode] == 0.0;
+  return holds;
+}
+
+bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator) {
+  struct Point point = solver_point(instance, time, state);
+  if (holds_any(instance)) {
+    instance->singular = lagrangian.accelerations(&point, instance->acceleration);
+    if (instance->singular != 0) return false;
+  }
+  lagrangian.switches->indicators(&point, instance->acceleration, indicator);
+  return true;
+}
+
+double switching_sign(const struct Instance *instance, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  return indicator < switches->branch_count ? instance->parameter[switches->branches[indicator].mode] : 1.0;
+}
+
+/* --- Friction --- */
+
+/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
+static double friction_mode(const struct Settlement *settlement, size_t friction) {
+  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
+  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
+  double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
+  double rate = settlement->value[place + FRICTION_RATE],
+         noise = settlement_noise(settlement, place, place + FRICTION_RATE);
+  double flips = settlement->flips[indicator_of_friction(settlement, friction)];
+  bool is_moving = fabs(velocity) > noise, is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  double direction = velocity > 0.0 ? 1.0 : -1.0;
+  if (mode == 0.0) {
+    double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
+    bool slips = fabs(force) > settlement->value[place + FRICTION_STICTION] ||
+                 (is_hit(settlement, indicator_of_friction(settlement, friction)) && is_first && !settlement->jumped);
+    if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
+    return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
+  }
+  bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
+  if (is_moving && settlement->jumped) return direction;
+  if (is_moving && !turns) return mode;
+  if (is_first_of_all && is_first) return 0.0;
+  double least = -settlement->noise[place + FRICTION_RATE];
+  if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
+  return 0.0;
+}
+
+/* --- The rounds --- */
+
+static double sign_with_noise(double value, double noise) {
+  return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
+}
+
+/* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
+static double branch_mode(const struct Settlement *settlement, size_t branch) {
+  size_t rate = settlement->switches->branch_count + branch;
+  double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
+  double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
+  if (sign != 0.0) return sign;
+  sign = sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+  if (sign != 0.0) return sign;
+  bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
+  if (!passes) return mode;
+  return mode == 0.0 ? settlement->instance->departure : -mode;
+}
+
+static const char without_end[] = "a mode changes to and fro there without end";
+
+/* Where neither side of a zero leads away from it. */
+static const char *refuse_branch(const struct Settlement *settlement, size_t branch) {
+  const struct BranchFacts *facts = &settlement->switches->branches[branch];
+  log_message(
+      settlement->instance, STATUS_DISCARD,
+      "time %g: %s, line %ld of system.xml, jumps to and fro there: on either side of its jump the motion leads "
+      "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
+      settlement->time, facts->function, facts->line);
+  return without_end;
+}
+
+static const char *switch_branches(struct Settlement *settlement, bool *switched) {
+  const struct SwitchTable *switches = settlement->switches;
+  *switched = false;
+  for (size_t i = 0; i < switches->branch_count; i++) {
+    double mode = branch_mode(settlement, i);
+    if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
+    if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
+    settlement_set_mode(settlement, switches->branches[i].mode, mode);
+    *switched = true;
+  }
+  return NULL;
+}
+
+static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: the friction '%s' neither sticks nor slides; expected a stiction that is not less than the "
+              "force while it slides",
+              settlement->time, settlement->switches->frictions[friction].name);
+  return without_end;
+}
+
+static const char *switch_frictions(struct Settlement *settlement, bool *switched) {
+  const struct SwitchTable *switches = settlement->switches;
+  *switched = false;
+  for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
+    double mode = friction_mode(settlement, i);
+    if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
+    if (++settlement->flips[indicator_of_friction(settlement, i)] > FLIP_LIMIT) return refuse_friction(settlement, i);
+    settlement_set_mode(settlement, switches->frictions[i].mode, mode);
+    *switched = true;
+  }
+  return NULL;
+}
+
+static void assign(struct Settlement *settlement, const struct EventFacts *event) {
+  const struct SwitchTable *switches = settlement->switches;
+  const double *value = settlement->value + condition_place(settlement) + switches->condition_count;
+  for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
+    const struct AssignmentFacts *facts = &switches->assignments[i];
+    if (facts->kind == VARIABLE_MODE) settlement_set_mode(settlement, facts->index, value[i]);
+    else {
+      settlement->state[facts->index] = value[i];
+      settlement->jumped = settlement->changed = true;
+    }
+  }
+}
+
+/* Events whose condition has come to hold, all with the values before them. */
+static bool happen(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  const double *condition = settlement->value + condition_place(settlement);
+  bool any = false;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    bool happens = false;
+    for (size_t k = event->first_condition; k < event->first_condition + event->condition_count; k++)
+      happens |= condition[k] > 0.0 && !(settlement->condition[k] > 0.0);
+    if (happens) assign(settlement, event);
+    any |= happens;
+  }
+  memcpy(settlement->condition, condition, switches->condition_count * sizeof *condition);
+  return any;
+}
+
+/* One round; *again where it changed something. */
+static const char *settle_once(struct Settlement *settlement, bool *again) {
+  const char *problem = NULL;
+  *again = false;
+  if (settlement->switches->contact_laws != NULL) problem = settlement->switches->contact_laws->act(settlement, again);
+  if (problem != NULL || *again) return problem;
+  problem = switch_branches(settlement, again);
+  if (problem != NULL || *again) return problem;
+  problem = switch_frictions(settlement, again);
+  if (problem != NULL || *again) return problem;
+  *again = happen(settlement);
+  return NULL;
+}
+
+static void copy_conditions(struct Settlement *settlement) {
+  memcpy(settlement->condition, settlement->value + condition_place(settlement),
+         settlement->switches->condition_count * sizeof *settlement->condition);
+}
+
+/* Modes as the signs of the start values say. */
+static const char *begin(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t round = 0; round <= switches->branch_count; round++) {
+    if (!settlement_evaluate(settlement)) return "there are no accelerations";
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double noise = settlement_noise(settlement, i, switches->branch_count + i);
+      settlement_set_mode(settlement, switches->branches[i].mode, sign_with_noise(settlement->value[i], noise));
+    }
+  }
+  return switches->contact_laws != NULL ? switches->contact_laws->check_start(settlement) : NULL;
+}
+
+static const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion,
+                          size_t indicator, bool *changed) {
+  struct Settlement settlement = settlement_of(instance);
+  settlement.time = time;
+  settlement.state = state;
+  settlement.occasion = occasion;
+  settlement.indicator = indicator;
+  const char *problem = occasion == AT_START ? begin(&settlement) : NULL;
+  bool again = true;
+  for (int round = 0; problem == NULL && again; round++) {
+    if (round == ROUND_LIMIT) problem = "events follow one another there without end";
+    else if (!settlement_evaluate(&settlement)) problem = "there are no accelerations at an event";
+    if (round == 0 && problem == NULL) copy_conditions(&settlement);
+    if (problem == NULL) problem = settle_once(&settlement, &again);
+  }
+  if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
+    problem = "the constraints cannot be kept at an event";
+  if (problem == NULL && settlement.changed && lagrangian.projection != NULL && occasion != AT_START)
+    problem = solver_project(instance, time, state);
+  if (settlement.changed && occasion != AT_START) instance->situation->statistics[STATISTIC_EVENTS]++;
+  *changed = settlement.changed;
+  return problem;
+}
+
+/* Signs of the present values, without events: what a reader may expect before the simulation starts. */
+static void guess(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Point point = evaluate_point(instance);
+  double *value = settlement_of(instance).value;
+  for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) instance->parameter[switches->frictions[i].mode] = 1.0;
+  for (size_t round = 0; round <= switches->branch_count; round++) {
+    if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
+    switches->indicators(&point, instance->acceleration, value);
+    bool same = true;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double *mode = &instance->parameter[switches->branches[i].mode], sign = sign_with_noise(value[i], 0.0);
+      same &= *mode == sign;
+      *mode = sign;
+    }
+    if (same) return;
+  }
+}
+
+static bool situation_indicators(struct Instance *instance, double *value) {
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  return switching_indicators(instance, instance->situation->time, instance->state, value);
+}
+
+static bool is_due(struct Instance *instance) {
+  size_t count = indicator_count(lagrangian.switches);
+  double *value = instance->switching_work;
+  if (!situation_indicators(instance, value)) return false;
+  bool due = false;
+  for (size_t i = 0; i < count; i++) {
+    double sign = switching_sign(instance, i);
+    due |= sign * value[i] < 0.0 || (sign == 0.0 && value[i] != 0.0);
+  }
+  return due;
+}
+
+const struct Switching switching = {.work_count = settlement_work_count,
+                                    .settle = settle,
+                                    .guess = guess,
+                                    .find = switching_find,
+                                    .jump = switching_jump,
+                                    .start = switching_start,
+                                    .resume = switching_resume,
+                                    .pass = switching_pass,
+                                    .pass_barrier = switching_pass_barrier,
+                                    .indicators = situation_indicators,
+                                    .is_due = is_due};

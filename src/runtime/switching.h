@@ -1,0 +1,92 @@
+/*
+ * Switches a system: finds where a mode may change, and the modes, velocities and states behind an event. FMUs that do not
+ * switch do not hold it.
+ */
+#ifndef SWITCHING_H
+#define SWITCHING_H
+
+#include "instance.h"
+
+/* Why the modes are looked at. */
+enum Occasion {
+  AT_START,   /* of the simulation: no mode is known yet */
+  AT_CHANGE,  /* a parameter, an input or a state may have been set */
+  AT_EVENT,   /* an indicator has just changed its sign */
+  IN_EXCHANGE /* the importer asks, who may have gone past the zero of an indicator */
+};
+
+struct CommunicationStep;
+
+/* How far a communication step has come with its events. */
+struct EventProgress {
+  double searched; /* no event before this time is left */
+  int gathered;    /* how many have come within the rounding of time */
+};
+
+struct Switching {
+  /* Numbers of workspace that an instance needs. */
+  size_t (*work_count)(void);
+  /*
+   * Brings the modes into agreement with the state at a time, with impacts and events, which change the state. indicator is
+   * the one whose sign changed, for AT_EVENT. changed tells whether anything did. NULL, or the reason why the motion cannot
+   * go on; what is to blame is then logged as of this status.
+   */
+  const char *(*settle)(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                        bool *changed);
+  /* Sets the modes to what start values say, as long as these may be set: no contact is closed, and all friction slides. */
+  void (*guess)(struct Instance *instance);
+  /*
+   * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
+   * where none does. The time is NAN where its zeros cannot be told from one another.
+   */
+  bool (*find)(struct Instance *instance, double from, double to, double *time, size_t *indicator);
+  /*
+   * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
+   * last step along its tangent behind a zero that is nearer than the state's digits matter. False where there is none.
+   */
+  bool (*jump)(struct Instance *instance, double *time, double *state, size_t *indicator);
+  /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
+  bool (*start)(struct Instance *instance, const char *function);
+  /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
+  bool (*resume)(struct Instance *instance, double time);
+  /* Goes through the next event of the solver's last step. NULL, or the reason why the motion ends there. */
+  const char *(*pass)(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress);
+  /* Where the solver cannot go on: a zero that it cannot reach may be next to it. The problem, or NULL. */
+  const char *(*pass_barrier)(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+                              struct EventProgress *progress);
+  /* The indicators at the situation; false where there are no accelerations. */
+  bool (*indicators)(struct Instance *instance, double *value);
+  /* Whether an indicator has a sign at the situation that its mode does not allow. */
+  bool (*is_due)(struct Instance *instance);
+};
+
+extern const struct Switching switching;
+
+/* What its parts share: solvers/switching.c, event_search.c and event_passing.c. */
+
+/* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
+bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator);
+
+/* A state that differs from another by what rounding may do to it; of that at least one way. */
+void switching_round(const double *state, double *rounded);
+
+/* switching.find */
+bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator);
+
+/* switching.jump */
+bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
+
+/* The functions of the same names in struct Switching. */
+bool switching_start(struct Instance *instance, const char *function);
+bool switching_resume(struct Instance *instance, double time);
+const char *switching_pass(struct Instance *instance, const struct CommunicationStep *step,
+                           struct EventProgress *progress);
+const char *switching_pass_barrier(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+                                   struct EventProgress *progress);
+
+/* 1, -1 or 0: the sign that an indicator has while its mode stays; 0 of a branch that rests at 0. */
+double switching_sign(const struct Instance *instance, size_t indicator);
+
+enum { SEARCH_NODES = 9 };
+
+#endif
