@@ -80,7 +80,8 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
   double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
   if (sign != 0.0) return sign;
-  sign = sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+  /* What an event has set is not what rounding has left, however small. */
+  sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
   bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
   if (!passes) return mode;
