@@ -234,7 +234,7 @@ const struct Function functions[OPERATION_COUNT] = {
     [GATE] = {.name = "gate",
               .is_internal = true,
               .of_two = gate_of,
-              .units = UNIT_LOST,
+              .units = UNIT_KEPT,
               .recurrence = GATED,
               .auxiliary = operand,
               .partial_derivatives = along_gate},

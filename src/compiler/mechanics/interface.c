@@ -201,12 +201,27 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
+/* Whether the pieces of an energy change with something else than the coordinates. */
+static bool steps_in_time(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  bool steps = false;
+  if (!graph_depends_on(graph, model->potential.node, MODE)) return false;
+  for (size_t i = 0; i < model->switches.count; i++) {
+    Node indicator = model->switches.items[i].indicator;
+    steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
+             graph_depends_on(graph, indicator, INPUT);
+  }
+  return steps;
+}
+
 /* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
 static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
-  bool changes = model->driven || model->moving_constraint != NULL || model->linearized ||
+  const struct Switches *switches = &model->switches;
+  bool changes = switches->contact_count + switches->event_count > 0 || model->driven ||
+                 model->moving_constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->kinetic.node, TIME) ||
-                 graph_depends_on(graph, model->potential.node, TIME);
+                 graph_depends_on(graph, model->potential.node, TIME) || steps_in_time(model);
   if (changes || (model->has_forces && !equations->has_work)) return "kinetic and potential energy";
   return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                              : "kinetic and potential energy; constant";

@@ -13,8 +13,8 @@ static const struct Method methods[] = {
          "step depends only on the state that the FMU saves, so that a repeated step gives the same bits. Each step is "
          "held against the equations of motion at its end, and is so short that no function in them (exp, tanh, "
          "powers, quotients, ...) can hide a hill, a wall or a pulse from the series, however narrow. abs, min, max "
-         "and sign are followed piece by piece. A point where the equations have no solution, a stiff system, and a "
-         "friction that sticks end in fmi2Discard with a message that names them.",
+         "and sign are followed piece by piece. A point where the equations have no solution and a stiff system end in "
+         "fmi2Discard with a message that names them.",
      .evaluations = "series of the equations of motion",
      .sources = {"taylor_reach.c", "series_limit.c"},
      .series = ALL_TERMS},
