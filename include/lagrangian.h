@@ -40,10 +40,11 @@ enum VariableKind {
   VARIABLE_DERIVATIVE, /* of the state with the same index */
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
-  VARIABLE_MODE,     /* that the author declared; the index is that of a parameter, among which all modes stand last */
-  VARIABLE_CONTACT,  /* the mode of a contact or friction, likewise */
-  VARIABLE_RESULT,   /* computed when read */
-  VARIABLE_STATISTIC /* the index is an enum Statistic */
+  VARIABLE_MODE,      /* that the author declared; the index is that of a parameter, among which all modes stand last */
+  VARIABLE_CONTACT,   /* the mode of a contact or friction, likewise */
+  VARIABLE_RESULT,    /* computed when read */
+  VARIABLE_STATISTIC, /* the index is an enum Statistic */
+  VARIABLE_INDICATOR  /* of events; computed when read */
 };
 
 enum Statistic {

@@ -87,11 +87,12 @@ void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariabl
       [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
       [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
       [VARIABLE_STATISTIC] = "local",  [VARIABLE_MODE] = "local",          [VARIABLE_CONTACT] = "local",
+      [VARIABLE_INDICATOR] = "local",
   };
   static const char *const initials[] = {
       [VARIABLE_STATE] = "exact",        [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
       [VARIABLE_RESULT] = "calculated",  [VARIABLE_STATISTIC] = "calculated",  [VARIABLE_MODE] = "exact",
-      [VARIABLE_CONTACT] = "calculated",
+      [VARIABLE_CONTACT] = "calculated", [VARIABLE_INDICATOR] = "calculated",
   };
   bool is_calculated = is_calculated_parameter(entry);
   write_attribute(writer, "causality",
@@ -102,7 +103,7 @@ void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariabl
                   entry->kind == VARIABLE_PARAMETER || is_calculated ? "tunable"
                   : is_discrete(entry)                               ? "discrete"
                                                                      : "continuous");
-  if (entry->kind <= VARIABLE_STATISTIC && entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
+  if (entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
     write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);
 }
 

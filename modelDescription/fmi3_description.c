@@ -26,7 +26,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_abilities(writer, model);
   /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
-  if (model->constraints.count > 0 || program->expressions->switching != NULL)
+  if (model->constraints.count > 0 || program->interface->switching != NULL)
     write_attribute(writer, "needsCompletedIntegratorStep", "true");
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");

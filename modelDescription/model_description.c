@@ -28,7 +28,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
   /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
-  if (model->constraints.count == 0 && program->expressions->switching == NULL)
+  if (model->constraints.count == 0 && program->interface->switching == NULL)
     write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
@@ -77,7 +77,7 @@ static void write_boolean(xmlTextWriterPtr writer, const struct ScalarVariable *
 
 static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
   xmlTextWriterStartElement(writer, BAD_CAST "ModelVariables");
-  for (size_t i = 0; i < interface_count_in_use(interface); i++) {
+  for (size_t i = 0; i < interface->count_in_fmi2; i++) {
     const struct InterfaceVariable *variable = &interface->variables[i];
     xmlTextWriterStartElement(writer, BAD_CAST "ScalarVariable");
     write_attribute(writer, "name", variable->entry.name);
@@ -103,11 +103,11 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   if (model->description != NULL) write_attribute(writer, "description", model->description);
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
-  const struct SwitchingExpressions *switching = program->expressions->switching;
+  const struct SwitchingExpressions *switching = program->interface->switching;
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "numberOfEventIndicators", "%zu",
                                     switching != NULL ? switching->indicator_count : 0);
   write_interfaces(writer, program);
-  write_units(writer, interface, interface_count_in_use(interface));
+  write_units(writer, interface, interface->count_in_fmi2);
   write_log_categories(writer);
   write_experiment(writer, model);
   if (has_scene(model)) {

@@ -9,8 +9,8 @@
 
 /* How a version of FMI writes it. */
 struct StructureForm {
-  const char *groups[3];   /* around the unknowns of each kind; NULL for nothing */
-  const char *elements[3]; /* for each unknown */
+  const char *groups[4];   /* around the unknowns of each kind; NULL for nothing */
+  const char *elements[4]; /* for each unknown; NULL for a kind that it does not list */
   const char *key;         /* the attribute that names a variable */
   size_t first_key;        /* of the first variable */
   bool has_arrays;
@@ -21,7 +21,9 @@ const struct StructureForm structure_of_fmi2 = {.groups = {"Outputs", "Derivativ
                                                 .key = "index",
                                                 .first_key = 1};
 const struct StructureForm structure_of_fmi3 = {
-    .elements = {"Output", "ContinuousStateDerivative", "InitialUnknown"}, .key = "valueReference", .has_arrays = true};
+    .elements = {"Output", "ContinuousStateDerivative", "InitialUnknown", "EventIndicator"},
+    .key = "valueReference",
+    .has_arrays = true};
 
 struct Structure {
   const struct StructureForm *form;
@@ -128,6 +130,10 @@ static bool is_derivative(const struct InterfaceVariable *variable) {
   return variable->entry.kind == VARIABLE_DERIVATIVE;
 }
 
+static bool is_indicator(const struct InterfaceVariable *variable) {
+  return variable->entry.kind == VARIABLE_INDICATOR;
+}
+
 /* What initialisation computes; other states have the initial value that was set. */
 static bool is_computed_initially(const struct InterfaceVariable *variable) {
   return is_unknown(&variable->entry) && (variable->entry.kind != VARIABLE_STATE || starts_nearby(variable));
@@ -136,6 +142,7 @@ static bool is_computed_initially(const struct InterfaceVariable *variable) {
 static void write_unknowns(const struct Structure *structure, int kind,
                            bool (*belongs)(const struct InterfaceVariable *), bool initial) {
   const char *group = structure->form->groups[kind];
+  if (structure->form->elements[kind] == NULL) return;
   bool open = group == NULL;
   for (size_t i = 0; i < structure->interface->count; i++) {
     if (!belongs(&structure->interface->variables[i]) || place_of_whole(structure, i) != i) continue;
@@ -164,6 +171,7 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Program *progra
   write_unknowns(&structure, 0, is_output, false);
   write_unknowns(&structure, 1, is_derivative, false);
   write_unknowns(&structure, 2, is_computed_initially, true);
+  write_unknowns(&structure, 3, is_indicator, false);
   xmlTextWriterEndElement(writer);
   dependencies_free(structure.dependencies);
   free(structure.place_of);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "switching.h"
+
 #include "initial_state.h"
 #include "switching.h"
 
@@ -138,6 +140,13 @@ static enum Status evaluate_state_derivative(struct Instance *instance, size_t s
   return status;
 }
 
+static enum Status evaluate_indicator(struct Instance *instance, size_t index, double *value) {
+  double *indicator = instance->switching_work;
+  if (!lagrangian.switching->indicators(instance, indicator)) return discard_for_singularity(instance);
+  *value = indicator[index];
+  return STATUS_DONE;
+}
+
 enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   double result = 0.0;
   enum Status status = STATUS_DONE;
@@ -150,6 +159,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_CONTACT: result = instance->parameter[variable->index]; break;
   case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
   case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
+  case VARIABLE_INDICATOR: status = evaluate_indicator(instance, variable->index, &result); break;
   case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
   }
   if (status == STATUS_DONE && !isfinite(result)) {

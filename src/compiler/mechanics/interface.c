@@ -275,6 +275,16 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   }
 }
 
+/* What FMI 2.0 asks for by a function alone. */
+static void append_indicators(struct Interface *interface) {
+  for (size_t i = 0; interface->switching != NULL && i < interface->switching->indicator_count; i++) {
+    char *name = format_text("eventIndicator[%zu]", i + 1);
+    append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
+        interface->switching->indicators[i];
+    free(name);
+  }
+}
+
 static void append_time(struct Interface *interface, const struct Model *model) {
   struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
   time->unit = copy_text("s");
@@ -333,6 +343,9 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->result_count = model->outputs.count;
   append_calculated(interface, model);
   if (n > 0) append_mechanics(interface, model, equations);
+  interface->count_in_fmi2 = interface->count;
+  interface->switching = switching_derive(model, equations);
+  append_indicators(interface);
   if (!interface->depends_on_time) append_time(interface, model);
   arrays_find(interface);
   return interface;
@@ -346,6 +359,7 @@ void interface_free(struct Interface *interface) {
     free(interface->variables[i].unit);
     free(interface->variables[i].description);
   }
+  switching_free(interface->switching);
   free(interface->variables);
   free(interface);
 }

@@ -22,15 +22,16 @@ struct InterfaceVariable {
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
 
-/* The last variable is time where nothing depends on it, which FMI 3.0 wants and FMI 2.0 does not. */
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
-  size_t first[VARIABLE_STATISTIC + 1]; /* the place of the first variable of each kind */
+  size_t count_in_fmi2;                 /* FMI 3.0 has more: event indicators, and time where nothing depends on it */
+  size_t first[VARIABLE_INDICATOR + 1]; /* the place of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
   const struct Method *method; /* the one that is used; NULL for a system without coordinates */
   int output_derivative_order;
+  struct SwitchingExpressions *switching; /* NULL where nothing switches */
 };
 
 /* Whether initialization computes the state, from its start value among others. */
@@ -43,11 +44,6 @@ void interface_free(struct Interface *interface);
 
 /* The place in the table of the variable of this kind and index, which there is. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);
-
-/* How many variables there are without a time on which nothing depends. */
-static inline size_t interface_count_in_use(const struct Interface *interface) {
-  return interface->count - (interface->depends_on_time ? 0 : 1);
-}
 
 /* The relative tolerance of the solver. */
 double interface_tolerance(const struct Model *model);

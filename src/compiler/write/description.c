@@ -19,6 +19,7 @@ static void write_variables(FILE *file, const struct Interface *interface) {
       [VARIABLE_CONTACT] = "VARIABLE_CONTACT",
       [VARIABLE_RESULT] = "VARIABLE_RESULT",
       [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
+      [VARIABLE_INDICATOR] = "VARIABLE_INDICATOR",
   };
   static const char *const types[] = {
       [TYPE_REAL] = "TYPE_REAL", [TYPE_INTEGER] = "TYPE_INTEGER", [TYPE_BOOLEAN] = "TYPE_BOOLEAN"};
