@@ -130,7 +130,8 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
 }
 
 /*
- * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller.
+ * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller,
+ * or, of a branch, the later one, where the next piece has a value.
  * By the Illinois method, with every third step a bisection.
  */
 static double refine(struct Search *search, size_t indicator, double sign, double from, double to) {
@@ -150,7 +151,8 @@ static double refine(struct Search *search, size_t indicator, double sign, doubl
     if (is_behind) behind = next;
     else before = next;
   }
-  return before.f <= -behind.f ? before.time : behind.time;
+  bool is_branch = indicator < lagrangian.switches->branch_count;
+  return before.f <= -behind.f && !is_branch ? before.time : behind.time;
 }
 
 /*
