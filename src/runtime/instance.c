@@ -53,7 +53,7 @@ static size_t acceleration_count(void) {
 }
 
 static size_t switching_work_count(void) {
-  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + lagrangian.state_count : 0;
+  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + 2 * lagrangian.state_count : 0;
 }
 
 static size_t evaluation_count(void) {
@@ -75,7 +75,7 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
-  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? lagrangian.state_count : 0);
+  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? 2 * lagrangian.state_count : 0);
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 

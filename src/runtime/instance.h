@@ -78,7 +78,7 @@ struct Instance {
   double *switching_work;    /* switching->work_count() */
   double departure;          /* the sign with which a branch that rested at 0 leaves it, as found last */
   bool was_at_zero;          /* what changed its sign last had not left 0 by more than rounding before */
-  double *event_state;       /* state_count, in FMUs that switch: the state behind the last event */
+  double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;
   /* Is told of each time that the solver comes to within a communication step, see intermediate.h; NULL for none. */

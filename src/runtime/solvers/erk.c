@@ -107,7 +107,8 @@ static bool restart(struct Instance *instance, const double *state, const struct
   struct Erk *erk = instance->solver_memory;
   sundials_load(instance, state, safety);
   erk->trial = step->end - step->start;
-  return start_method(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step, step->end);
+  return start_method(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step,
+                      step->end);
 }
 
 /*

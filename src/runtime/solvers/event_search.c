@@ -216,7 +216,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
 
 bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
-  double last = instance->situation->last_step.end, *rate = instance->event_state;
+  double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
   if (!solver_derivatives(instance, last, search.state, rate)) return false;
   double way = tangent_to_zero(&search, last, rate, indicator);
