@@ -54,8 +54,11 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   double direction = velocity > 0.0 ? 1.0 : -1.0;
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    bool slips = fabs(force) > settlement->value[place + FRICTION_STICTION] ||
-                 (is_hit(settlement, indicator_of_friction(settlement, friction)) && is_first && !settlement->jumped);
+    double beyond = fabs(force) - settlement->value[place + FRICTION_STICTION];
+    /* An importer that stands on the zero itself would not see the indicator leave it. */
+    bool is_at_limit = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
+                       (settlement->occasion == IN_EXCHANGE && beyond == 0.0);
+    bool slips = beyond > 0.0 || (is_at_limit && is_first && !settlement->jumped);
     if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
     return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
   }
