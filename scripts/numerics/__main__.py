@@ -140,7 +140,7 @@ def switching_section(quick, progress):
     write_csv(FOLDER / "switching_events.csv", ["events", *switching.SAMPLES_HEADER], [[count, *switching.sample_row(s)] for count, s in counted])
     rows, counted_rows = switching.rows(samples, missing), switching.counted_rows(counted)
     write_csv(FOLDER / "switching_ratios.csv", switching.HEADER, rows)
-    sentences = switching.summary(rows)
+    sentences = switching.summary(rows, samples)
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
     plots = ""
     for problem in switching.PROBLEMS:

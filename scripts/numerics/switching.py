@@ -30,7 +30,7 @@ NOTES = [
     "SciPy's and heyoka's equations, guards and jumps are written for each phase; each gets one call a phase, and a ball rests where its bounce is slower than the "
     "tolerance. heyoka is compiled before the clock runs, has the numbers of parameters in its code, and a cooldown of 1e-12 s: with its own it passes over the "
     "last bounces of the ball, which then falls through the ground.",
-    "MuJoCo's contacts are soft; here each is a spring as stiff as the steps allow (0.3 of a radian a step) with the damper of the restitution. It has no "
+    "MuJoCo's contacts are soft; here each is a spring with the damper of the restitution, stiffer in shorter steps, of which it gets more as well. It has no "
     "friction that sticks more strongly than it slides. Newton's cradle, with four contacts at one time, is left to the FMU and its importers.",
 ]  # fmt: skip
 
@@ -140,7 +140,7 @@ def sample_row(sample):
     return [sample.problem, sample.method, sample.end, sample.setting, sample.error, sample.events, min(sample.times), median(sample.times)]
 
 
-OTHERS = list(METHODS)[1:]
+OTHERS = list(METHODS)[1:]  # beside the FMU
 HEADER = ["problem", "error", "FMU [µs]", *(f"{method} / FMU" for method in OTHERS)]
 
 
@@ -175,7 +175,7 @@ def factor(value):
     return f"{value:.2g}" if value < 10 else f"{value:,.0f}"
 
 
-def summary(table):
+def summary(table, samples):
     """A sentence for each error: how many times that of the FMU the others take."""
     sentences = []
     for level in LEVELS[1:]:
@@ -185,7 +185,8 @@ def summary(table):
             reached = [value for value in known if math.isfinite(value)]
             if not known:
                 continue
-            text = f"{factor(min(reached))} to {factor(max(reached))} times that time" if reached else "never gets there"
+            least = min((s.error for s in samples if s.method == method), default=math.nan)
+            text = f"{factor(min(reached))} to {factor(max(reached))} times that time" if reached else f"never; its smallest error is {least:.1g}"
             others.append(f"{method}: {text}" + (f", on {len(reached)} of {len(known)} systems" if reached and len(reached) < len(known) else ""))
         sentences.append((f"Systems that switch, to an error of {level:g}, beside the FMU with 100 communication steps:", others))
     return sentences

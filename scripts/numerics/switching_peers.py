@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from numerics.driver import POINTS, step
 from numerics.peers import FmpyCvode, impatient
@@ -130,8 +131,18 @@ class Heyoka(Timed):
         return np.array(rows)
 
 
-# A contact is a spring with a damper, whose motion has the angle CONTACT in a step.
-CONTACT = 0.3
+def contact_rate(length):
+    """Radians a second of a contact's spring, for steps of so many seconds: in shorter steps it is stiffer, and has more steps as well, as both make errors."""
+    return 0.3 * (length / 0.01) ** 0.25 / length
+
+
+def damping_ratio(restitution):
+    """Of a spring and damper that push and do not pull: a body leaves them when their force is 0 (Schwager and Pöschel, 2007)."""
+    def excess(damping):
+        rate = np.sqrt(1 - damping**2)
+        return -damping / rate * (np.pi - np.arctan2(2 * damping * rate, rate**2 - damping**2)) - np.log(restitution)
+
+    return brentq(excess, 0.0, 0.99)
 
 
 class MuJoCo(Timed):
@@ -146,9 +157,8 @@ class MuJoCo(Timed):
 
     def text(self, length, integrator):
         values = self.problem.all_values
-        rate, loss = CONTACT / length, -np.log(values["e"])
-        damping = 2 * rate * loss / np.hypot(np.pi, loss)
-        contact = f'solref="{-(rate**2)!r} {-float(damping)!r}" solimp="0.9999 0.9999 0.001"'
+        rate = contact_rate(length)
+        contact = f'solref="{-(rate**2)!r} {-2 * rate * damping_ratio(values["e"])!r}" solimp="0.9999 0.9999 0.001"'
         return (f'<mujoco><compiler angle="radian"/><option timestep="{length!r}" integrator="{integrator}" gravity="0 0 -{values["g"]!r}"/>'
                 f"<worldbody>{self.problem.stiff(values, contact)}</worldbody></mujoco>")  # fmt: skip
 
