@@ -270,7 +270,8 @@ static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *res
   }
   if (a.coefficient != -b.coefficient || a.factor_count + b.factor_count != 1 || !(a_square || b_square)) return false;
   Node other = graph_node(graph, (a_square ? first : second) == SINE ? COSINE : SINE, a_square ? u : w, ZERO);
-  rest = multiply(graph, product_of(graph, common, count), power_number(graph, other, 2.0));
+  Node square = power_number(graph, other, 2.0);
+  rest = multiply(graph, product_of(graph, common, count), square);
   *result = scale(graph, a_square ? b.coefficient : a.coefficient, rest);
   return true;
 }

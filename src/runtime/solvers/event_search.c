@@ -15,9 +15,6 @@ enum { DEGREE = SEARCH_NODES - 1, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEM
 /* What the last coefficients may have of all, for a polynomial that is the function. */
 static const double resolved = 1e-4;
 
-/* How far below 0 an event may leave an indicator, in units of what rounding makes of it. */
-static const double floor_in_noise = 64.0;
-
 /* cos(pi k / 8) */
 static const double cosines[2 * DEGREE] = {
     1.0,  0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,
@@ -219,7 +216,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
 
 bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
-  double last = instance->situation->last_step.end, *rate = instance->event_state;
+  double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
   if (!solver_derivatives(instance, last, search.state, rate)) return false;
   double way = tangent_to_zero(&search, last, rate, indicator);
@@ -243,7 +240,7 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
     double start = sign * search.samples[(size_t)DEGREE * count + i];
-    search.floor = start >= -floor_in_noise * search.noise[i] ? fmin(start, 0.0) : 0.0;
+    search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
     double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
                                                       : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
     if (!(found < *time)) continue;
@@ -252,5 +249,8 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
     instance->departure = search.departure;
   }
   if (search.windows > WINDOW_LIMIT) *time = NAN;
-  return !isinf(*time);
+  if (!isfinite(*time)) return isnan(*time);
+  double before = value_at(&search, *indicator, 0.5 * (from + *time));
+  instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
+  return true;
 }

@@ -81,9 +81,12 @@ static double sign_with_noise(double value, double noise) {
 static double branch_mode(const struct Settlement *settlement, size_t branch) {
   size_t rate = settlement->switches->branch_count + branch;
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
-  double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
+  /* Where its zero was located, it may be left as far below as event_search.c takes for rounding. */
+  double noise = settlement_noise(settlement, branch, rate) * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
+  double sign = sign_with_noise(settlement->value[branch], noise);
   if (sign != 0.0) return sign;
-  sign = sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+  /* What an event has set is not what rounding has left, however small. */
+  sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
   bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
   if (!passes) return mode;
