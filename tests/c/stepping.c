@@ -2,8 +2,9 @@
  * Times the steps of an FMU, by the processor's time: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS
  * [REFERENCE=VALUE ...] [REFERENCE~AMPLITUDE]. Prints a line with the Real variables OUTPUTS for each of up to POINTS
  * communication points that are evenly spaced, then the seconds of the fastest repeat, then a line with the Integer
- * variables COUNTS; both list references with commas between them. What has an amplitude is an input that changes before every step. Points are
- * printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is none.
+ * variables COUNTS; both are lists of references, with commas between them. What has an amplitude is an input that changes
+ * before every step. Points are printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is
+ * none.
  */
 #include <stdio.h>
 #include <stdlib.h>
