@@ -67,7 +67,7 @@ def test_folder_name_must_match(start, tmp_path):
     """However the name is written; the build that exists has lagc already."""
     folder = tmp_path / "Other"
     assert lagc("-o", folder, system_file(tmp_path, f'{start}"Mine"><input name="u"/><output name="y">u</output></system>')).returncode == 0
-    words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARY={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
+    words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARIES={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
     result = subprocess.run([*words, "-P", ROOT / "scripts" / "pack.cmake"], capture_output=True, text=True)
     assert result.returncode != 0
     assert "Other/system.xml: the system is named 'Mine'; expected 'Other', as its folder or lagrange_add_fmu() names it" in " ".join(result.stderr.split())

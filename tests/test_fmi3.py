@@ -114,7 +114,7 @@ def test_descriptions_are_valid(name):
 
 
 def test_the_same_variables_as_in_fmi2(name):
-    """Each scalar of FMI 2.0 is a scalar or an element of FMI 3.0, with its value reference and its start; and there is time."""
+    """Each scalar of FMI 2.0 is a scalar or an element of FMI 3.0, with its value reference and its start; and there are time and event indicators."""
     ours = {}
     for variable in fmi3.description(name).modelVariables:
         count = int(np.prod(variable.shape)) if variable.shape else 0
@@ -127,7 +127,9 @@ def test_the_same_variables_as_in_fmi2(name):
     }
     extra = {key: ours[key] for key in set(ours) - set(theirs)}
     assert {key: ours[key] for key in theirs} == theirs
-    assert extra == {} or (set(extra) == {"time"} and extra["time"][2] == "independent")
+    indicators = {f"eventIndicator[{i + 1}]" for i in range(fmu.description(name).numberOfEventIndicators)}
+    assert set(extra) - {"time"} == indicators
+    assert extra.get("time", ours["time"])[2] == "independent"
 
 
 def columns(result, names):
@@ -158,6 +160,51 @@ def test_model_exchange_agrees(name):
     ours = fmpy.simulate_fmu(str(fmi3.unpacked(name)), fmi_type="CoSimulation", **words)
     theirs = fmpy.simulate_fmu(str(fmi3.unpacked(name)), fmi_type="ModelExchange", **words)
     np.testing.assert_allclose(columns(theirs, names)[:, -1], columns(ours, names)[:, -1], rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("name", ["BouncingBall", "StickSlip", "NewtonsCradle"])
+def test_model_exchange_of_what_switches_has_the_bits_of_fmi2(name):
+    """Importers go by the variables that modelDescription.xml lists as event indicators."""
+    words = dict(stop_time=2.0, output_interval=0.05, fmi_type="ModelExchange")
+    names = fmu.names_of(name, "output")
+    second, third = (fmpy.simulate_fmu(str(module.unpacked(name)), **words) for module in (fmu, fmi3))
+    assert len(third) > 41, "there were events"
+    assert columns(third, names).tobytes() == columns(second, names).tobytes()
+
+
+def test_event_indicators(opened):
+    """A ball in the air: its indicator is the gap, then that of the rest on the ground the force, m g."""
+    ball = opened("BouncingBall", kind=FMU3Model).initialize({"h": 0.5})
+    for height in (0.5, -0.1):
+        ball.fmu.enterContinuousTimeMode()
+        ball.fmu.setContinuousStates((c_double * 2)(height, 0.0), 2)
+        value = (c_double * 1)()
+        ball.fmu.getEventIndicators(value, 1)
+        assert value[0] == ball.get("eventIndicator")[0] == height
+        ball.fmu.enterEventMode()
+    refused(ERROR, ball.fmu.getEventIndicators, (c_double * 2)(), 2)
+    assert "2 elements; expected 1, the number of event indicators" in ball.messages[-1][2]
+    resting = opened("BouncingBall").initialize({"h": 0.0})
+    assert resting.fmu.getInt32(resting.vr("ground.closed")) == [1]
+    assert resting.get("eventIndicator")[0] == pytest.approx(9.81)
+    refused(ERROR, resting.set, dict(eventIndicator=1.0))
+
+
+def test_intermediate_update_at_an_event(opened):
+    """The state behind the bounce, at its time."""
+    importer = Importer()
+    ball = observed(opened, "BouncingBall", importer, ["h", "v"]).initialize()
+    ball.step(0.6)
+    impact = np.sqrt(2 / 9.81)
+    time, _, (height, velocity) = min(importer.calls, key=lambda call: abs(call[0] - impact))
+    assert time == pytest.approx(impact, rel=1e-12) and height == pytest.approx(0, abs=1e-12)
+    assert velocity == pytest.approx(0.8 * 9.81 * impact, rel=1e-9)
+    times = [call[0] for call in importer.calls]
+    assert times == sorted(set(times)) and times[-1] == 0.6
+    early = observed(opened, "BouncingBall", Importer(end_at=0.0), ["h"], earlyReturnAllowed=True).initialize()
+    while early.time < 0.6:
+        early.step(0.6 - early.time)
+    np.testing.assert_allclose(early.get("h", "v"), ball.get("h", "v"), rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "ElasticPendulum", "ParticleCartesian"])

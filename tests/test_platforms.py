@@ -23,8 +23,8 @@ from cross import PLATFORMS, Failure, compile_fmu, libraries_of  # noqa: E402
 
 FOLDER = BUILD / "platforms"
 ENVIRONMENT = {**os.environ, "WINEPREFIX": str(FOLDER / "wine"), "WINEDEBUG": "-all"}
-# By taylor, auto, exact, nothing, erk, bdf, and bdf with KLU.
-SYSTEMS = ["SimplePendulum", "ElasticPendulum", "ParticleCartesian", "StateFeedback", "BeadOnHoop", "FurutaPendulum", "Lattice"]
+# By taylor, auto, exact, nothing, erk, bdf, and bdf with KLU; and one with events.
+SYSTEMS = ["SimplePendulum", "ElasticPendulum", "ParticleCartesian", "StateFeedback", "BeadOnHoop", "FurutaPendulum", "Lattice", "BouncingBall"]
 if os.environ.get("FMU_PLATFORM_SYSTEMS") == "all":
     SYSTEMS = [*fmu.all_names(), *fmu.further_names()]
 # Programs for each, and what runs them.
@@ -109,7 +109,9 @@ def output_of(*words):
 
 
 def reals_of(name):
-    return sum(variable.type == "Real" for variable in fmpy.read_model_description(unpacked(name)).modelVariables)
+    """How many variables are Real before the first that is not."""
+    types = [variable.type for variable in fmpy.read_model_description(unpacked(name)).modelVariables]
+    return next((i for i, kind in enumerate(types) if kind != "Real"), len(types))
 
 
 @functools.cache
@@ -246,6 +248,16 @@ def test_same_bytes_from_another_folder(name, tmp_path):
         path = library(name, platform)
         assert (tmp_path / platform / path.name).read_bytes() == path.read_bytes(), platform
         assert [entry.name for entry in (tmp_path / platform).iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau", "auto"])
+def test_what_switches_compiles_in_one_piece(method, fmi, tmp_path):
+    """With each solver: all names of the runtime meet in one file."""
+    platforms()
+    assert fmu.lagc(ROOT / "fmu" / "StickSlip" / "system.xml", "-o", tmp_path, "--solver", method).returncode == 0
+    compile_fmu("linux64", tmp_path / "system.c", tmp_path, "StickSlip", fmi, sundials=ROOT / "build" / "sundials-all")
+    assert (tmp_path / next(iter(libraries_of("linux64", "StickSlip", fmi)))).exists()
 
 
 def test_what_cannot_be_compiled(tmp_path):

@@ -72,7 +72,7 @@ bool exchange_needs_event(struct Instance *instance) {
 }
 
 /* Brings the modes into agreement with the state. */
-static enum Status settle(struct Instance *instance, bool *changed) {
+static enum Status settle_modes(struct Instance *instance, bool *changed) {
   if (lagrangian.switching == NULL) return STATUS_DONE;
   const char *problem =
       lagrangian.switching->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
@@ -81,7 +81,7 @@ static enum Status settle(struct Instance *instance, bool *changed) {
 
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
-  enum Status status = settle(instance, states_changed);
+  enum Status status = settle_modes(instance, states_changed);
   if (status != STATUS_DONE || lagrangian.projection == NULL) return status;
   status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;

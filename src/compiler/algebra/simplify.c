@@ -336,6 +336,6 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
 
 Node choose_node(struct Graph *graph, Node condition, Node positive, Node other) {
   Node is_positive = function(graph, GATE, condition, ONE);
-  return add(graph, function(graph, GATE, condition, positive),
-             function(graph, GATE, subtract(graph, ONE, is_positive), other));
+  Node chosen = function(graph, GATE, condition, positive);
+  return add(graph, chosen, function(graph, GATE, subtract(graph, ONE, is_positive), other));
 }

@@ -75,7 +75,8 @@ static Node indicator_of_contact(const struct Model *model, const struct Contact
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
   Node force = model->constraint_forces[friction->constraint];
-  Node left = subtract(graph, power_number(graph, friction->stiction, 2.0), power_number(graph, force, 2.0));
+  Node limit = power_number(graph, friction->stiction, 2.0);
+  Node left = subtract(graph, limit, power_number(graph, force, 2.0));
   Node along = multiply(graph, friction->mode, friction->velocity);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }

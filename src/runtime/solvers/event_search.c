@@ -102,7 +102,7 @@ static double range_of_polynomial(const double *c) {
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
-static enum Verdict judge(const double *f, double noise) {
+static enum Verdict judge_signs(const double *f, double noise) {
   double c[DEGREE + 1], d[DEGREE + 1], largest = 0.0;
   for (int k = 0; k <= DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
@@ -130,7 +130,8 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
 }
 
 /*
- * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller.
+ * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller,
+ * or, of a branch, the later one, where the next piece has a value.
  * By the Illinois method, with every third step a bisection.
  */
 static double refine(struct Search *search, size_t indicator, double sign, double from, double to) {
@@ -150,7 +151,8 @@ static double refine(struct Search *search, size_t indicator, double sign, doubl
     if (is_behind) behind = next;
     else before = next;
   }
-  return before.f <= -behind.f ? before.time : behind.time;
+  bool is_branch = indicator < lagrangian.switches->branch_count;
+  return before.f <= -behind.f && !is_branch ? before.time : behind.time;
 }
 
 /*
@@ -163,7 +165,7 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
   for (int k = 0; k < SEARCH_NODES; k++)
     f[k] = sign * value_at(search, indicator, node_time(from, to, k)) - search->floor;
   double noise = search->noise[indicator];
-  enum Verdict verdict = judge(f, noise);
+  enum Verdict verdict = judge_signs(f, noise);
   if (verdict == STAYS) return INFINITY;
   if (verdict == FALLS) return refine(search, indicator, sign, from, to);
   double middle = 0.5 * (from + to);
@@ -236,7 +238,7 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
   for (size_t i = 0; i < count; i++) {
     double f[SEARCH_NODES], sign = switching_sign(instance, i);
     for (int k = 0; k < SEARCH_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
-    if (sign != 0.0 && judge(f, 0.0) == STAYS) continue;
+    if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
     double start = sign * search.samples[(size_t)DEGREE * count + i];

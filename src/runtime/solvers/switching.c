@@ -190,7 +190,7 @@ static void copy_conditions(struct Settlement *settlement) {
 }
 
 /* Modes as the signs of the start values say. */
-static const char *begin(struct Settlement *settlement) {
+static const char *begin_modes(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (!settlement_evaluate(settlement)) return "there are no accelerations";
@@ -209,7 +209,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   settlement.state = state;
   settlement.occasion = occasion;
   settlement.indicator = indicator;
-  const char *problem = occasion == AT_START ? begin(&settlement) : NULL;
+  const char *problem = occasion == AT_START ? begin_modes(&settlement) : NULL;
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";
