@@ -40,10 +40,11 @@ enum VariableKind {
   VARIABLE_DERIVATIVE, /* of the state with the same index */
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
-  VARIABLE_MODE,     /* that the author declared; the index is that of a parameter, among which all modes stand last */
-  VARIABLE_CONTACT,  /* the mode of a contact or friction, likewise */
-  VARIABLE_RESULT,   /* computed when read */
-  VARIABLE_STATISTIC /* the index is an enum Statistic */
+  VARIABLE_MODE,      /* that the author declared; the index is that of a parameter, among which all modes stand last */
+  VARIABLE_CONTACT,   /* the mode of a contact or friction, likewise */
+  VARIABLE_RESULT,    /* computed when read */
+  VARIABLE_STATISTIC, /* the index is an enum Statistic */
+  VARIABLE_INDICATOR  /* of events; computed when read */
 };
 
 enum Statistic {
@@ -83,6 +84,17 @@ static inline bool has_following_start(const struct ScalarVariable *variable) {
 static inline bool is_unknown(const struct ScalarVariable *variable) {
   return variable->is_output || variable->kind == VARIABLE_DERIVATIVE || variable->follows_from != NULL;
 }
+
+/* One that has values within a communication step. */
+static inline bool is_intermediate(const struct ScalarVariable *variable) {
+  return variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_DERIVATIVE ||
+         (variable->kind == VARIABLE_RESULT && !is_calculated_parameter(variable));
+}
+
+/* Variables that follow each other in the table and are the elements 1, 2, ... of one array. */
+struct ArrayVariable {
+  size_t first, count;
+};
 
 /* The elements of a matrix that may differ from 0. Those of column j are in row[start[j]] to row[start[j + 1] - 1]. */
 struct Sparsity {
@@ -188,6 +200,8 @@ struct Lagrangian {
   size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
   int output_derivative_order;            /* the highest by time that outputs have */
   const struct ScalarVariable *variables;
+  const struct ArrayVariable *arrays; /* ascending; NULL where there are none */
+  size_t array_count;
   const bool *result_uses_acceleration; /* for each result */
   const double *nominal;                /* state_count: scales of the absolute tolerance */
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */

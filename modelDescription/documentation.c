@@ -228,10 +228,10 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
   xmlTextWriterStartElement(writer, BAD_CAST "tr");
   for (size_t i = 0; i < 5; i++) element(writer, "th", headings[i]);
   xmlTextWriterEndElement(writer);
-  size_t rows = interface->count < ROW_LIMIT ? interface->count : ROW_LIMIT;
+  size_t count = interface->count_in_fmi2, rows = count < ROW_LIMIT ? count : ROW_LIMIT;
   for (size_t i = 0; i < rows; i++) write_variable_row(writer, &interface->variables[i]);
   xmlTextWriterEndElement(writer);
-  write_rest(writer, interface->count, rows, "variables, which modelDescription.xml has,");
+  write_rest(writer, count, rows, "variables, which modelDescription.xml has,");
 }
 
 static void write_solver(const struct Page *page) {

@@ -7,12 +7,32 @@
 #include "memory.h"
 #include "xml_output.h"
 
+/* How a version of FMI writes it. */
+struct StructureForm {
+  const char *groups[4];   /* around the unknowns of each kind; NULL for nothing */
+  const char *elements[4]; /* for each unknown; NULL for a kind that it does not list */
+  const char *key;         /* the attribute that names a variable */
+  size_t first_key;        /* of the first variable */
+  bool has_arrays;
+};
+
+const struct StructureForm structure_of_fmi2 = {.groups = {"Outputs", "Derivatives", "InitialUnknowns"},
+                                                .elements = {"Unknown", "Unknown", "Unknown"},
+                                                .key = "index",
+                                                .first_key = 1};
+const struct StructureForm structure_of_fmi3 = {
+    .elements = {"Output", "ContinuousStateDerivative", "InitialUnknown", "EventIndicator"},
+    .key = "valueReference",
+    .has_arrays = true};
+
 struct Structure {
+  const struct StructureForm *form;
   xmlTextWriterPtr writer;
   const struct Interface *interface;
   struct Dependencies *dependencies;
   size_t *place_of; /* of the variable of each symbol: 1 + its place among the variables; 0 where it is no known */
   size_t *places;   /* workspace: of what one unknown depends on */
+  enum Dependency *of_place; /* workspace: how it does */
 };
 
 /* Symbols that an unknown may depend on. Among initial unknowns, parameters are knowns too. */
@@ -34,33 +54,48 @@ static int compare(const void *first, const void *second) {
   return (a > b) - (a < b);
 }
 
-/* The places of the knowns that the unknown depends on, in no particular order; returns their number. */
-static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
+/* The place of the array that the variable is an element of, or of itself. */
+static size_t place_of_whole(const struct Structure *structure, size_t place) {
+  while (structure->form->has_arrays && structure->interface->variables[place].is_further_element) place--;
+  return place;
+}
+
+/* Adds what one scalar depends on; returns the number of places. */
+static size_t add_places(const struct Structure *structure, size_t count, Node node, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
-  size_t count = 0;
-  dependencies_find(structure->dependencies, structure->interface->variables[unknown].node, initial);
+  dependencies_find(structure->dependencies, node, initial);
   for (size_t i = 0; i < dependencies->count; i++) {
-    size_t place = structure->place_of[dependencies->symbols[i]];
-    if (place > 0 && is_known(&structure->interface->variables[place - 1].entry, initial))
-      structure->places[count++] = place - 1;
+    size_t symbol = dependencies->symbols[i], place = structure->place_of[symbol];
+    if (place == 0 || !is_known(&structure->interface->variables[place - 1].entry, initial)) continue;
+    size_t whole = place_of_whole(structure, place - 1);
+    enum Dependency *dependency = &structure->of_place[whole];
+    if (*dependency == INDEPENDENT) structure->places[count++] = whole;
+    if (dependencies->of[symbol] > *dependency) *dependency = dependencies->of[symbol];
   }
   return count;
 }
 
+/* The places of the knowns that the unknown, with all its elements, depends on, ascending; returns their number. */
+static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
+  const struct InterfaceVariable *variable = &structure->interface->variables[unknown];
+  size_t elements = structure->form->has_arrays && variable->array_count > 0 ? variable->array_count : 1, count = 0;
+  for (size_t i = 0; i < elements; i++) count = add_places(structure, count, variable[i].node, initial);
+  qsort(structure->places, count, sizeof *structure->places, compare);
+  return count;
+}
+
 static void write_dependencies(const struct Structure *structure, size_t count, bool initial) {
-  const struct Graph *graph = structure->dependencies->graph;
   char *places = NULL, *kinds = NULL;
   size_t places_length = 0, kinds_length = 0;
-  qsort(structure->places, count, sizeof *structure->places, compare);
   FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
   for (size_t i = 0; i < count; i++) {
-    const struct InterfaceVariable *known = &structure->interface->variables[structure->places[i]];
-    enum Dependency dependency = structure->dependencies->of[graph->vertices[known->node].left];
-    fprintf(places_file, "%s%zu", i > 0 ? " " : "", structure->places[i] + 1);
-    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(dependency, known->entry.type, initial));
+    size_t place = structure->places[i];
+    enum VariableType type = structure->interface->variables[place].entry.type;
+    fprintf(places_file, "%s%zu", i > 0 ? " " : "", place + structure->form->first_key);
+    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->of_place[place], type, initial));
   }
-  fclose(places_file);
-  fclose(kinds_file);
+  close_text(places_file, &places, &places_length);
+  close_text(kinds_file, &kinds, &kinds_length);
   write_attribute(structure->writer, "dependencies", places);
   write_attribute(structure->writer, "dependenciesKind", kinds);
   free(places);
@@ -75,13 +110,15 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
 enum { DEPENDENCY_LIMIT = 1000 };
 
 /* The element for one unknown. */
-static void write_unknown(const struct Structure *structure, size_t unknown, bool initial) {
+static void write_unknown(const struct Structure *structure, const char *element, size_t unknown, bool initial) {
   size_t count = find_places(structure, unknown, initial);
-  xmlTextWriterStartElement(structure->writer, BAD_CAST "Unknown");
-  xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST "index", "%zu", unknown + 1);
+  xmlTextWriterStartElement(structure->writer, BAD_CAST element);
+  xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST structure->form->key, "%zu",
+                                    unknown + structure->form->first_key);
   bool is_solved_for = initial && structure->dependencies->equations->constraints->count > 0;
   if (!is_solved_for && (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output))
     write_dependencies(structure, count, initial);
+  for (size_t i = 0; i < count; i++) structure->of_place[structure->places[i]] = INDEPENDENT;
   xmlTextWriterEndElement(structure->writer);
 }
 
@@ -93,30 +130,37 @@ static bool is_derivative(const struct InterfaceVariable *variable) {
   return variable->entry.kind == VARIABLE_DERIVATIVE;
 }
 
+static bool is_indicator(const struct InterfaceVariable *variable) {
+  return variable->entry.kind == VARIABLE_INDICATOR;
+}
+
 /* What initialisation computes; other states have the initial value that was set. */
 static bool is_computed_initially(const struct InterfaceVariable *variable) {
   return is_unknown(&variable->entry) && (variable->entry.kind != VARIABLE_STATE || starts_nearby(variable));
 }
 
-static void write_unknowns(const struct Structure *structure, const char *element,
+static void write_unknowns(const struct Structure *structure, int kind,
                            bool (*belongs)(const struct InterfaceVariable *), bool initial) {
-  bool open = false;
+  const char *group = structure->form->groups[kind];
+  if (structure->form->elements[kind] == NULL) return;
+  bool open = group == NULL;
   for (size_t i = 0; i < structure->interface->count; i++) {
-    if (!belongs(&structure->interface->variables[i])) continue;
-    if (!open) xmlTextWriterStartElement(structure->writer, BAD_CAST element);
+    if (!belongs(&structure->interface->variables[i]) || place_of_whole(structure, i) != i) continue;
+    if (!open) xmlTextWriterStartElement(structure->writer, BAD_CAST group);
     open = true;
-    write_unknown(structure, i, initial);
+    write_unknown(structure, structure->form->elements[kind], i, initial);
   }
-  if (open) xmlTextWriterEndElement(structure->writer);
+  if (open && group != NULL) xmlTextWriterEndElement(structure->writer);
 }
 
-void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
-                           const struct Interface *interface) {
-  const struct Graph *graph = model->graph;
-  struct Structure structure = {.writer = writer, .interface = interface};
-  structure.dependencies = dependencies_create(model, equations);
+void model_structure_write(xmlTextWriterPtr writer, const struct Program *program, const struct StructureForm *form) {
+  const struct Interface *interface = program->interface;
+  const struct Graph *graph = program->model->graph;
+  struct Structure structure = {.form = form, .writer = writer, .interface = interface};
+  structure.dependencies = dependencies_create(program->model, program->equations);
   structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
   structure.places = allocate(interface->count, sizeof *structure.places);
+  structure.of_place = allocate(interface->count, sizeof *structure.of_place);
   for (size_t i = 0; i < interface->count; i++) {
     const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
     const struct ScalarVariable *entry = &interface->variables[i].entry;
@@ -124,11 +168,13 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, c
       structure.place_of[vertex->left] = i + 1;
   }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");
-  write_unknowns(&structure, "Outputs", is_output, false);
-  write_unknowns(&structure, "Derivatives", is_derivative, false);
-  write_unknowns(&structure, "InitialUnknowns", is_computed_initially, true);
+  write_unknowns(&structure, 0, is_output, false);
+  write_unknowns(&structure, 1, is_derivative, false);
+  write_unknowns(&structure, 2, is_computed_initially, true);
+  write_unknowns(&structure, 3, is_indicator, false);
   xmlTextWriterEndElement(writer);
   dependencies_free(structure.dependencies);
   free(structure.place_of);
   free(structure.places);
+  free(structure.of_place);
 }

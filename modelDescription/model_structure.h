@@ -4,9 +4,10 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "mechanics/interface.h"
+#include "program/program.h"
 
-void model_structure_write(xmlTextWriterPtr writer, const struct Model *model, const struct Equations *equations,
-                           const struct Interface *interface);
+extern const struct StructureForm structure_of_fmi2, structure_of_fmi3;
+
+void model_structure_write(xmlTextWriterPtr writer, const struct Program *program, const struct StructureForm *form);
 
 #endif

@@ -63,14 +63,14 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
+bool has_scene(const struct Model *model) {
+  return model->body_count > 0 || model->frame_count > BASE + 1;
+}
+
 void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
-  if (model->body_count == 0 && model->frame_count <= BASE + 1) return;
-  xmlTextWriterStartElement(writer, BAD_CAST "VendorAnnotations");
-  xmlTextWriterStartElement(writer, BAD_CAST "Tool");
-  write_attribute(writer, "name", "lagrange-fmu");
   xmlTextWriterStartElement(writer, BAD_CAST "scene");
   write_gravity(writer, model);
   write_frames(writer, model);
   for (size_t i = 0; i < model->body_count; i++) write_body(writer, model, &model->bodies[i]);
-  for (int element = 0; element < 3; element++) xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
 }

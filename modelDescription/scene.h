@@ -1,6 +1,6 @@
 /*
  * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/animation,
- * src/icon). FMI 2.0.4 leaves VendorAnnotations of modelDescription.xml to the tool (section 2.2.1).
+ * src/icon). It stands in what FMI leaves to the tool: VendorAnnotations of FMI 2.0, Annotations of FMI 3.0.
  *
  *   <gravity x="" y="" z="-g"/>                           where it was given
  *   <frame name="arm" in="base"/>                         at arm.x, arm.y, arm.z, turned by arm.R11 to arm.R33
@@ -18,7 +18,9 @@
 
 #include "mechanics/model.h"
 
-/* Nothing for a model without bodies and frames. */
+/* Whether there is something to see. */
+bool has_scene(const struct Model *model);
+
 void scene_write(xmlTextWriterPtr writer, const struct Model *model);
 
 #endif

@@ -1,8 +1,15 @@
-/* Attributes with xmlTextWriter. */
+/* Documents and attributes with xmlTextWriter. */
 #ifndef XML_OUTPUT_H
 #define XML_OUTPUT_H
 
 #include <libxml/xmlwriter.h>
+#include <stdbool.h>
+
+/* Begins an indented document with its root in the buffer; NULL where libxml2 reports an error. */
+xmlTextWriterPtr open_document(xmlBufferPtr buffer, const char *root);
+
+/* Ends and frees it. Returns false where libxml2 reports an error. */
+bool close_document(xmlTextWriterPtr writer);
 
 void write_attribute(xmlTextWriterPtr writer, const char *name, const char *value);
 

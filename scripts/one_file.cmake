@@ -1,6 +1,6 @@
 # For pack.cmake: one_file(SYSTEM NAME FILE) writes the C source of an FMU as one file, from the system's and the runtime's,
-# in SOURCE. Names that the linker sees, which NAMES lists as nm does, get the FMU's before them, so that several FMUs can
-# be linked into one program.
+# in SOURCE, with the layer of FMI VERSION. Names that the linker sees, which NAMES lists as nm does, get the FMU's before them, so
+# that several FMUs can be linked into one program.
 cmake_minimum_required(VERSION 3.18)
 
 # The text with each included file of the project in the place where it is first named; TEXT is a variable.
@@ -28,7 +28,13 @@ function(include_once variable)
 endfunction()
 
 function(one_file system name file)
+  set(fmi FMI${VERSION})
   file(READ ${system} text)
+  # The layer of the version stands beside the core.
+  file(GLOB layer ${SOURCE}/src/runtime/fmi${VERSION}/*.c)
+  list(TRANSFORM layer REPLACE "^.*/(.*)$" "#include \"\\1\"\n")
+  list(JOIN layer "" layer)
+  string(REPLACE "#ifdef FMU_IN_ONE_FILE\n" "#ifdef FMU_IN_ONE_FILE\n${layer}" text "${text}")
   include_once(text)
   file(READ ${NAMES} symbols)
   string(REGEX MATCHALL "[A-Za-z0-9_]+ [A-Z] " symbols "${symbols}\nlagrangian D ")
@@ -37,9 +43,9 @@ function(one_file system name file)
   set(functions "")
   foreach(symbol ${symbols})
     string(REGEX REPLACE " .*" "" symbol "${symbol}")
-    if(symbol MATCHES "^fmi2")
-      string(APPEND functions "#define ${symbol} FMI2_FULL_NAME(FMI2_FUNCTION_PREFIX, ${symbol})\n")
-    else()
+    if(symbol MATCHES "^fmi${VERSION}")
+      string(APPEND functions "#define ${symbol} ${fmi}_FULL_NAME(${fmi}_FUNCTION_PREFIX, ${symbol})\n")
+    elseif(NOT symbol MATCHES "^fmi[0-9]")
       string(FIND "${text}" "${symbol}" place)
       if(place GREATER -1)
         string(APPEND names "#define ${symbol} ${name}_${symbol}\n")
@@ -48,14 +54,14 @@ function(one_file system name file)
   endforeach()
   file(WRITE ${file} "/*
  * ${name} in C11, without any library but libm. Several FMUs can be linked into one program: compile each with
- * FMI2_FUNCTION_PREFIX defined as the FMU's name and _, here ${name}_, which the functions of FMI then begin with.
+ * ${fmi}_FUNCTION_PREFIX defined as the FMU's name and _, here ${name}_, which the functions of FMI then begin with.
  * For a shared library, leave it undefined.
  */
 #define FMU_IN_ONE_FILE
 ${names}
-#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
-#define FMI2_PASTE(prefix, name) prefix##name
-#define FMI2_FULL_NAME(prefix, name) FMI2_PASTE(prefix, name)
+#if defined(${fmi}_FUNCTION_PREFIX) && !defined(${fmi}_OVERRIDE_FUNCTION_PREFIX)
+#define ${fmi}_PASTE(prefix, name) prefix##name
+#define ${fmi}_FULL_NAME(prefix, name) ${fmi}_PASTE(prefix, name)
 ${functions}#endif
 
 ${text}")

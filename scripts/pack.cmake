@@ -1,31 +1,47 @@
-# Packs an FMU: cmake -D FOLDER=... -D LIBRARY=... -D FMU=... -D SYSTEM=... -D SOURCE=... -D ICON=... -D ZIP=... -D NAMES=...
+# Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D NAMES=...
 #                     -P pack.cmake
-# FOLDER holds what lagc wrote; NAMES lists the global names of the compiled runtime.
+# FOLDER holds what lagc wrote, and model.png; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
+# FMI, 2 or 3; NAMES lists the global names of the compiled runtime.
+cmake_minimum_required(VERSION 3.18)
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
 
 # Importers look for the library under the name in modelDescription.xml.
-get_filename_component(name ${LIBRARY} NAME_WE)
+list(GET LIBRARIES 0 library)
+get_filename_component(name ${library} NAME_WE)
 file(STRINGS ${FOLDER}/modelDescription.xml found REGEX " modelIdentifier=")
 if(NOT found MATCHES " modelIdentifier=\"${name}\"")
   string(REGEX REPLACE ".* modelIdentifier=\"([^\"]*)\".*" "\\1" found "${found}")
-  message(FATAL_ERROR "${SYSTEM}: the system is named '${found}'; expected '${name}', its folder's name")
+  message(FATAL_ERROR "${SYSTEM}: the system is named '${found}'; expected '${name}', as its folder or lagrange_add_fmu() names it")
 endif()
 
-set(content ${FOLDER}/content)
+set(content ${FOLDER}/content${VERSION})
 file(REMOVE_RECURSE ${FMU} ${content})
-file(MAKE_DIRECTORY ${content})
-file(COPY ${FOLDER}/modelDescription.xml DESTINATION ${content})
-file(COPY ${FOLDER}/documentation/index.html DESTINATION ${content}/documentation)
-file(COPY ${LIBRARY} DESTINATION ${content}/binaries/linux64)
-run(${ICON} ${LIBRARY} ${FOLDER}/modelDescription.xml model.png)
+get_filename_component(archives ${FMU} DIRECTORY)
+file(MAKE_DIRECTORY ${archives})
+foreach(library ${LIBRARIES})
+  get_filename_component(platform ${library} DIRECTORY)
+  get_filename_component(platform ${platform} NAME)
+  file(COPY ${library} DESTINATION ${content}/binaries/${platform})
+endforeach()
+file(READ ${FOLDER}/documentation/index.html documentation)
+if(VERSION EQUAL 2)
+  file(COPY ${FOLDER}/modelDescription.xml ${FOLDER}/model.png DESTINATION ${content})
+else()
+  file(COPY ${FOLDER}/fmi3/modelDescription.xml DESTINATION ${content})
+  file(COPY ${FOLDER}/fmi3/terminalsAndIcons.xml DESTINATION ${content}/terminalsAndIcons)
+  configure_file(${FOLDER}/model.png ${content}/terminalsAndIcons/icon.png COPYONLY)
+  string(REPLACE "../model.png" "../terminalsAndIcons/icon.png" documentation "${documentation}")
+endif()
+file(WRITE ${content}/documentation/index.html "${documentation}")
 
-# Where modelDescription.xml lists a source, it is one file: all that system.c includes, once each.
-file(STRINGS ${FOLDER}/modelDescription.xml source REGEX "<File name=" LIMIT_COUNT 1)
-if(source)
-  string(REGEX REPLACE ".*name=\"(.*)\\.c\".*" "\\1" name "${source}")
+# An FMU that is complete in C has its source as one file: all that system.c includes, once each.
+if(EXISTS ${FOLDER}/fmi3/buildDescription.xml)
   include(${CMAKE_CURRENT_LIST_DIR}/one_file.cmake)
   one_file(${FOLDER}/system.c ${name} ${content}/sources/${name}.c)
+  if(VERSION EQUAL 3)
+    file(COPY ${FOLDER}/fmi3/buildDescription.xml DESTINATION ${content}/sources)
+  endif()
 endif()
 
 archive(${FMU} modelDescription.xml)

@@ -58,12 +58,19 @@ def archive(name):
     return folder / "fmu" / f"{name}.fmu"
 
 
+@contextmanager
+def alone(lock):
+    """Other processes wait."""
+    with open(lock, "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
 @functools.cache
 def bring_up_to_date(build):
     """What build_systems() takes from another build; its lock is that of scripts/build."""
-    with open(build / "build.lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        tools = ["lagc", "icon", "interface", "solvers"]
+    with alone(build / "build.lock"):
+        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers"]
         subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
 
 
@@ -75,8 +82,7 @@ def build_systems(folder, texts, *words):
     build = BUILD / folder
     bring_up_to_date(build.parent)
     build.mkdir(parents=True, exist_ok=True)
-    with open(build / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with alone(build / "lock"):
         for name, text in texts.items():
             system = build / "systems" / name / "system.xml"
             system.parent.mkdir(parents=True, exist_ok=True)

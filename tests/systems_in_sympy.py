@@ -85,6 +85,21 @@ def elastic_pendulum():
     return System([r, theta], [vr, omega], T, U, [-c * vr, sp.Integer(0)], [], [m, l0, k, c, g], bob)
 
 
+def passive_walker():
+    """The swing of the compass gait, from the positions of hip and legs."""
+    swing, stance, omega_swing, omega_stance = symbols("thetaSwing thetaStance omegaSwing omegaStance")
+    m_hip, m, a, b, g, slope = symbols("mHip m a b g slope")
+    q, v = [swing, stance], [omega_swing, omega_stance]
+    leg = (-a * sin(stance), a * cos(stance))
+    hip = (-(a + b) * sin(stance), (a + b) * cos(stance))
+    other = (hip[0] + b * sin(swing), hip[1] - b * cos(swing))
+    rate = lambda place: sum(sp.diff(place, angle) * omega for angle, omega in zip(q, v))
+    T = sum(mass * sum(rate(x) ** 2 for x in place) / 2 for mass, place in ((m, leg), (m_hip, hip), (m, other)))
+    U = g * (m * leg[1] + m_hip * hip[1] + m * other[1])
+    places = {"stanceLeg": leg, "hip": hip, "swingLeg": other}
+    return System(q, v, T, U, None, [], [m_hip, m, a, b, g, slope], places)
+
+
 def double_pendulum():
     theta1, theta2, omega1, omega2, m1, m2, l1, l2, g = symbols("theta1 theta2 omega1 omega2 m1 m2 l1 l2 g")
     T = (
@@ -323,6 +338,7 @@ DEFINITIONS = {
     "InvertedPendulumCartTorqueLinear": functools.partial(cart, torque=True, linear=True),
     "RotatingPivotPendulum": rotating_pivot,
     "ElasticPendulum": elastic_pendulum,
+    "PassiveWalker": passive_walker,
     "DoublePendulum": double_pendulum,
     "ChainPendulum": chain_pendulum,
     "SeatSuspension": seat_suspension,

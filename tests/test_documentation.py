@@ -17,7 +17,7 @@ GREEK = dict(zip("αβγδεζηθκλμνξπρστφχψωΔΘΦΨΩ",
                  "Delta Theta Phi Psi Omega".split()))  # fmt: skip
 FUNCTIONS = {name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log sqrt abs sign".split()}
 FUNCTIONS |= dict(asin=np.arcsin, acos=np.arccos, atan=np.arctan, asinh=np.arcsinh, acosh=np.arccosh, atanh=np.arctanh,
-                  atan2=np.arctan2, min=min, max=max, erf=lambda x: x)  # fmt: skip
+                  atan2=np.arctan2, min=min, max=max, erf=lambda x: x, gate=lambda opener, value, other: value if opener > 0 else other)  # fmt: skip
 
 
 def infix(element):
@@ -57,6 +57,8 @@ def check(page):
             typeset = indexed("".join(infix(math) for math in paragraph)).split("=")
             text = plain(indexed(details.find("code").text)).split(" = ")
             names = {name: generator.uniform(0.1, 0.9) for name in set(re.findall(r"[A-Za-z_][\w.]*", " ".join(text)))}
+            text = [re.sub(r"\bif\((.*?) > 0, ", r"gate(\1, ", side) for side in text]
+            typeset = [re.sub(r"\bif\((.*?)>0,", r"gate(\1,", side) for side in typeset]
             dots = lambda side: re.sub(r"(?<=[A-Za-z_])(\w*)\.(?=[A-Za-z])", r"\1__", side)
             values = {dots(name): value for name, value in names.items()}
             for ours, theirs in zip(typeset, text, strict=True):

@@ -15,6 +15,7 @@ import fmpy
 import numpy as np
 import pytest
 
+import fmi3
 import fmu
 from fmu import BUILD, ROOT
 
@@ -63,26 +64,46 @@ def test_libcosim(name):
     np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
 
 
-def test_ecos(name):
+def values_by_ecos(name, archive, outputs):
     from ecospy import EcosSimulation, EcosSimulationStructure
 
-    outputs, expected = outputs_by_fmpy(name)
     structure = EcosSimulationStructure()
-    structure.add_model(name, str(fmu.archive(name)))
+    structure.add_model(name, str(archive))
     with EcosSimulation(STEP, structure=structure) as simulation:
         simulation.init()
         simulation.step(round(END / STEP))
         values = [simulation.get_real(f"{name}::{output}") for output in outputs]
         simulation.terminate()
-    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
+    return values
+
+
+def test_ecos(name):
+    outputs, expected = outputs_by_fmpy(name)
+    np.testing.assert_allclose(values_by_ecos(name, fmu.archive(name), outputs), expected, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["DampedPendulum", "FourBar", "ParticleCartesian", "StateFeedback"])
+def test_ecos_with_fmi3(name):
+    """It knows no arrays."""
+    outputs, expected = outputs_by_fmpy(name)
+    np.testing.assert_allclose(values_by_ecos(name, fmi3.archive(name), outputs), expected, rtol=1e-9, atol=1e-9)
+
+
+def check_by_toolbox(archive, version):
+    tool = BUILD / "venv" / "bin" / "fmutool"
+    result = subprocess.run([tool, "-input", archive, "-check"], capture_output=True, text=True)
+    text = result.stdout + result.stderr
+    assert result.returncode == 0, text
+    assert f"compliant with {version}" in text and "No semantic error" in text and "ERROR" not in text, text
 
 
 def test_fmu_manipulation_toolbox_finds_no_error(name):
-    tool = BUILD / "venv" / "bin" / "fmutool"
-    result = subprocess.run([tool, "-input", fmu.archive(name), "-check"], capture_output=True, text=True)
-    text = result.stdout + result.stderr
-    assert result.returncode == 0, text
-    assert "compliant with FMI-2.0" in text and "No semantic error" in text and "ERROR" not in text, text
+    check_by_toolbox(fmu.archive(name), "FMI-2.0")
+
+
+@pytest.mark.parametrize("name", ["ChainPendulum", "FourBar", "StateFeedback"])
+def test_fmu_manipulation_toolbox_finds_no_error_with_fmi3(name):
+    check_by_toolbox(fmi3.archive(name), "FMI-3.0")
 
 
 COUPLED = """

@@ -191,7 +191,7 @@ INITIAL = {
     ("input", "continuous"): {None: True},
     ("output", "continuous"): {"exact": True, "approx": True, "calculated": False},
     ("local", "continuous"): {"exact": True, "calculated": False},
-    ("local", "discrete"): {"calculated": False},
+    ("local", "discrete"): {"calculated": False, "exact": True},
     ("independent", "continuous"): {None: False},
 }
 

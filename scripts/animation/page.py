@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from animation.links import joints, links_of
-from animation.scene import AXES, elements_of, upwards
+from .links import joints, links_of
+from .scene import AXES, elements_of, upwards
 
 HERE = Path(__file__).resolve().parent
 MAX_FRAMES, MAX_NUMBERS = 1500, 200_000  # which keeps a page below 2 MB

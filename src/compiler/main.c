@@ -10,6 +10,7 @@
 #include "mechanics/linearize.h"
 #include "memory.h"
 #include "output.h"
+#include "platform.h"
 #include "program/program.h"
 #include "read/reader.h"
 
@@ -18,8 +19,9 @@ static const char usage[] =
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --version\n"
     "\n"
-    "Writes system.c, modelDescription.xml and documentation/index.html into DIR, or prints the\n"
-    "matrices A and B of x' = A x + B u at a point (coordinates, velocities, inputs; 0 where not named).\n"
+    "Writes system.c, modelDescription.xml, what FMI 3.0 has in its place (fmi3/), and\n"
+    "documentation/index.html into DIR, or prints the matrices A and B of x' = A x + B u\n"
+    "at a point (coordinates, velocities, inputs; 0 where not named).\n"
     "\n"
     "  -o DIR           the directory for the files\n"
     "  --solver METHOD  %s in place of the system's own\n"
@@ -137,7 +139,10 @@ static _Noreturn void end_without_memory(void) {
 
 int main(int count, char **words) {
   on_memory_failure(end_without_memory);
+  write_plain_lines();
+#ifdef SIGXFSZ
   signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */
+#endif
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();

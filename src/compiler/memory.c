@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "platform.h"
+
 static void (*handler)(void) = abort;
 
 void on_memory_failure(void (*function)(void)) {
@@ -37,9 +39,13 @@ void *make_room(void *items, size_t count, size_t *capacity, size_t size) {
 }
 
 FILE *open_text(char **text, size_t *length) {
-  FILE *file = open_memstream(text, length);
+  FILE *file = open_text_stream(text, length);
   if (file == NULL) out_of_memory();
   return file;
+}
+
+void close_text(FILE *file, char **text, size_t *length) {
+  if (!close_text_stream(file, text, length)) out_of_memory();
 }
 
 char *copy_text(const char *text) {

@@ -20,8 +20,9 @@ void *reallocate(void *block, size_t count, size_t size);
  */
 void *make_room(void *items, size_t count, size_t *capacity, size_t size);
 
-/* A stream that writes a string, complete after fclose() and to be freed with free(); never NULL. */
+/* A stream that writes a string, complete after close_text() of the same and to be freed with free(); never NULL. */
 FILE *open_text(char **text, size_t *length);
+void close_text(FILE *file, char **text, size_t *length);
 
 /* A copy of text, to be freed with free(). */
 char *copy_text(const char *text);

@@ -4,15 +4,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "documentation.h"
+#include "fmi3_description.h"
 #include "model_description.h"
 #include "write/code.h"
 #include "guid.h"
 #include "memory.h"
+#include "platform.h"
 
-enum { FILE_COUNT = 3 };
+enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, CODE, FILE_COUNT };
 
 /* What names the files of a run that has not come to its end. */
 static const char unfinished[] = ".unfinished";
@@ -22,32 +23,36 @@ static char *code_text(const struct Program *program) {
   size_t length = 0;
   FILE *file = open_text(&text, &length);
   code_write(file, program);
-  fclose(file);
+  close_text(file, &text, &length);
   return text;
 }
 
 /* Creates the directory and those above it. */
 static bool create_directory(const char *path) {
   char *partial = copy_text(path);
-  for (char *slash = strchr(partial + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
-    *slash = '\0';
-    mkdir(partial, 0777);
-    *slash = '/';
+  for (char *end = first_separator(partial + 1); end != NULL; end = first_separator(end + 1)) {
+    char separator = *end;
+    *end = '\0';
+    make_directory(partial);
+    *end = separator;
   }
   free(partial);
-  struct stat status;
-  return mkdir(path, 0777) == 0 || (stat(path, &status) == 0 && S_ISDIR(status.st_mode));
+  return make_directory(path);
 }
 
 static bool write_file(const char *path, const char *text) {
-  FILE *file = fopen(path, "w");
+  FILE *file = fopen(path, "wb");
   if (file == NULL) return false;
   bool written = fputs(text, file) >= 0;
   return fclose(file) == 0 && written;
 }
 
 /* The last one is what the build looks for: while it is there, all are of one run. */
-static const char *const names[FILE_COUNT] = {"modelDescription.xml", "documentation/index.html", "system.c"};
+static const char *const names[FILE_COUNT] = {
+    [DESCRIPTION] = "modelDescription.xml",       [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
+    [TERMINALS] = "fmi3/terminalsAndIcons.xml",   [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
+    [DOCUMENTATION] = "documentation/index.html", [CODE] = "system.c",
+};
 
 static char *path_of(const char *directory, int file, const char *suffix) {
   return format_text("%s/%s%s", directory, names[file], suffix);
@@ -61,9 +66,11 @@ static void remove_all(const char *directory, const char *suffix) {
   }
 }
 
+/* A file without a text is left out. */
 static bool write_beside(const char *directory, const char *const *texts) {
   bool written = true;
   for (int i = 0; i < FILE_COUNT && written; i++) {
+    if (texts[i] == NULL) continue;
     char *path = path_of(directory, i, unfinished);
     written = write_file(path, texts[i]);
     free(path);
@@ -72,14 +79,15 @@ static bool write_beside(const char *directory, const char *const *texts) {
 }
 
 /* Puts what was written beside in the place of an earlier run's files. */
-static bool move_in(const char *directory) {
+static bool move_in(const char *directory, const char *const *texts) {
   bool moved = true;
   char *mark = path_of(directory, FILE_COUNT - 1, "");
   remove(mark);
   free(mark);
   for (int i = 0; i < FILE_COUNT && moved; i++) {
     char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
-    moved = rename(from, to) == 0;
+    remove(to); /* not everywhere does rename do that */
+    if (texts[i] != NULL) moved = rename(from, to) == 0;
     free(from);
     free(to);
   }
@@ -90,39 +98,56 @@ void output_remove(const char *directory) {
   remove_all(directory, "");
 }
 
-static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
-  char *documentation = format_text("%s/documentation", directory);
-  if (!create_directory(directory) || !create_directory(documentation) || !write_beside(directory, texts) ||
-      !move_in(directory)) {
-    report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
-                 strerror(errno));
-    remove_all(directory, unfinished);
+/* Creates the directory and those in it. */
+static bool create_directories(const char *directory) {
+  static const char *const inner[] = {"documentation", "fmi3"};
+  bool created = create_directory(directory);
+  for (size_t i = 0; i < sizeof inner / sizeof *inner && created; i++) {
+    char *path = format_text("%s/%s", directory, inner[i]);
+    created = create_directory(path);
+    free(path);
   }
-  free(documentation);
+  return created;
+}
+
+static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
+  if (create_directories(directory) && write_beside(directory, texts) && move_in(directory, texts)) return;
+  report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
+               strerror(errno));
+  remove_all(directory, unfinished);
+}
+
+static bool write_buffers(const struct Program *program, const struct Summary *summary, const char *guid,
+                          const xmlBufferPtr *buffers) {
+  return model_description_write(buffers[DESCRIPTION], program, guid) &&
+         fmi3_description_write(buffers[DESCRIPTION_OF_FMI3], program, guid) &&
+         fmi3_terminals_write(buffers[TERMINALS], program) &&
+         fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) &&
+         documentation_write(buffers[DOCUMENTATION], program, summary);
 }
 
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
                   struct Diagnostics *diagnostics) {
-  xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), documentation = xmlBufferCreate();
+  xmlBufferPtr anonymous = xmlBufferCreate(), buffers[FILE_COUNT];
+  const char *texts[FILE_COUNT];
   char guid[GUID_LENGTH];
   char *code = code_text(program);
+  for (int i = 0; i < FILE_COUNT; i++) buffers[i] = xmlBufferCreate();
   bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
-  written = written && model_description_write(description, program, guid) &&
-            documentation_write(documentation, program, summary);
+  written = written && write_buffers(program, summary, guid, buffers);
+  for (int i = 0; i < FILE_COUNT; i++) texts[i] = (const char *)xmlBufferContent(buffers[i]);
+  const struct Method *method = program->interface->method;
+  if (method != NULL && method->uses_library) texts[BUILD_DESCRIPTION] = NULL;
+  texts[CODE] = file;
   const char *limit = graph_limit(program->model->graph);
   if (limit != NULL)
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
-  else if (written)
-    write_all(directory,
-              (const char *const[]){(const char *)xmlBufferContent(description),
-                                    (const char *)xmlBufferContent(documentation), file},
-              diagnostics);
+  else if (written) write_all(directory, texts, diagnostics);
   else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
   free(code);
   free(file);
   xmlBufferFree(anonymous);
-  xmlBufferFree(description);
-  xmlBufferFree(documentation);
+  for (int i = 0; i < FILE_COUNT; i++) xmlBufferFree(buffers[i]);
 }

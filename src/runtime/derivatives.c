@@ -98,6 +98,33 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
   return read_along(instance, &point, &direction, unknown, unknown_count, value, function);
 }
 
+/* The derivatives of all unknowns by one known, each times its seed, in the workspace column[unknown_count]. */
+static enum Status weighted_column(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                   unsigned known, const double *seed, double *column, double *value,
+                                   const char *function) {
+  const double one = 1.0;
+  enum Status status = directional_derivative(instance, unknown, unknown_count, &known, 1, &one, column, function);
+  double sum = 0.0;
+  for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++) sum += seed[i] * column[i];
+  if (status == STATUS_DONE) *value = sum;
+  return status;
+}
+
+enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                               const unsigned *known, size_t known_count, const double *seed, double *value,
+                               const char *function) {
+  for (size_t i = 0; i < unknown_count; i++)
+    if (!isfinite(seed[i]))
+      return log_error(instance, "%s: seed %zu is %g; expected a finite number", function, i + 1, seed[i]);
+  double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
+  if (column == NULL) return log_error(instance, "%s: there is no memory for the derivatives", function);
+  enum Status status = STATUS_DONE;
+  for (size_t j = 0; j < known_count && status == STATUS_DONE; j++)
+    status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j], function);
+  instance->memory.free(column);
+  return status;
+}
+
 enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                                 const char *function) {
   struct Point point = evaluate_point(instance);

@@ -9,6 +9,14 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
                                    const unsigned *known, size_t known_count, const double *seed, double *value,
                                    const char *function);
 
+/*
+ * value = seed^T * d unknown / d known, one directional derivative for each known: the cost grows with their number, not
+ * with that of the unknowns.
+ */
+enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                               const unsigned *known, size_t known_count, const double *seed, double *value,
+                               const char *function);
+
 /* The first derivatives of outputs by time, with those of the inputs; prepared values are up to date. */
 enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                                 const char *function);

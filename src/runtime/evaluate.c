@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "switching.h"
+
 #include "initial_state.h"
 #include "switching.h"
 
@@ -89,6 +91,19 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
   }
 }
 
+void evaluate_advance_inputs(struct Instance *instance, double end) {
+  if (!instance->situation->input_derivatives_set) return;
+  size_t n = lagrangian.input_count;
+  for (size_t i = 0; i < n; i++) {
+    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
+    expand_input(instance, i, end, coefficient);
+    instance->input[i] = coefficient[0];
+    derivative[0] = coefficient[1];
+    derivative[n] = 2.0 * coefficient[2];
+  }
+  instance->situation->changed = 1;
+}
+
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
   if (lagrangian.accelerations == NULL) return derivative + lagrangian.coordinate_count;
   instance->singular = lagrangian.accelerations(point, instance->acceleration);
@@ -125,6 +140,13 @@ static enum Status evaluate_state_derivative(struct Instance *instance, size_t s
   return status;
 }
 
+static enum Status evaluate_indicator(struct Instance *instance, size_t index, double *value) {
+  double *indicator = instance->switching_work;
+  if (!lagrangian.switching->indicators(instance, indicator)) return discard_for_singularity(instance);
+  *value = indicator[index];
+  return STATUS_DONE;
+}
+
 enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   double result = 0.0;
   enum Status status = STATUS_DONE;
@@ -137,6 +159,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_CONTACT: result = instance->parameter[variable->index]; break;
   case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
   case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
+  case VARIABLE_INDICATOR: status = evaluate_indicator(instance, variable->index, &result); break;
   case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
   }
   if (status == STATUS_DONE && !isfinite(result)) {

@@ -41,6 +41,9 @@ void expand_input(const struct Instance *instance, size_t i, double time, double
 /* The inputs at time; input[input_count]. */
 void evaluate_inputs(const struct Instance *instance, double time, double *input);
 
+/* Continues the inputs and their polynomials from a later time in the communication step. */
+void evaluate_advance_inputs(struct Instance *instance, double time);
+
 /*
  * What result() takes at a point, from the derivative of the state there: the accelerations and the forces of
  * constraints. NULL where the mass matrix is singular, which instance->singular then tells.

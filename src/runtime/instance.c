@@ -53,7 +53,7 @@ static size_t acceleration_count(void) {
 }
 
 static size_t switching_work_count(void) {
-  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + lagrangian.state_count : 0;
+  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + 2 * lagrangian.state_count : 0;
 }
 
 static size_t evaluation_count(void) {
@@ -75,7 +75,7 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
-  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? lagrangian.state_count : 0);
+  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? 2 * lagrangian.state_count : 0);
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 
@@ -99,6 +99,12 @@ void instance_destroy(struct Instance *instance) {
   instance->memory.free(instance->situation);
 }
 
+void instance_restore(struct Instance *instance, const void *situation) {
+  memcpy(instance->situation, situation, situation_size());
+  instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->told_singularity = 0;
+}
+
 const char *instance_mode_name(const struct Instance *instance) {
   static const char *const names[MODE_COUNT] = {
       [MODE_INSTANTIATED] = "instantiated",
@@ -109,6 +115,7 @@ const char *instance_mode_name(const struct Instance *instance) {
       [MODE_STEP_FAILED] = "step failed",
       [MODE_TERMINATED] = "terminated",
       [MODE_ERROR] = "error",
+      [MODE_INTERMEDIATE_UPDATE] = "intermediate update mode",
   };
   return names[instance->situation->mode];
 }

@@ -22,6 +22,7 @@ enum Mode {
   MODE_STEP_FAILED,
   MODE_TERMINATED,
   MODE_ERROR,
+  MODE_INTERMEDIATE_UPDATE, /* within a communication step, while values of it are told */
   MODE_COUNT
 };
 
@@ -54,6 +55,8 @@ struct Allocator {
   void (*free)(void *block);
 };
 
+struct CommunicationStep;
+
 struct Instance {
   struct Allocator memory;
   struct Log log;
@@ -74,9 +77,13 @@ struct Instance {
   double *projection_work;   /* projection_work_count() */
   double *switching_work;    /* switching->work_count() */
   double departure;          /* the sign with which a branch that rested at 0 leaves it, as found last */
-  double *event_state;       /* state_count, in FMUs that switch: the state behind the last event */
+  bool was_at_zero;          /* what changed its sign last had not left 0 by more than rounding before */
+  double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;
+  /* Is told of each time that the solver comes to within a communication step, see intermediate.h; NULL for none. */
+  void (*observe)(struct Instance *instance, struct CommunicationStep *step, double time);
+  const struct Intermediate *intermediate; /* for it */
 };
 
 /* False, and nothing is allocated, where there is no memory. Logs nothing. */
@@ -85,6 +92,9 @@ void instance_destroy(struct Instance *instance);
 
 /* As after creation: start values, nothing defined. */
 void instance_reset(struct Instance *instance);
+
+/* Goes back to a situation of this instance, situation_size() bytes. */
+void instance_restore(struct Instance *instance, const void *situation);
 
 /* The mode as messages name it. */
 const char *instance_mode_name(const struct Instance *instance);

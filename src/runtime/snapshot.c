@@ -43,7 +43,7 @@ bool snapshot_is_finite(const void *numbers, size_t count) {
 static bool has_mode(int32_t kind, int32_t mode) {
   bool of_exchange = mode == MODE_EVENT || mode == MODE_CONTINUOUS_TIME;
   bool of_steps = mode == MODE_STEP_COMPLETE || mode == MODE_STEP_FAILED;
-  return mode >= 0 && mode < MODE_COUNT && !(kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
+  return mode >= 0 && mode < MODE_INTERMEDIATE_UPDATE && !(kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
 }
 
 static bool are_counts(const int64_t *statistics) {
@@ -125,7 +125,5 @@ void snapshot_take(const struct Instance *instance, void *block) {
 }
 
 void snapshot_restore(struct Instance *instance, const void *block) {
-  memcpy(instance->situation, (const char *)block + sizeof(struct Header), situation_size());
-  instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->told_singularity = 0;
+  instance_restore(instance, (const char *)block + sizeof(struct Header));
 }

@@ -65,6 +65,9 @@ bool solver_jacobian(struct Instance *instance, double time, const double *state
 /* The point for generated functions at a time and state that the solver chose. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
 
+/* The instance's state becomes that of a time in the last step. False where that is not known or not finite. */
+bool solver_take_state(struct Instance *instance, double time);
+
 /*
  * Brings the state at the end of a step back to the constraints, where there are some. NULL, or the reason why the
  * motion cannot go on.

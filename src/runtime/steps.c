@@ -106,7 +106,10 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
-    if (problem != NULL || last->end >= step->end) return problem;
+    if (problem != NULL) return problem;
+    bool is_inside = last->end > step->start && last->end < step->end;
+    if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
+    if (last->end >= step->end) return NULL;
     if (step->count == lagrangian.max_steps)
       return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
     if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);
@@ -118,8 +121,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
   }
 }
 
-/* False where the state is not known or not finite. */
-static bool take_state(struct Instance *instance, double time) {
+bool solver_take_state(struct Instance *instance, double time) {
   const struct Span *last = &instance->situation->last_step;
   bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
   if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
@@ -143,9 +145,10 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
                             double reached) {
   const struct Solver *solver = lagrangian.solver;
   const char *function = instance->limited_by;
-  if (!take_state(instance, reached)) return STEP_FAILED;
+  if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
-  if (solver_project(instance, reached, instance->state) != NULL && !take_state(instance, reached)) return STEP_FAILED;
+  if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
+    return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   if (lagrangian.projection != NULL) log_weakest(instance, reached);
   const char *others = solver->alternatives;
@@ -167,8 +170,9 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     return readiness;
   }
   const char *problem = reach(instance, step);
-  if (problem == NULL && take_state(instance, step->end)) {
+  if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
+    *reached = step->end; /* an observer may have shortened the step */
     if (problem == NULL) return STEP_DONE;
   }
   *reached = problem != NULL ? last->end : last->start;
@@ -197,20 +201,6 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
   if (solver->run(instance, do_advance, &task)) return task.result;
   solver_lacks_memory(instance);
   return STEP_FAILED;
-}
-
-/* The polynomials of the inputs, continued from the end of the step. */
-static void advance_inputs(struct Instance *instance, double end) {
-  if (!instance->situation->input_derivatives_set) return;
-  size_t n = lagrangian.input_count;
-  for (size_t i = 0; i < n; i++) {
-    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
-    expand_input(instance, i, end, coefficient);
-    instance->input[i] = coefficient[0];
-    derivative[0] = coefficient[1];
-    derivative[n] = 2.0 * coefficient[2];
-  }
-  instance->situation->changed = 1;
 }
 
 /*
@@ -266,7 +256,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   double reached;
   enum StepResult result = run(instance, &step, &reached);
   if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
-  advance_inputs(instance, reached);
+  evaluate_advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;
   situation->time = reached;
   if (result == STEP_DONE) return STATUS_DONE;

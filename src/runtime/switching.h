@@ -20,7 +20,7 @@ struct CommunicationStep;
 /* How far a communication step has come with its events. */
 struct EventProgress {
   double searched; /* no event before this time is left */
-  int gathered;    /* how many have come within the rounding of time */
+  int gathered;    /* how many have come within the rounding of time, or of what they wait for */
 };
 
 struct Switching {
@@ -88,5 +88,8 @@ const char *switching_pass_barrier(struct Instance *instance, const struct Commu
 double switching_sign(const struct Instance *instance, size_t indicator);
 
 enum { SEARCH_NODES = 9 };
+
+/* How far below 0 an event may leave an indicator, in units of what rounding makes of it. */
+enum { FLOOR_IN_NOISE = 64 };
 
 #endif

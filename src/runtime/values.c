@@ -8,20 +8,6 @@
 #include "evaluate.h"
 #include "initial_state.h"
 
-/*
- * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
- * and MasterSim read all variables then, and some end at any status but the best; they get the values, and the log tells
- * it once.
- */
-static void tell_early_reading(struct Instance *instance, const struct ScalarVariable *variable) {
-  if (instance->situation->mode != MODE_INITIALIZATION || is_unknown(variable)) return;
-  if (!instance->told_early_reading)
-    log_message(instance, STATUS_WARNING,
-                "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
-                variable->name);
-  instance->told_early_reading = true;
-}
-
 static enum Status worse(enum Status first, enum Status second) {
   return first > second ? first : second;
 }
@@ -32,7 +18,6 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_REAL, function);
     if (variable == NULL) return STATUS_ERROR;
-    tell_early_reading(instance, variable);
     status = worse(status, evaluate_variable(instance, variable, &value[i]));
   }
   return status;
@@ -43,7 +28,6 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
-    tell_early_reading(instance, variable);
     if (variable->kind == VARIABLE_CONTACT) evaluate_prepare(instance); /* before the start it follows from the state */
     if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_CONTACT) {
       value[i] = (int)instance->parameter[variable->index];
@@ -51,6 +35,18 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
     }
     int64_t statistic = instance->situation->statistics[variable->index];
     value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
+  }
+  return STATUS_DONE;
+}
+
+enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,
+                              const char *function) {
+  for (size_t i = 0; i < count; i++) {
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER, function);
+    if (variable == NULL) return STATUS_ERROR;
+    if (variable->kind != VARIABLE_STATISTIC)
+      return log_error(instance, "%s: '%s' is no count", function, variable->name);
+    value[i] = instance->situation->statistics[variable->index];
   }
   return STATUS_DONE;
 }

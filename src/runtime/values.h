@@ -14,6 +14,10 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
 enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
                              enum VariableType type, const char *function);
 
+/* Counts in full: the statistics alone. */
+enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,
+                              const char *function);
+
 /* Sets all values or none. */
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,
                        const char *function);

@@ -1,7 +1,7 @@
 /*
- * Takes an FMU through its whole life, right calls and wrong ones, for sanitizers and valgrind to watch:
- * drive LIBRARY GUID REALS STATES. Fails where a right call fails, a value is not finite, or memory of the caller's
- * functions is not given back.
+ * Takes an FMU through its whole life, right calls and wrong ones, for sanitizers and valgrind to watch, and after it is
+ * unloaded and loaded anew, again: drive LIBRARY GUID REALS STATES. Prints what it logs. Fails where a right call fails, a
+ * value is not finite, or memory of the caller's functions is not given back.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -14,8 +14,8 @@
 
 static int failures;
 
-static void no_logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
-                      fmi2String message, ...) {
+static void print_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
+                          fmi2String message, ...) {
   char text[2000];
   va_list arguments;
   (void)environment;
@@ -23,6 +23,7 @@ static void no_logger(fmi2ComponentEnvironment environment, fmi2String name, fmi
   vsnprintf(text, sizeof text, message, arguments);
   va_end(arguments);
   if (name == NULL || category == NULL || status > fmi2Fatal) failures++;
+  else printf("%d %s: %s\n", status, category, text);
 }
 
 static void expect(int right, const char *what) {
@@ -39,7 +40,7 @@ struct Drive {
 };
 
 static fmi2Component instantiate(const struct Drive *drive, fmi2Type type) {
-  const fmi2CallbackFunctions callbacks = {no_logger, count_allocation, count_free, NULL, NULL};
+  const fmi2CallbackFunctions callbacks = {print_message, count_allocation, count_free, NULL, NULL};
   fmi2Component c =
       drive->fmu.fmi2Instantiate("drive", type, drive->guid, "file:///tmp/resources", &callbacks, fmi2False, fmi2True);
   EXPECT(c != NULL);
@@ -136,30 +137,32 @@ static void call_wrongly(const struct Drive *drive, fmi2Component c) {
   EXPECT(fmu->fmi2Reset(c) == fmi2OK);
 }
 
+static void live(struct Drive *drive, const char *path) {
+  drive->fmu = fmu_library_open(path);
+  const fmi2CallbackFunctions callbacks = {print_message, count_allocation, count_free, NULL, NULL};
+  EXPECT(drive->fmu.fmi2Instantiate("drive", fmi2CoSimulation, "{wrong}", NULL, &callbacks, fmi2False, fmi2False) ==
+         NULL);
+  fmi2Component c = instantiate(drive, fmi2CoSimulation), second = instantiate(drive, fmi2CoSimulation);
+  for (int run = 0; run < 2; run++) {
+    call_wrongly(drive, c);
+    co_simulate(drive, c);
+    EXPECT(drive->fmu.fmi2Reset(c) == fmi2OK);
+    co_simulate(drive, second);
+    EXPECT(drive->fmu.fmi2Reset(second) == fmi2OK);
+  }
+  drive->fmu.fmi2FreeInstance(c);
+  drive->fmu.fmi2FreeInstance(second);
+  drive->fmu.fmi2FreeInstance(NULL);
+  c = instantiate(drive, fmi2ModelExchange);
+  exchange_model(drive, c);
+  drive->fmu.fmi2FreeInstance(c);
+  EXPECT(blocks == 0);
+  fmu_library_close(&drive->fmu);
+}
+
 int main(int count, char **words) {
   if (count != 5) return 2;
-  struct Drive drive = {.fmu = fmu_library_open(words[1]),
-                        .guid = words[2],
-                        .reals = strtoul(words[3], NULL, 10),
-                        .states = strtoul(words[4], NULL, 10)};
-  const fmi2CallbackFunctions callbacks = {no_logger, count_allocation, count_free, NULL, NULL};
-  EXPECT(drive.fmu.fmi2Instantiate("drive", fmi2CoSimulation, "{wrong}", NULL, &callbacks, fmi2False, fmi2False) ==
-         NULL);
-  fmi2Component c = instantiate(&drive, fmi2CoSimulation), second = instantiate(&drive, fmi2CoSimulation);
-  for (int run = 0; run < 2; run++) {
-    call_wrongly(&drive, c);
-    co_simulate(&drive, c);
-    EXPECT(drive.fmu.fmi2Reset(c) == fmi2OK);
-    co_simulate(&drive, second);
-    EXPECT(drive.fmu.fmi2Reset(second) == fmi2OK);
-  }
-  drive.fmu.fmi2FreeInstance(c);
-  drive.fmu.fmi2FreeInstance(second);
-  drive.fmu.fmi2FreeInstance(NULL);
-  c = instantiate(&drive, fmi2ModelExchange);
-  exchange_model(&drive, c);
-  drive.fmu.fmi2FreeInstance(c);
-  EXPECT(blocks == 0);
-  fmu_library_close(&drive.fmu);
+  struct Drive drive = {.guid = words[2], .reals = strtoul(words[3], NULL, 10), .states = strtoul(words[4], NULL, 10)};
+  for (int load = 0; load < 2; load++) live(&drive, words[1]);
   return failures > 0;
 }

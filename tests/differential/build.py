@@ -27,9 +27,12 @@ def runtime():
     """Object files and libraries that every FMU is linked with."""
     cache = (BUILD / "CMakeCache.txt").read_text()
     sundials = re.search(r"^sundials_in_use:INTERNAL=(.+)$", cache, re.MULTILINE)
-    folder = BUILD / "CMakeFiles" / "interface.dir"
+    folders = [BUILD / "CMakeFiles" / f"{layer}.dir" for layer in ("core", "fmi2")]
     # Objects of sources that are gone stay in a build folder.
-    objects = sorted(path for path in folder.rglob("*.o") if (ROOT / path.relative_to(folder)).with_suffix("").exists())
+    objects = sorted(
+        path for folder in folders for path in folder.rglob("*.o")
+        if (ROOT / path.relative_to(folder)).with_suffix("").exists()
+    )  # fmt: skip
     assert objects and sundials, f"{BUILD} is not built"
     return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials[1].split(";"), "-Wl,--end-group", "-lm"]
 

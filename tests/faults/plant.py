@@ -49,7 +49,7 @@ def build(targets):
 
 def targets_of(kind, test, keyword="", *systems):
     """What a test needs: itself, or the compiler, and FMUs. The others stay as they were without a fault."""
-    return [test] if kind == "ctest" else ["lagc", *(f"fmu_{name}" for name in systems)]
+    return [test] if kind == "ctest" else ["lagc", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
 
 
 def run(kind, test, keyword="", *_):
@@ -80,7 +80,7 @@ def outcome(file, right, wrong, test):
 
 def check_without_faults(tests):
     """Builds everything once, and runs the tests, those of one kind or module together."""
-    if not succeeds("scripts/build", "build", "-DBUILD_TESTS=ON"):
+    if not succeeds("scripts/build", "build", "-DBUILD_TESTS=ON", "-DFMI_VERSIONS=2;3"):
         sys.exit("the project does not build")
     together = [("ctest", "|".join({test for kind, test, *_ in tests if kind == "ctest"}))]
     for module in sorted({test for kind, test, *_ in tests if kind == "pytest"}):

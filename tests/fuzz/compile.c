@@ -27,7 +27,7 @@ static void write_texts(const struct Program *program, const struct Summary *sum
   size_t length = 0;
   FILE *file = open_text(&code, &length);
   code_write(file, program);
-  fclose(file);
+  close_text(file, &code, &length);
   xmlBufferPtr buffer = xmlBufferCreate();
   if (!model_description_write(buffer, program, "") || !documentation_write(buffer, program, summary)) abort();
   xmlBufferFree(buffer);

@@ -38,7 +38,8 @@ static Node gated_product(struct Graph *graph, Node weight, Node by) {
   bool is_sum_of_gates = vertex.operation == ADD && graph->vertices[vertex.left].operation == GATE &&
                          graph->vertices[vertex.right].operation == GATE;
   if (!is_sum_of_gates) return multiply(graph, weight, by);
-  return add(graph, gated_product(graph, vertex.left, by), gated_product(graph, vertex.right, by));
+  Node first = gated_product(graph, vertex.left, by);
+  return add(graph, first, gated_product(graph, vertex.right, by));
 }
 
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {

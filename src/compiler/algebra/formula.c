@@ -201,6 +201,6 @@ char *expression_text_with_names(const struct Graph *graph, Node node, const str
   FILE *file = open_text(&text, &length);
   struct Printer printer = {.file = file, .graph = graph, .names = names, .whole = node};
   print(&printer, node, IN_SUM);
-  fclose(file);
+  close_text(file, &text, &length);
   return text;
 }

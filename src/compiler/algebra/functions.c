@@ -77,7 +77,8 @@ static Node cosh_of_operand(struct Graph *graph, Node node) {
 
 /* constant + factor node^2 */
 static Node with_square(struct Graph *graph, double constant, double factor, Node node) {
-  return add(graph, graph_constant(graph, constant), scale(graph, factor, power_number(graph, node, 2.0)));
+  Node square = scale(graph, factor, power_number(graph, node, 2.0));
+  return add(graph, graph_constant(graph, constant), square);
 }
 
 static Node one_plus_own_square(struct Graph *graph, Node node) {
@@ -110,7 +111,8 @@ static Node root_of_square_minus_one(struct Graph *graph, Node node) {
 
 static Node sum_of_squares(struct Graph *graph, Node node) {
   Node left = graph->vertices[node].left, right = graph->vertices[node].right;
-  return add(graph, power_number(graph, left, 2.0), power_number(graph, right, 2.0));
+  Node other = power_number(graph, right, 2.0);
+  return add(graph, power_number(graph, left, 2.0), other);
 }
 
 static Node difference(struct Graph *graph, Node node) {
@@ -232,7 +234,7 @@ const struct Function functions[OPERATION_COUNT] = {
     [GATE] = {.name = "gate",
               .is_internal = true,
               .of_two = gate_of,
-              .units = UNIT_LOST,
+              .units = UNIT_KEPT,
               .recurrence = GATED,
               .auxiliary = operand,
               .partial_derivatives = along_gate},

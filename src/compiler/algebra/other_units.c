@@ -125,7 +125,7 @@ char *unit_remedy(const char *text) {
   size_t length = 0;
   FILE *file = open_text(&si, &length);
   struct Translation translation = translate(text, file);
-  fclose(file);
+  close_text(file, &si, &length);
   struct Dimension dimension;
   const char *problem;
   bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, &dimension, &problem);

@@ -270,7 +270,8 @@ static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *res
   }
   if (a.coefficient != -b.coefficient || a.factor_count + b.factor_count != 1 || !(a_square || b_square)) return false;
   Node other = graph_node(graph, (a_square ? first : second) == SINE ? COSINE : SINE, a_square ? u : w, ZERO);
-  rest = multiply(graph, product_of(graph, common, count), power_number(graph, other, 2.0));
+  Node square = power_number(graph, other, 2.0);
+  rest = multiply(graph, product_of(graph, common, count), square);
   *result = scale(graph, a_square ? b.coefficient : a.coefficient, rest);
   return true;
 }
@@ -335,6 +336,6 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
 
 Node choose_node(struct Graph *graph, Node condition, Node positive, Node other) {
   Node is_positive = function(graph, GATE, condition, ONE);
-  return add(graph, function(graph, GATE, condition, positive),
-             function(graph, GATE, subtract(graph, ONE, is_positive), other));
+  Node chosen = function(graph, GATE, condition, positive);
+  return add(graph, chosen, function(graph, GATE, subtract(graph, ONE, is_positive), other));
 }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "memory.h"
+
 const char *const base_unit_names[BASE_UNIT_COUNT] = {"kg", "m", "s", "A", "K", "mol", "cd", "rad"};
 const struct Dimension dimension_unknown = {.known = false};
 const struct Dimension dimension_one = {.known = true};
@@ -148,13 +150,12 @@ char *unit_text(struct Dimension dimension) {
   }
   char *text = NULL;
   size_t length = 0;
-  FILE *file = open_memstream(&text, &length);
-  if (file == NULL) return NULL;
+  FILE *file = open_text(&text, &length);
   if (above == 0) fputs("1", file);
   append_powers(file, dimension, 1, "");
   if (below > 0) fputs(below > 1 ? "/(" : "/", file);
   append_powers(file, dimension, -1, "");
   if (below > 1) fputs(")", file);
-  fclose(file);
+  close_text(file, &text, &length);
   return text;
 }

@@ -7,6 +7,7 @@
 #include "memory.h"
 #include "algebra/kinks.h"
 #include "algebra/simplify.h"
+#include "mechanics/arrays.h"
 #include "mechanics/switching.h"
 #include "mechanics/symbol_names.h"
 
@@ -200,12 +201,27 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
+/* Whether the pieces of an energy change with something else than the coordinates. */
+static bool steps_in_time(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  bool steps = false;
+  if (!graph_depends_on(graph, model->potential.node, MODE)) return false;
+  for (size_t i = 0; i < model->switches.count; i++) {
+    Node indicator = model->switches.items[i].indicator;
+    steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
+             graph_depends_on(graph, indicator, INPUT);
+  }
+  return steps;
+}
+
 /* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
 static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
-  bool changes = model->driven || model->moving_constraint != NULL || model->linearized ||
+  const struct Switches *switches = &model->switches;
+  bool changes = switches->contact_count + switches->event_count > 0 || model->driven ||
+                 model->moving_constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->kinetic.node, TIME) ||
-                 graph_depends_on(graph, model->potential.node, TIME);
+                 graph_depends_on(graph, model->potential.node, TIME) || steps_in_time(model);
   if (changes || (model->has_forces && !equations->has_work)) return "kinetic and potential energy";
   return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                              : "kinetic and potential energy; constant";
@@ -259,6 +275,38 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   }
 }
 
+/* What FMI 2.0 asks for by a function alone. */
+static void append_indicators(struct Interface *interface) {
+  for (size_t i = 0; interface->switching != NULL && i < interface->switching->indicator_count; i++) {
+    char *name = format_text("eventIndicator[%zu]", i + 1);
+    append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
+        interface->switching->indicators[i];
+    free(name);
+  }
+}
+
+static void append_time(struct Interface *interface, const struct Model *model) {
+  struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
+  time->unit = copy_text("s");
+  time->node = model->time;
+}
+
+/* What systems with coordinates have in addition. */
+static void append_mechanics(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  append_places(interface, model, equations);
+  append_reactions(interface, model, equations);
+  append_constraint_forces(interface, model, equations);
+  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
+  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
+  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
+  for (size_t i = 0; i < interface->count; i++)
+    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
+      interface->variables[i].node = without_branches(model, interface->variables[i].node);
+  append_statistics(interface, model);
+  mark_moved_states(interface, model, equations);
+}
+
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
@@ -266,11 +314,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->output_derivative_order = output_derivative_order(interface, model, equations);
   interface->depends_on_time = uses_time(model, equations);
   interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
-  if (interface->depends_on_time) {
-    struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
-    time->unit = copy_text("s");
-    time->node = model->time;
-  }
+  if (interface->depends_on_time) append_time(interface, model);
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
   struct Variable work = {.name = (char *)"nonConservativeWork",
@@ -298,18 +342,12 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;
   append_calculated(interface, model);
-  if (n == 0) return interface;
-  append_places(interface, model, equations);
-  append_reactions(interface, model, equations);
-  append_constraint_forces(interface, model, equations);
-  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
-  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
-  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
-  for (size_t i = 0; i < interface->count; i++)
-    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
-      interface->variables[i].node = without_branches(model, interface->variables[i].node);
-  append_statistics(interface, model);
-  mark_moved_states(interface, model, equations);
+  if (n > 0) append_mechanics(interface, model, equations);
+  interface->count_in_fmi2 = interface->count;
+  interface->switching = switching_derive(model, equations);
+  append_indicators(interface);
+  if (!interface->depends_on_time) append_time(interface, model);
+  arrays_find(interface);
   return interface;
 }
 
@@ -321,6 +359,7 @@ void interface_free(struct Interface *interface) {
     free(interface->variables[i].unit);
     free(interface->variables[i].description);
   }
+  switching_free(interface->switching);
   free(interface->variables);
   free(interface);
 }

@@ -16,6 +16,8 @@ struct InterfaceVariable {
   Node start;                  /* of a state whose start value follows from parameters; else ZERO */
   bool is_moved_at_start;      /* a state that constraints may move as initialization ends */
   bool is_continued;           /* a result that is computed together with the one before: components of one thing */
+  size_t array_count;          /* elements of the array that begins with this variable; 0 where none does */
+  bool is_further_element;     /* of an array that began before */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
@@ -23,11 +25,13 @@ enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylo
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
-  size_t first[VARIABLE_STATISTIC + 1]; /* the place of the first variable of each kind */
+  size_t count_in_fmi2;                 /* FMI 3.0 has more: event indicators, and time where nothing depends on it */
+  size_t first[VARIABLE_INDICATOR + 1]; /* the place of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
   const struct Method *method; /* the one that is used; NULL for a system without coordinates */
   int output_derivative_order;
+  struct SwitchingExpressions *switching; /* NULL where nothing switches */
 };
 
 /* Whether initialization computes the state, from its start value among others. */

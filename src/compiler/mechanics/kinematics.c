@@ -12,12 +12,17 @@ struct Vector vector_scale(struct Graph *graph, Node factor, struct Vector a) {
   return a;
 }
 
+/* a b - c d */
+static Node difference_of_products(struct Graph *graph, Node a, Node b, Node c, Node d) {
+  Node subtrahend = multiply(graph, c, d);
+  return subtract(graph, multiply(graph, a, b), subtrahend);
+}
+
 struct Vector vector_cross(struct Graph *graph, struct Vector a, struct Vector b) {
   struct Vector product;
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
-    product.along[i] =
-        subtract(graph, multiply(graph, a.along[j], b.along[k]), multiply(graph, a.along[k], b.along[j]));
+    product.along[i] = difference_of_products(graph, a.along[j], b.along[k], a.along[k], b.along[j]);
   }
   return product;
 }
@@ -90,13 +95,13 @@ void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node 
   for (int i = 0; i < 4; i++) square[i] = power_number(graph, q[i], 2.0);
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
-    turn.row[i].along[i] =
-        subtract(graph, add(graph, square[0], square[i + 1]), add(graph, square[j + 1], square[k + 1]));
+    Node others = add(graph, square[j + 1], square[k + 1]);
+    turn.row[i].along[i] = subtract(graph, add(graph, square[0], square[i + 1]), others);
     Node product = multiply(graph, q[i + 1], q[j + 1]), lever = multiply(graph, q[0], q[k + 1]);
     turn.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, lever));
     turn.row[j].along[i] = scale(graph, 2.0, add(graph, product, lever));
-    Node forth = subtract(graph, multiply(graph, q[0], rate[i + 1]), multiply(graph, q[i + 1], rate[0]));
-    Node around = subtract(graph, multiply(graph, q[k + 1], rate[j + 1]), multiply(graph, q[j + 1], rate[k + 1]));
+    Node forth = difference_of_products(graph, q[0], rate[i + 1], q[i + 1], rate[0]);
+    Node around = difference_of_products(graph, q[k + 1], rate[j + 1], q[j + 1], rate[k + 1]);
     spin.along[i] = scale(graph, 2.0, add(graph, forth, around));
   }
   turn_axes(graph, pose, &turn, spin);

@@ -75,7 +75,8 @@ static Node change_of(const struct Expansion *expansion, Node node, double facto
 
 /* Taylor's polynomial of the first order at the point. */
 static Node expand(const struct Expansion *expansion, Node node) {
-  return add(expansion->graph, at_point(expansion, node), change_of(expansion, node, 1.0));
+  Node change = change_of(expansion, node, 1.0);
+  return add(expansion->graph, at_point(expansion, node), change);
 }
 
 /* The same of the second order. */
@@ -84,7 +85,8 @@ static Node expand_twice(const struct Expansion *expansion, Node node) {
   struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
   Node result = at_point(expansion, node);
   for (size_t i = 0; i < slopes.count; i++) {
-    Node mean = add(graph, at_point(expansion, slopes.values[i]), change_of(expansion, slopes.values[i], 0.5));
+    Node change = change_of(expansion, slopes.values[i], 0.5);
+    Node mean = add(graph, at_point(expansion, slopes.values[i]), change);
     result = add(graph, result, multiply(graph, mean, deviation_of(expansion, slopes.symbols[i])));
   }
   gradient_free(&slopes);

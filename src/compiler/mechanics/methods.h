@@ -19,17 +19,18 @@ enum { METHOD_SOURCES = 10 };
 
 struct Method {
   const char *name;          /* in system.xml and on the command line */
-  const char *solver;        /* the C name of its struct Solver */
+  const char *solver;        /* names its file, and with solver_ before it, its struct Solver */
   const char *sparse_solver; /* the one for a large sparse Jacobian; NULL for none */
   const char *sentence;      /* for the documentation */
   const char *evaluations;   /* what derivativeEvaluations counts; NULL for nothing */
-  /* Its files for an FMU that carries sources; NULL where a library is behind it, which then allocates by itself. */
+  /* The other files that it needs. */
   const char *sources[METHOD_SOURCES];
   enum SeriesUse series;
   bool needs_jacobian; /* and counts its evaluations */
   bool hands_over;     /* between methods, and counts how often */
   bool factors;        /* matrices with a row and a column for each coordinate, by lagrangian.lu */
   bool needs_linear;   /* solves linear systems alone, as a whole communication step */
+  bool uses_library;   /* which no FMU carries in C, and which allocates by itself */
 };
 
 /* NULL where there is no method of this name. */
@@ -38,10 +39,7 @@ const struct Method *method_named(const char *name);
 /* "a, b or c". Free with free(). */
 char *method_names(void);
 
-/* Whether a library is behind the method. */
-bool method_uses_library(const struct Method *method);
-
-/* The C name of the solver for a Jacobian with so many rows and elements other than 0. */
+/* The solver for a Jacobian with so many rows and elements other than 0. */
 const char *method_solver(const struct Method *method, size_t rows, size_t elements);
 
 #endif

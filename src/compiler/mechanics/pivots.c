@@ -138,8 +138,11 @@ static Node magnitude(struct Graph *graph, Node node, int depth) {
   switch (vertex.operation) {
   case SINE:
   case COSINE: return ONE;
-  case ADD: return add(graph, magnitude(graph, vertex.left, depth), magnitude(graph, vertex.right, depth));
-  case MULTIPLY: return multiply(graph, magnitude(graph, vertex.left, depth), magnitude(graph, vertex.right, depth));
+  case ADD:
+  case MULTIPLY: {
+    Node right = magnitude(graph, vertex.right, depth), left = magnitude(graph, vertex.left, depth);
+    return vertex.operation == ADD ? add(graph, left, right) : multiply(graph, left, right);
+  }
   case CONSTANT: return graph_constant(graph, fabs(vertex.value));
   case POWER: {
     bool positive = graph_is_constant(graph, vertex.right) && graph_value(graph, vertex.right) > 0;

@@ -56,7 +56,7 @@ static void find_branches(const struct Model *model, struct List *roots, struct 
     for (size_t i = 0; i < switches->count && grown; i++)
       if (is_used[i]) append(roots, switches->items[i].indicator);
   }
-  switching->branches = allocate(switches->count, sizeof *switching->branches);
+  switching->branches = allocate(switches->count, sizeof(const struct Switch *));
   for (size_t i = 0; i < switches->count; i++)
     if (is_used[i]) switching->branches[switching->branch_count++] = &switches->items[i];
   free(is_used);
@@ -75,7 +75,8 @@ static Node indicator_of_contact(const struct Model *model, const struct Contact
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
   Node force = model->constraint_forces[friction->constraint];
-  Node left = subtract(graph, power_number(graph, friction->stiction, 2.0), power_number(graph, force, 2.0));
+  Node limit = power_number(graph, friction->stiction, 2.0);
+  Node left = subtract(graph, limit, power_number(graph, force, 2.0));
   Node along = multiply(graph, friction->mode, friction->velocity);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }

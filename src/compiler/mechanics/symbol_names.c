@@ -36,6 +36,6 @@ char *symbol_names_text(const struct SymbolNames *names, const struct Graph *gra
     fprintf(file, "%s%s", length > 0 ? ", " : "", shown);
     length += strlen(name) + 2;
   }
-  fclose(file);
+  close_text(file, &text, &size);
   return text;
 }

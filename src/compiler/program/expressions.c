@@ -186,7 +186,6 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
-  expressions->switching = switching_derive(model, equations);
   if (graph_limit(model->graph) != NULL)
     report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
   if (diagnostics->errors == errors) return expressions;
@@ -219,9 +218,10 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
-  if (expressions->switching != NULL) {
-    append_nodes(&targets, expressions->switching->indicators, expressions->switching->indicator_count);
-    append_nodes(&targets, expressions->switching->values, expressions->switching->value_count);
+  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  if (switching != NULL) {
+    append_nodes(&targets, switching->indicators, switching->indicator_count);
+    append_nodes(&targets, switching->values, switching->value_count);
   }
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series};
   for (int i = 0; i < 2; i++)
@@ -235,7 +235,6 @@ void expressions_free(struct Expressions *expressions) {
   series_plan_free(expressions->series);
   series_plan_free(expressions->output_series);
   jacobian_free(expressions->jacobian);
-  switching_free(expressions->switching);
   free(expressions->along);
   free(expressions->initial);
   free(expressions->initial_along);

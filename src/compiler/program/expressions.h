@@ -43,15 +43,14 @@ struct Expressions {
   const struct Model *model;
   const struct Equations *equations;
   const struct Interface *interface;
-  struct LinearSystem *linear;            /* NULL unless the solver is exact */
-  struct SeriesPlan *series;              /* of the motion; NULL for exact and without coordinates */
-  struct SeriesPlan *output_series;       /* NULL where outputs have no derivatives above the first, or are variables */
-  Node *along;                            /* derivative of the accelerations, or right sides for it, of each row */
-  Node *constraints_along;                /* of the elements of the constraints' J */
-  struct Corrections corrections;         /* NULL without constraints */
-  struct SwitchingExpressions *switching; /* NULL where nothing switches */
-  Node power_along;                       /* of the power of the forces */
-  struct JacobianExpressions *jacobian;   /* NULL unless the solver asks */
+  struct LinearSystem *linear;          /* NULL unless the solver is exact */
+  struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
+  struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
+  Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
+  Node *constraints_along;              /* of the elements of the constraints' J */
+  struct Corrections corrections;       /* NULL without constraints */
+  Node power_along;                     /* of the power of the forces */
+  struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
   Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
 };

@@ -241,7 +241,7 @@ static void create_results(struct Program *program, struct Values *values) {
 }
 
 static void create_switching(struct Program *program, struct Values *values) {
-  const struct SwitchingExpressions *switching = program->expressions->switching;
+  const struct SwitchingExpressions *switching = program->interface->switching;
   if (switching == NULL) return;
   program->indicators = result_routine(values, switching->indicators, switching->indicator_count);
   program->switching_values = result_routine(values, switching->values, switching->value_count);

@@ -115,7 +115,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
     inside = inside || definitions->stack[i] == closing;
     if (inside && definition->state == ACTIVE) fprintf(file, "%s -> ", definition->name);
   }
-  fclose(file);
+  close_text(file, &text, &length);
   const struct NamedExpression *expression = &definitions->items[closing].expression;
   struct Source *present = source_enter(reader, expression->source);
   report_error(reader->diagnostics, xmlGetLineNo(expression->node),
@@ -126,7 +126,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
 }
 
 /* Those that the present one waits for come before it, unless one of them waits for it. */
-static void wait(struct Definitions *definitions, struct Reader *reader, size_t top) {
+static void keep_waiting(struct Definitions *definitions, struct Reader *reader, size_t top) {
   size_t *stack = definitions->stack, closing = 0;
   bool is_circle = false;
   definitions->items[stack[top]].state = ACTIVE;
@@ -162,7 +162,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     if (definitions->waiting > 0) {
       requirements->count = requirement_count;
       definitions->waiting = 0;
-      wait(definitions, reader, top);
+      keep_waiting(definitions, reader, top);
     } else {
       xmlNodePtr node = definition->expression.node;
       struct Source *present = source_enter(reader, definition->expression.source);

@@ -266,7 +266,8 @@ bool find_spatial_point(const struct Reader *reader, const char *name, struct Sp
 
 static struct Vector acceleration_of(struct Scope *scope, const struct Pose *pose, struct Vector velocity) {
   struct Graph *graph = scope->graph;
-  return vector_add(graph, derivative_of(scope, velocity), vector_cross(graph, pose->angular_velocity, velocity));
+  struct Vector turning = vector_cross(graph, pose->angular_velocity, velocity);
+  return vector_add(graph, derivative_of(scope, velocity), turning);
 }
 
 /* What a component such as "vx" or "omegaX" is of. */

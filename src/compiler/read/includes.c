@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "memory.h"
+#include "platform.h"
 #include "read/robot_system.h"
 #include "read/xml.h"
 
@@ -30,7 +31,7 @@ void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root) {
   reader->includes = allocate(1, sizeof *reader->includes);
   *reader->includes = (struct Includes){names_create(), names_create(), names_create()};
   struct Source *own = allocate(1, sizeof *own);
-  *own = (struct Source){.file = path, .canonical_path = realpath(path, NULL), .prefix = copy_text(""), .root = root};
+  *own = (struct Source){.file = path, .canonical_path = canonical_path(path), .prefix = copy_text(""), .root = root};
   names_set(reader->includes->sources, "", own);
   reader->source = own;
 }
@@ -62,9 +63,7 @@ struct Source *source_enter(struct Reader *reader, struct Source *source) {
 }
 
 char *path_beside(const struct Reader *reader, const char *file) {
-  const char *present = reader->source->file, *slash = strrchr(present, '/');
-  if (*file == '/' || slash == NULL) return copy_text(file);
-  return format_text("%.*s/%s", (int)(slash - present), present, file);
+  return path_beside_file(reader->source->file, file);
 }
 
 /* Whether the file is one of those that lead to it. */
@@ -146,7 +145,7 @@ static void note_given(struct Reader *reader, const struct Source *source) {
 
 /* Sets the root where the file can be read. */
 static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) {
-  source->canonical_path = realpath(source->file, NULL);
+  source->canonical_path = canonical_path(source->file);
   if (source->canonical_path == NULL)
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",

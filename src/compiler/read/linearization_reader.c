@@ -6,13 +6,13 @@
 
 #include "read/elements.h"
 #include "memory.h"
+#include "platform.h"
 #include "read/parser.h"
 
 char *linearized_path(xmlNodePtr root, const char *path) {
   char *of = attribute(root, "of");
-  const char *slash = strrchr(path, '/');
-  if (of == NULL || *of == '/' || slash == NULL) return of;
-  char *joined = format_text("%.*s/%s", (int)(slash - path), path, of);
+  if (of == NULL) return NULL;
+  char *joined = path_beside_file(path, of);
   free(of);
   return joined;
 }

@@ -18,7 +18,8 @@ static Node from_knot_on(struct Scope *scope, Node x, double knot) {
 
 Node way_in(struct Scope *scope, Node x, double from, double to) {
   struct Graph *graph = scope->graph;
-  Node way = choose_node(graph, from_knot_on(scope, x, to), graph_constant(graph, to - from), way_from(graph, x, from));
+  Node is_behind = from_knot_on(scope, x, to), inside = way_from(graph, x, from);
+  Node way = choose_node(graph, is_behind, graph_constant(graph, to - from), inside);
   return function(graph, GATE, from_knot_on(scope, x, from), way);
 }
 
@@ -30,5 +31,6 @@ Node way_before(struct Scope *scope, Node x, double start) {
 
 Node way_behind(struct Scope *scope, Node x, double end) {
   struct Graph *graph = scope->graph;
-  return function(graph, GATE, from_knot_on(scope, x, end), way_from(graph, x, end));
+  Node is_behind = from_knot_on(scope, x, end);
+  return function(graph, GATE, is_behind, way_from(graph, x, end));
 }

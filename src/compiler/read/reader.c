@@ -183,7 +183,7 @@ static void check_definitions_used(struct Reader *reader) {
 static void reserve_result_names(struct Scope *scope) {
   static const char *const results[] = {"kineticEnergy",       "potentialEnergy", "totalEnergy",
                                         "nonConservativeWork", "solverSteps",     "derivativeEvaluations",
-                                        "jacobianEvaluations"};
+                                        "jacobianEvaluations", "eventIndicator"};
   for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
 }
 

@@ -109,7 +109,7 @@ static char *remedy(const char *wanted, struct Choices choices) {
   else fputs(choices.count > 0 ? "expected " : "expected none", file);
   for (size_t i = 0; similar.best == NULL && i < choices.count; i++)
     fprintf(file, "%s%s", i == 0 ? "" : i + 1 == choices.count ? " or " : ", ", choices.names[i]);
-  fclose(file);
+  close_text(file, &text, &length);
   choices_free(&choices);
   return text;
 }

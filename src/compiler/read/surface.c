@@ -46,9 +46,11 @@ struct Cardinals {
 static void add_interval(struct Graph *graph, struct Cardinals *cardinals, size_t i, Node t, double h, bool is_linear) {
   Node rest = subtract(graph, ONE, t), rise = t;
   if (!is_linear) {
-    rise = multiply(graph, power_number(graph, t, 2), subtract(graph, graph_constant(graph, 3), scale(graph, 2, t)));
-    Node near = multiply(graph, scale(graph, h, t), power_number(graph, rest, 2));
-    Node far = multiply(graph, scale(graph, -h, rest), power_number(graph, t, 2));
+    Node twice = scale(graph, 2, t), linear = subtract(graph, graph_constant(graph, 3), twice);
+    Node square = power_number(graph, t, 2), square_of_rest = power_number(graph, rest, 2);
+    rise = multiply(graph, square, linear);
+    Node near = multiply(graph, scale(graph, h, t), square_of_rest);
+    Node far = multiply(graph, scale(graph, -h, rest), square);
     cardinals->slope[i] = add(graph, cardinals->slope[i], near);
     cardinals->slope[i + 1] = add(graph, cardinals->slope[i + 1], far);
   }

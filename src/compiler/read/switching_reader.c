@@ -17,9 +17,10 @@ enum { IN_CONDITION = (IN_FORCE & ~KIND(DISPLACEMENT)), IN_GAP = IN_CONSTRAINT &
 
 /* --- Declarations --- */
 
-static Node new_mode(struct Reader *reader, const char *of) {
+/* Its name is that of the variable which tells it. */
+static Node new_mode(struct Reader *reader, const char *of, const char *what) {
   struct Switches *switches = &reader->model->switches;
-  char *name = format_text("mode of %s", of);
+  char *name = format_text("%s.%s", of, what);
   Node mode = graph_symbol(reader->model->graph, MODE, (int)switches->mode_count++, name);
   free(name);
   return mode;
@@ -48,7 +49,7 @@ static size_t declare_held(struct Reader *reader, struct Variable constraint) {
 static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
   switches->contacts = reallocate(switches->contacts, switches->contact_count + 1, sizeof *switches->contacts);
-  switches->contacts[switches->contact_count++] = (struct Contact){.mode = new_mode(reader, constraint.name)};
+  switches->contacts[switches->contact_count++] = (struct Contact){.mode = new_mode(reader, constraint.name, "closed")};
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
@@ -82,7 +83,8 @@ void declare_friction(struct Reader *reader, xmlNodePtr node) {
   struct Switches *switches = &reader->model->switches;
   struct Variable constraint = common_attributes(reader, node);
   switches->frictions = reallocate(switches->frictions, switches->friction_count + 1, sizeof *switches->frictions);
-  switches->frictions[switches->friction_count++] = (struct Friction){.mode = new_mode(reader, constraint.name)};
+  switches->frictions[switches->friction_count++] =
+      (struct Friction){.mode = new_mode(reader, constraint.name, "sliding")};
   switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
   reader->model->has_forces = true;
 }
@@ -137,6 +139,9 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     if (!expression_attribute(reader, node, ends[end], IN_GAP, &limit)) continue;
     const struct Variable *coordinate = &reader->model->coordinates.items[symbol->index];
     if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
+    struct Switches *switches = &reader->model->switches;
+    reader->model->constraints.items[switches->contacts[reader->contacts_read].constraint].dimension =
+        coordinate->dimension;
     Node way = subtract(graph, symbol->node, limit.node);
     set_contact(reader, node, end == 0 ? way : negate(graph, way));
   }

@@ -53,7 +53,7 @@ static char *text_of_file(const char *path) {
   for (int c = getc(file); c != EOF && c != '\0'; c = getc(file)) putc(c, copy);
   bool right = ferror(file) == 0;
   fclose(file);
-  fclose(copy);
+  close_text(copy, &text, &length);
   if (right) return text;
   free(text);
   return NULL;

@@ -178,8 +178,10 @@ static bool check_argument(struct Parser *parser, struct Dimension unit, const c
 }
 
 static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i, Node s) {
-  Node inner = add(graph, graph_constant(graph, curve->c[i]), scale(graph, curve->d[i], s));
-  inner = add(graph, graph_constant(graph, curve->b[i]), multiply(graph, s, inner));
+  Node inner = scale(graph, curve->d[i], s);
+  inner = add(graph, graph_constant(graph, curve->c[i]), inner);
+  inner = multiply(graph, s, inner);
+  inner = add(graph, graph_constant(graph, curve->b[i]), inner);
   return multiply(graph, s, inner);
 }
 

@@ -115,7 +115,7 @@ static char *function_names(void) {
     for (int operation = 0; operation < OPERATION_COUNT; operation++)
       if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
         fprintf(file, "%s, ", functions[operation].name);
-  fclose(file);
+  close_text(file, &names, &length);
   return names;
 }
 

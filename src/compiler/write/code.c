@@ -9,7 +9,7 @@
 #include "write/switching.h"
 #include "write/tables.h"
 
-/* The runtime's files but for solvers, NULL at the end; the build writes it. */
+/* The core's files but for solvers, NULL at the end; the build writes it. */
 extern const char *const runtime_sources[];
 
 static void include_source(FILE *file, const char *name) {
@@ -22,15 +22,18 @@ static bool has_oblique_block(const struct Program *program) {
   return has;
 }
 
-/* FMUs without SUNDIALS are complete in C: the files that this one needs, for archives whose source is one file. */
+/*
+ * The files of the runtime that this one needs, for compiling all in one, and for archives whose source is one file. The build
+ * adds those of the version of FMI.
+ */
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->interface->method;
-  if (method_uses_library(method)) return;
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);
   for (const char *const *name = runtime_sources; *name != NULL; name++) include_source(file, *name);
+  const char *solver = description_solver(program), *lu = description_lu(program);
+  if (solver != NULL) fprintf(file, "#include \"%s.c\"\n", solver);
   for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
     include_source(file, method->sources[i]);
-  const char *lu = description_lu(program);
   if (lu != NULL) fprintf(file, "#include \"%s.c\"\n", lu);
   if (program->is_table) include_source(file, "instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");

@@ -19,6 +19,7 @@ static void write_variables(FILE *file, const struct Interface *interface) {
       [VARIABLE_CONTACT] = "VARIABLE_CONTACT",
       [VARIABLE_RESULT] = "VARIABLE_RESULT",
       [VARIABLE_STATISTIC] = "VARIABLE_STATISTIC",
+      [VARIABLE_INDICATOR] = "VARIABLE_INDICATOR",
   };
   static const char *const types[] = {
       [TYPE_REAL] = "TYPE_REAL", [TYPE_INTEGER] = "TYPE_INTEGER", [TYPE_BOOLEAN] = "TYPE_BOOLEAN"};
@@ -40,6 +41,19 @@ static void write_variables(FILE *file, const struct Interface *interface) {
     fputs("},\n", file);
   }
   fputs("};\n\n", file);
+}
+
+/* False where there are none. */
+static bool write_arrays(FILE *file, const struct Interface *interface) {
+  bool has_arrays = false;
+  for (size_t i = 0; i < interface->count; i++) {
+    if (interface->variables[i].array_count == 0) continue;
+    fprintf(file, "%s{%zu, %zu}", has_arrays ? ", " : "static const struct ArrayVariable arrays[] = {", i,
+            interface->variables[i].array_count);
+    has_arrays = true;
+  }
+  if (has_arrays) fputs("};\n\n", file);
+  return has_arrays;
 }
 
 static void write_results(FILE *file, const struct Program *program) {
@@ -83,6 +97,13 @@ static void write_pattern(FILE *file, const struct Program *program) {
   write_sizes(file, "int", "jacobian_row", jacobian->row, jacobian->count);
   if (jacobian->factors != NULL) write_lu_pattern(file, jacobian->factors, program->equations->count);
   fputs("\n", file);
+}
+
+const char *description_solver(const struct Program *program) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  if (program->equations->count == 0) return NULL;
+  return method_solver(program->interface->method, program->interface->state_count,
+                       jacobian != NULL ? jacobian->count : 0);
 }
 
 const char *description_lu(const struct Program *program) {
@@ -193,24 +214,19 @@ static void write_operations(FILE *file, const struct Program *program) {
 }
 
 /* NULL for a system without coordinates. */
-static const char *solver_of(const struct Program *program) {
-  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
-  if (program->equations->count == 0) return NULL;
-  return method_solver(program->interface->method, program->interface->state_count,
-                       jacobian != NULL ? jacobian->count : 0);
-}
 
-static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count) {
+static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count, bool has_arrays) {
   const struct Interface *interface = program->interface;
-  const char *solver = solver_of(program), *lu = description_lu(program);
-  if (solver != NULL) fprintf(file, "extern const struct Solver %s;\n\n", solver);
+  const char *solver = description_solver(program), *lu = description_lu(program);
+  if (solver != NULL) fprintf(file, "extern const struct Solver solver_%s;\n\n", solver);
   if (lu != NULL) fprintf(file, "extern const struct Lu %s;\n\n", lu);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n",
           program->model->name);
   write_counts(file, program, work_count);
   fputs("    .variables = variables,\n", file);
+  if (has_arrays) fputs("    .arrays = arrays,\n    .array_count = sizeof arrays / sizeof *arrays,\n", file);
   if (solver != NULL)
-    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &%s,\n",
+    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
             solver);
   fputs("    .tolerance = ", file);
   write_c_number(file, interface_tolerance(program->model));
@@ -229,10 +245,11 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
 
 void description_write(FILE *file, const struct Program *program, size_t work_count) {
   write_variables(file, program->interface);
+  bool has_arrays = write_arrays(file, program->interface);
   write_results(file, program);
   inertia_names_write(file, program);
   write_constraint_names(file, program);
   write_nominals(file, program->interface);
   write_pattern(file, program);
-  write_lagrangian(file, program, work_count);
+  write_lagrangian(file, program, work_count, has_arrays);
 }

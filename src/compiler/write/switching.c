@@ -9,7 +9,7 @@ static int mode_index(const struct Program *program, Node mode) {
 }
 
 static void write_branches(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->expressions->switching;
+  const struct SwitchingExpressions *switching = program->interface->switching;
   if (switching->branch_count == 0) return;
   fputs("static const struct BranchFacts branch_facts[] = {", file);
   for (size_t i = 0; i < switching->branch_count; i++) {
@@ -94,7 +94,7 @@ static void write_events(FILE *file, const struct Program *program) {
 }
 
 void switching_write(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->expressions->switching;
+  const struct SwitchingExpressions *switching = program->interface->switching;
   if (switching == NULL) return;
   const struct Switches *switches = &program->model->switches;
   fputs("extern const struct Switching switching;\n\n", file);

@@ -3,53 +3,20 @@
 
 #include <string.h>
 
-#include "check.h"
 #include "fmi2_life_cycle.h"
-
-enum Category { CATEGORY_EVENTS, CATEGORY_WARNING, CATEGORY_DISCARD, CATEGORY_ERROR, CATEGORY_FATAL, CATEGORY_ALL };
-
-static const char *const categories[] = {
-    [CATEGORY_EVENTS] = "logEvents",         [CATEGORY_WARNING] = "logStatusWarning",
-    [CATEGORY_DISCARD] = "logStatusDiscard", [CATEGORY_ERROR] = "logStatusError",
-    [CATEGORY_FATAL] = "logStatusFatal",     [CATEGORY_ALL] = "logAll",
-};
-/* What goes wrong is sent without debug logging too, unless fmi2SetDebugLogging names categories. */
-enum {
-  CATEGORY_COUNT = sizeof categories / sizeof *categories,
-  ALL_CATEGORIES = (1u << CATEGORY_COUNT) - 1u,
-  CATEGORIES_WITHOUT_DEBUGGING =
-      1u << CATEGORY_WARNING | 1u << CATEGORY_DISCARD | 1u << CATEGORY_ERROR | 1u << CATEGORY_FATAL
-};
-
-static enum Category category_of(enum Status status) {
-  static const enum Category of[] = {[STATUS_DONE] = CATEGORY_EVENTS,
-                                     [STATUS_WARNING] = CATEGORY_WARNING,
-                                     [STATUS_DISCARD] = CATEGORY_DISCARD,
-                                     [STATUS_ERROR] = CATEGORY_ERROR};
-  return of[status];
-}
+#include "log_categories.h"
 
 /* Which messages the core has to write. */
 static unsigned wanted_statuses(const struct Component *component) {
-  unsigned wanted = 0;
-  for (int status = STATUS_DONE; status <= STATUS_ERROR; status++)
-    if ((component->categories & (1u << category_of((enum Status)status) | 1u << CATEGORY_ALL)) != 0)
-      wanted |= 1u << status;
-  return component->logger != NULL ? wanted : 0;
+  return component->logger != NULL ? log_wanted(component->categories) : 0;
 }
 
 /* The message is itself a printf format, and '#' introduces a variable in it (section 2.1.5). */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
-  size_t length = 0;
-  for (; *message != '\0'; message++) {
-    if (*message == '%' || *message == '#') escaped[length++] = *message;
-    escaped[length++] = *message;
-  }
-  escaped[length] = '\0';
-  component->logger(component->environment, component->name, fmi2_status(status), categories[category_of(status)],
-                    escaped);
+  log_escape(message, "%#", escaped);
+  component->logger(component->environment, component->name, fmi2_status(status), log_category_of(status), escaped);
 }
 
 /* Checks the arguments of fmi2Instantiate. */
@@ -98,7 +65,8 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   struct Log log = {.write = send, .receiver = &description, .wanted = wanted_statuses(&description)};
   struct Allocator memory = {functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
-  if (!loggingOn) description.categories = CATEGORIES_WITHOUT_DEBUGGING;
+  /* What goes wrong is sent without debug logging too, unless fmi2SetDebugLogging names categories. */
+  if (!loggingOn) description.categories = PROBLEM_CATEGORIES;
   enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
   struct Component *component = component_create(&description, kind, &memory);
   if (component == NULL) log_write(&log, STATUS_ERROR, "fmi2Instantiate: allocateMemory returned no memory");
@@ -115,26 +83,12 @@ void fmi2FreeInstance(fmi2Component c) {
   memory.free(component);
 }
 
-/* CATEGORY_COUNT where there is no category of this name. */
-static int category_named(const char *name) {
-  int category = 0;
-  while (category < CATEGORY_COUNT && (name == NULL || strcmp(name, categories[category]) != 0)) category++;
-  return category;
-}
-
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String names[]) {
   struct Component *component = c;
   struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
-  if (instance == NULL || !check_array(instance, names, nCategories, __func__, "categories")) return fmi2Error;
   unsigned chosen = 0;
-  for (size_t i = 0; i < nCategories; i++) {
-    int category = category_named(names[i]);
-    if (category == CATEGORY_COUNT)
-      return fmi2_status(
-          log_error(instance, "%s: there is no log category '%s'", __func__, names[i] != NULL ? names[i] : "NULL"));
-    chosen |= 1u << category;
-  }
-  if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : CATEGORIES_WITHOUT_DEBUGGING;
+  if (instance == NULL || !log_choose(instance, names, nCategories, &chosen, __func__)) return fmi2Error;
+  if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : PROBLEM_CATEGORIES;
   else component->categories = loggingOn ? chosen : component->categories & ~chosen;
   instance->log.wanted = wanted_statuses(component);
   return fmi2OK;

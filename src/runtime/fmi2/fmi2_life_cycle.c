@@ -1,6 +1,6 @@
 #include "fmi2_life_cycle.h"
 
-#define IN(mode) (1u << (mode))
+#include "life_cycle.h"
 
 enum {
   BEFORE = IN(MODE_INSTANTIATED) | IN(MODE_INITIALIZATION),
@@ -9,15 +9,9 @@ enum {
   STEPS = IN(MODE_STEP_COMPLETE) | IN(MODE_STEP_FAILED),
   READABLE = IN(MODE_INITIALIZATION) | EXCHANGE | STEPS | AFTER,
   ALL = BEFORE | EXCHANGE | STEPS | AFTER,
-  FOR_EXCHANGE = 1,
-  FOR_STEPS = 2,
-  FOR_BOTH = 3,
 };
 
-/* The modes of one type are never reached by instances of the other, so that one column serves both. */
-static const struct {
-  unsigned types, modes;
-} table[FUNCTION_COUNT] = {
+static const struct Permission table[FUNCTION_COUNT] = {
     [FUNCTION_SET_DEBUG_LOGGING] = {FOR_BOTH, ALL},
     [FUNCTION_SETUP_EXPERIMENT] = {FOR_BOTH, IN(MODE_INSTANTIATED)},
     [FUNCTION_ENTER_INITIALIZATION_MODE] = {FOR_BOTH, IN(MODE_INSTANTIATED)},
@@ -47,13 +41,5 @@ static const struct {
 
 struct Instance *enter(fmi2Component c, enum Function function, const char *name) {
   struct Component *component = c;
-  if (component == NULL) return NULL;
-  struct Instance *instance = &component->instance;
-  bool exchanges = instance->kind == KIND_MODEL_EXCHANGE;
-  unsigned type = exchanges ? FOR_EXCHANGE : FOR_STEPS;
-  if ((table[function].types & type) != 0 && (table[function].modes & IN(instance->situation->mode)) != 0)
-    return instance;
-  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, instance_mode_name(instance),
-            exchanges ? "model exchange" : "co-simulation");
-  return NULL;
+  return component != NULL && is_permitted(&component->instance, &table[function], name) ? &component->instance : NULL;
 }

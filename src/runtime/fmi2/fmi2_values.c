@@ -13,15 +13,33 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
   return are_right ? instance : NULL;
 }
 
+/*
+ * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
+ * and MasterSim read all variables then, and some end at any status but the best; they get the values, and the log tells
+ * it once.
+ */
+static void tell_early_reading(struct Instance *instance, const fmi2ValueReference vr[], size_t nvr) {
+  if (instance->situation->mode != MODE_INITIALIZATION || instance->told_early_reading) return;
+  for (size_t i = 0; i < nvr && !instance->told_early_reading; i++) {
+    if (vr[i] >= lagrangian.variable_count || is_unknown(&lagrangian.variables[vr[i]])) continue;
+    log_message(instance, STATUS_WARNING,
+                "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
+                lagrangian.variables[vr[i]].name);
+    instance->told_early_reading = true;
+  }
+}
+
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
+  tell_early_reading(instance, vr, nvr);
   return fmi2_status(values_get(instance, vr, nvr, value, __func__));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
+  tell_early_reading(instance, vr, nvr);
   return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
@@ -34,6 +52,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
+  tell_early_reading(instance, vr, nvr);
   return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
 }
 

@@ -295,7 +295,6 @@ static const char *auto_advance(struct Instance *instance, const struct Communic
 }
 
 const struct Solver solver_auto = {.name = "the solver",
-                                   .alternatives = "erk where friction sticks",
                                    .saved_size = auto_saved_size,
                                    .could_save = auto_could_save,
                                    .create = auto_create,

@@ -15,8 +15,8 @@
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.01;
 
-static int jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data, N_Vector unused1,
-                    N_Vector unused2, N_Vector unused3) {
+static int fill_jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data,
+                         N_Vector unused1, N_Vector unused2, N_Vector unused3) {
   struct Instance *instance = data;
   const struct Bdf *bdf = instance->solver_memory;
   (void)derivative;
@@ -71,7 +71,7 @@ bool bdf_configure(struct Instance *instance) {
          sundials_succeeded(instance, CVodeSetMaxHnilWarns(bdf->cvode, -1), "CVodeSetMaxHnilWarns") &&
          sundials_succeeded(instance, CVodeSetLinearSolver(bdf->cvode, bdf->linear_solver, bdf->matrix),
                             "CVodeSetLinearSolver") &&
-         sundials_succeeded(instance, CVodeSetJacFn(bdf->cvode, jacobian), "CVodeSetJacFn");
+         sundials_succeeded(instance, CVodeSetJacFn(bdf->cvode, fill_jacobian), "CVodeSetJacFn");
 }
 
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {

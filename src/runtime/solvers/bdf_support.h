@@ -8,7 +8,7 @@
 #include "sundials_support.h"
 
 /* Where others are right instead, see struct Solver. */
-#define BDF_ALTERNATIVES "auto where inputs change often, erk where friction sticks"
+#define BDF_ALTERNATIVES "auto where inputs change often"
 
 struct Bdf {
   struct Sundials sundials;

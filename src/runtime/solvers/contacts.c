@@ -31,7 +31,9 @@ static size_t find_impact(const struct Settlement *settlement) {
   double fastest = 0.0;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
     size_t rate = contact_place(settlement, i, CONTACT_RATE);
-    bool is_hit_first = is_hit(settlement, indicator_of_contact(settlement, i)) && settlement->impacts == 0;
+    bool is_open =
+        mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0 && settlement->was_opened[i] == 0.0;
+    bool is_hit_first = is_hit(settlement, indicator_of_contact(settlement, i)) && is_open && settlement->impacts == 0;
     bool closes = settlement->value[rate] < (is_hit_first ? 0.0 : -settlement->noise[rate]);
     if (!closes || !is_touching(settlement, i) || settlement->value[rate] >= fastest) continue;
     fastest = settlement->value[rate];

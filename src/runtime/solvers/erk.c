@@ -52,7 +52,7 @@ static bool create(struct Instance *instance) {
 }
 
 /* Starts at time and the state there with a step of this length, 0 for one that ERKStep chooses. */
-static bool start(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
+static bool start_method(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
   const struct Sundials *sundials = &erk->sundials;
   return sundials_succeeded(instance, ERKStepReInit(erk->arkode, sundials_right_side, time, sundials->state),
                             "ERKStepReInit") &&
@@ -107,7 +107,8 @@ static bool restart(struct Instance *instance, const double *state, const struct
   struct Erk *erk = instance->solver_memory;
   sundials_load(instance, state, safety);
   erk->trial = step->end - step->start;
-  return start(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step, step->end);
+  return start_method(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step,
+                      step->end);
 }
 
 /*
@@ -130,7 +131,7 @@ static const char *advance(struct Instance *instance, const struct Communication
     erk->trial = 0.1 * fmin(erk->trial, rest);
     N_VScale(1.0, erk->before, state);
     if (solver_rests(before, erk->trial)) return "the equations have no solution there, or steps would be too short";
-    if (!start(instance, erk, before, erk->trial, step->end)) return "SUNDIALS does not start again";
+    if (!start_method(instance, erk, before, erk->trial, step->end)) return "SUNDIALS does not start again";
   }
   ERKStepGetCurrentStep(erk->arkode, &erk->trial);
   situation->suggested_step = erk->trial;

@@ -6,8 +6,8 @@
 #include "solver.h"
 #include "switching.h"
 
-/* So many events within the rounding of time have no end. */
-enum { EVENT_LIMIT = 200 };
+/* So many events within rounding have no end. */
+enum { EVENT_LIMIT = 30 };
 
 static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
@@ -57,7 +57,8 @@ const char *switching_pass(struct Instance *instance, const struct Communication
     return NULL;
   }
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
-  progress->gathered = solver_rests(time, time - progress->searched) ? progress->gathered + 1 : 0;
+  bool is_close = instance->was_at_zero || solver_rests(time, time - progress->searched);
+  progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->searched = time;
   if (progress->gathered == EVENT_LIMIT) return gathering;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";

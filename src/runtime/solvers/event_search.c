@@ -15,9 +15,6 @@ enum { DEGREE = SEARCH_NODES - 1, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEM
 /* What the last coefficients may have of all, for a polynomial that is the function. */
 static const double resolved = 1e-4;
 
-/* How far below 0 an event may leave an indicator, in units of what rounding makes of it. */
-static const double floor_in_noise = 64.0;
-
 /* cos(pi k / 8) */
 static const double cosines[2 * DEGREE] = {
     1.0,  0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,
@@ -105,7 +102,7 @@ static double range_of_polynomial(const double *c) {
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
-static enum Verdict judge(const double *f, double noise) {
+static enum Verdict judge_signs(const double *f, double noise) {
   double c[DEGREE + 1], d[DEGREE + 1], largest = 0.0;
   for (int k = 0; k <= DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
@@ -133,7 +130,8 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
 }
 
 /*
- * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller.
+ * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller,
+ * or, of a branch, the later one, where the next piece has a value.
  * By the Illinois method, with every third step a bisection.
  */
 static double refine(struct Search *search, size_t indicator, double sign, double from, double to) {
@@ -153,7 +151,8 @@ static double refine(struct Search *search, size_t indicator, double sign, doubl
     if (is_behind) behind = next;
     else before = next;
   }
-  return before.f <= -behind.f ? before.time : behind.time;
+  bool is_branch = indicator < lagrangian.switches->branch_count;
+  return before.f <= -behind.f && !is_branch ? before.time : behind.time;
 }
 
 /*
@@ -166,7 +165,7 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
   for (int k = 0; k < SEARCH_NODES; k++)
     f[k] = sign * value_at(search, indicator, node_time(from, to, k)) - search->floor;
   double noise = search->noise[indicator];
-  enum Verdict verdict = judge(f, noise);
+  enum Verdict verdict = judge_signs(f, noise);
   if (verdict == STAYS) return INFINITY;
   if (verdict == FALLS) return refine(search, indicator, sign, from, to);
   double middle = 0.5 * (from + to);
@@ -219,7 +218,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
 
 bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
-  double last = instance->situation->last_step.end, *rate = instance->event_state;
+  double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
   if (!solver_derivatives(instance, last, search.state, rate)) return false;
   double way = tangent_to_zero(&search, last, rate, indicator);
@@ -239,11 +238,11 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
   for (size_t i = 0; i < count; i++) {
     double f[SEARCH_NODES], sign = switching_sign(instance, i);
     for (int k = 0; k < SEARCH_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
-    if (sign != 0.0 && judge(f, 0.0) == STAYS) continue;
+    if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
     double start = sign * search.samples[(size_t)DEGREE * count + i];
-    search.floor = start >= -floor_in_noise * search.noise[i] ? fmin(start, 0.0) : 0.0;
+    search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
     double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
                                                       : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
     if (!(found < *time)) continue;
@@ -252,5 +251,8 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
     instance->departure = search.departure;
   }
   if (search.windows > WINDOW_LIMIT) *time = NAN;
-  return !isinf(*time);
+  if (!isfinite(*time)) return isnan(*time);
+  double before = value_at(&search, *indicator, 0.5 * (from + *time));
+  instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
+  return true;
 }

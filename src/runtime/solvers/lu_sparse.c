@@ -3,7 +3,7 @@
 #include "lu.h"
 
 /* A pivot below this share of what it was before the elimination, or of what was subtracted, has lost all its digits. */
-static const double smallest_share = 1e-14;
+static const double smallest_pivot_share = 1e-14;
 
 /* L by rows with the inverse pivots, then U by columns: the same pattern, whose places for the diagonal stay empty. */
 static size_t element_count(void) {
@@ -60,7 +60,7 @@ static bool factor_row(size_t width, size_t i, double *l, double *u, double *row
     memset(row + j, 0, width * sizeof *row);
     memset(column + j, 0, width * sizeof *column);
   }
-  double least = smallest_share * (before + subtracted);
+  double least = smallest_pivot_share * (before + subtracted);
   if (!(before > least && number_size(width, pivot) > least) || !isfinite(least)) return false;
   number_invert(width, pivot);
   return true;

@@ -409,7 +409,7 @@ const double *radau_jacobian(const struct Instance *instance) {
 }
 
 const struct Solver solver_radau = {.name = "Radau",
-                                    .alternatives = "erk where friction sticks, auto where rates are alike",
+                                    .alternatives = "auto where rates are alike",
                                     .saved_size = radau_saved_size,
                                     .could_save = radau_could_save,
                                     .create = radau_create,

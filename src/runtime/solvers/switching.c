@@ -91,9 +91,12 @@ static double sign_with_noise(double value, double noise) {
 static double branch_mode(const struct Settlement *settlement, size_t branch) {
   size_t rate = settlement->switches->branch_count + branch;
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
-  double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
+  /* Where its zero was located, it may be left as far below as event_search.c takes for rounding. */
+  double noise = settlement_noise(settlement, branch, rate) * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
+  double sign = sign_with_noise(settlement->value[branch], noise);
   if (sign != 0.0) return sign;
-  sign = sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+  /* What an event has set is not what rounding has left, however small. */
+  sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
   bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
   if (!passes) return mode;
@@ -198,7 +201,7 @@ static void copy_conditions(struct Settlement *settlement) {
 }
 
 /* Modes as the signs of the start values say. */
-static const char *begin(struct Settlement *settlement) {
+static const char *begin_modes(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (!settlement_evaluate(settlement)) return "there are no accelerations";
@@ -217,7 +220,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   settlement.state = state;
   settlement.occasion = occasion;
   settlement.indicator = indicator;
-  const char *problem = occasion == AT_START ? begin(&settlement) : NULL;
+  const char *problem = occasion == AT_START ? begin_modes(&settlement) : NULL;
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";

@@ -155,8 +155,7 @@ static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
 static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
   if (!taylor->crosses) taylor->crossing.path += moved;
   else if (crawls(&taylor->crossing, moved, 1e-9))
-    return "a function jumps to and fro there, as dry friction that sticks; write it with tanh, or choose "
-           "<solver method=\"erk\"/> in system.xml";
+    return "a function jumps to and fro there, as dry friction that sticks, for which there is <friction>";
   if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
     return "the system is stiff there, which asks for <solver method=\"auto\"/> in system.xml";
   return NULL;
@@ -184,7 +183,7 @@ static const char *taylor_advance(struct Instance *instance, const struct Commun
 }
 
 const struct Solver solver_taylor = {.name = "the Taylor series",
-                                     .alternatives = "auto where rates differ much, erk where friction sticks",
+                                     .alternatives = "auto where rates differ much",
                                      .saved_size = taylor_saved_size,
                                      .could_save = taylor_could_save,
                                      .create = taylor_create,

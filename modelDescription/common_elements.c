@@ -1,0 +1,115 @@
+#include "common_elements.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "memory.h"
+#include "xml_output.h"
+
+static void write_unit(xmlTextWriterPtr writer, const char *name) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(name, &dimension, &problem);
+  xmlTextWriterStartElement(writer, BAD_CAST "Unit");
+  write_attribute(writer, "name", name);
+  xmlTextWriterStartElement(writer, BAD_CAST "BaseUnit");
+  for (int i = 0; i < BASE_UNIT_COUNT; i++)
+    if (dimension.exponent[i] != 0)
+      xmlTextWriterWriteFormatAttribute(writer, BAD_CAST base_unit_names[i], "%g", dimension.exponent[i]);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+}
+
+static bool contains(const char *const *names, size_t count, const char *name) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(names[i], name) == 0) return true;
+  return false;
+}
+
+/* Each unit once, in the order of the variables. A system has few of them, however many variables. */
+void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count) {
+  const char **written = allocate(variable_count, sizeof *written);
+  size_t count = 0;
+  for (size_t i = 0; i < variable_count; i++) {
+    const char *unit = interface->variables[i].unit;
+    if (unit == NULL || contains(written, count, unit)) continue;
+    if (count == 0) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");
+    written[count++] = unit;
+    write_unit(writer, unit);
+  }
+  if (count > 0) xmlTextWriterEndElement(writer);
+  free(written);
+}
+
+void write_log_categories(xmlTextWriterPtr writer) {
+  static const char *const categories[][2] = {{"logEvents", "life cycle"},
+                                              {"logStatusWarning", "warnings"},
+                                              {"logStatusDiscard", "steps that were not finished"},
+                                              {"logStatusError", "errors"},
+                                              {"logStatusFatal", "errors that end all instances"},
+                                              {"logAll", "all messages"}};
+  xmlTextWriterStartElement(writer, BAD_CAST "LogCategories");
+  for (size_t i = 0; i < sizeof categories / sizeof *categories; i++) {
+    xmlTextWriterStartElement(writer, BAD_CAST "Category");
+    write_attribute(writer, "name", categories[i][0]);
+    write_attribute(writer, "description", categories[i][1]);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+void write_experiment(xmlTextWriterPtr writer, const struct Model *model) {
+  double start = isnan(model->start_time) ? 0.0 : model->start_time;
+  double stop = isnan(model->stop_time) ? start + 10.0 : model->stop_time;
+  xmlTextWriterStartElement(writer, BAD_CAST "DefaultExperiment");
+  write_number(writer, "startTime", start);
+  write_number(writer, "stopTime", stop);
+  write_number(writer, "tolerance", interface_tolerance(model));
+  write_number(writer, "stepSize", isnan(model->step_size) ? (stop - start) / 1000 : model->step_size);
+  xmlTextWriterEndElement(writer);
+}
+
+bool has_start(const struct ScalarVariable *entry) {
+  return entry->kind == VARIABLE_STATE || entry->kind == VARIABLE_INPUT || entry->kind == VARIABLE_PARAMETER ||
+         entry->kind == VARIABLE_MODE;
+}
+
+/* Changes at events and communication points alone. */
+static bool is_discrete(const struct ScalarVariable *entry) {
+  return entry->kind == VARIABLE_STATISTIC || entry->kind == VARIABLE_MODE || entry->kind == VARIABLE_CONTACT;
+}
+
+/* Causality, variability and initial by the tables of FMI 2.0.4, section 2.2.7, and FMI 3.0, section 2.4.7.4. */
+void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
+  const struct ScalarVariable *entry = &variable->entry;
+  static const char *const causalities[] = {
+      [VARIABLE_TIME] = "independent", [VARIABLE_STATE] = "local",         [VARIABLE_DERIVATIVE] = "local",
+      [VARIABLE_INPUT] = "input",      [VARIABLE_PARAMETER] = "parameter", [VARIABLE_RESULT] = "local",
+      [VARIABLE_STATISTIC] = "local",  [VARIABLE_MODE] = "local",          [VARIABLE_CONTACT] = "local",
+      [VARIABLE_INDICATOR] = "local",
+  };
+  static const char *const initials[] = {
+      [VARIABLE_STATE] = "exact",        [VARIABLE_DERIVATIVE] = "calculated", [VARIABLE_PARAMETER] = "exact",
+      [VARIABLE_RESULT] = "calculated",  [VARIABLE_STATISTIC] = "calculated",  [VARIABLE_MODE] = "exact",
+      [VARIABLE_CONTACT] = "calculated", [VARIABLE_INDICATOR] = "calculated",
+  };
+  bool is_calculated = is_calculated_parameter(entry);
+  write_attribute(writer, "causality",
+                  entry->is_output ? "output"
+                  : is_calculated  ? "calculatedParameter"
+                                   : causalities[entry->kind]);
+  write_attribute(writer, "variability",
+                  entry->kind == VARIABLE_PARAMETER || is_calculated ? "tunable"
+                  : is_discrete(entry)                               ? "discrete"
+                                                                     : "continuous");
+  if (entry->kind != VARIABLE_TIME && entry->kind != VARIABLE_INPUT)
+    write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);
+}
+
+/* der(der(x)) is no structured name (section 2.2.9), where a second derivative is der(x,2). */
+const char *naming_convention(const struct Model *model) {
+  for (size_t i = 1; i < model->inputs.count; i++)
+    if (is_input_rate(model, i) && is_input_rate(model, i - 1)) return "flat";
+  return "structured";
+}

@@ -1,0 +1,141 @@
+#include "fmi3_description.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <libxml/xmlwriter.h>
+
+#include "algebra/formula.h"
+#include "common_elements.h"
+#include "mechanics/arrays.h"
+#include "memory.h"
+#include "model_structure.h"
+#include "scene.h"
+#include "xml_output.h"
+
+static void write_abilities(xmlTextWriterPtr writer, const struct Model *model) {
+  static const char *const abilities[] = {"canGetAndSetFMUState", "canSerializeFMUState",
+                                          "providesDirectionalDerivatives", "providesAdjointDerivatives"};
+  write_attribute(writer, "modelIdentifier", model->name);
+  for (size_t i = 0; i < sizeof abilities / sizeof *abilities; i++) write_attribute(writer, abilities[i], "true");
+}
+
+static void write_interfaces(xmlTextWriterPtr writer, const struct Program *program) {
+  const struct Model *model = program->model;
+  xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
+  write_abilities(writer, model);
+  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  if (model->constraints.count > 0 || program->interface->switching != NULL)
+    write_attribute(writer, "needsCompletedIntegratorStep", "true");
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
+  write_abilities(writer, model);
+  write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
+                                    program->interface->output_derivative_order);
+  write_attribute(writer, "providesIntermediateUpdate", "true");
+  if (program->interface->method != NULL) {
+    /* Where a solver comes to a part of a step alone, and where the importer asks for it. */
+    write_attribute(writer, "mightReturnEarlyFromDoStep", "true");
+    write_attribute(writer, "canReturnEarlyAfterIntermediateUpdate", "true");
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+/* The elements of an array, or the scalar. */
+static size_t element_count(const struct InterfaceVariable *variable) {
+  return variable->array_count > 0 ? variable->array_count : 1;
+}
+
+static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&text, &length);
+  for (size_t i = 0; i < element_count(variable); i++) {
+    char number[NUMBER_LENGTH];
+    number_text(variable[i].entry.start, number);
+    if (variable->entry.type == TYPE_BOOLEAN) fputs(variable[i].entry.start == 0.0 ? "false" : "true", file);
+    else fputs(number, file);
+    if (i + 1 < element_count(variable)) fputc(' ', file);
+  }
+  close_text(file, &text, &length);
+  write_attribute(writer, "start", text);
+  free(text);
+}
+
+static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,
+                          const struct InterfaceVariable *variable) {
+  const struct ScalarVariable *entry = &variable->entry;
+  if (variable->unit != NULL && entry->type == TYPE_REAL) write_attribute(writer, "unit", variable->unit);
+  if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);
+  if (!isnan(entry->maximum)) write_number(writer, "max", entry->maximum);
+  if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
+  if (entry->kind == VARIABLE_DERIVATIVE)
+    xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
+                                      interface_find(interface, VARIABLE_STATE, entry->index));
+}
+
+/* A statistic may count further than an Int32. */
+static const char *type_name(const struct ScalarVariable *entry) {
+  static const char *const names[] = {[TYPE_REAL] = "Float64", [TYPE_INTEGER] = "Int32", [TYPE_BOOLEAN] = "Boolean"};
+  return entry->kind == VARIABLE_STATISTIC ? "Int64" : names[entry->type];
+}
+
+static void write_variable(xmlTextWriterPtr writer, const struct Interface *interface, size_t place) {
+  const struct InterfaceVariable *variable = &interface->variables[place];
+  char *name = array_name(variable), *description = array_description(variable);
+  xmlTextWriterStartElement(writer, BAD_CAST type_name(&variable->entry));
+  write_attribute(writer, "name", name);
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", place);
+  if (description != NULL) write_attribute(writer, "description", description);
+  write_classification(writer, variable);
+  if (is_intermediate(&variable->entry)) write_attribute(writer, "intermediateUpdate", "true");
+  if (variable->entry.type != TYPE_BOOLEAN) write_numbers(writer, interface, variable);
+  if (has_start(&variable->entry)) write_start(writer, variable);
+  if (variable->array_count > 0) {
+    xmlTextWriterStartElement(writer, BAD_CAST "Dimension");
+    xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "start", "%zu", variable->array_count);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+  free(name);
+  free(description);
+}
+
+static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {
+  xmlTextWriterStartElement(writer, BAD_CAST "ModelVariables");
+  for (size_t i = 0; i < interface->count; i++)
+    if (!interface->variables[i].is_further_element) write_variable(writer, interface, i);
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_annotations(xmlTextWriterPtr writer, const struct Model *model) {
+  if (!has_scene(model)) return;
+  xmlTextWriterStartElement(writer, BAD_CAST "Annotations");
+  xmlTextWriterStartElement(writer, BAD_CAST "Annotation");
+  write_attribute(writer, "type", "lagrange-fmu");
+  scene_write(writer, model);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+}
+
+bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, const char *token) {
+  const struct Model *model = program->model;
+  xmlTextWriterPtr writer = open_document(buffer, "fmiModelDescription");
+  if (writer == NULL) return false;
+  write_attribute(writer, "fmiVersion", "3.0");
+  write_attribute(writer, "modelName", model->name);
+  write_attribute(writer, "instantiationToken", token);
+  if (model->description != NULL) write_attribute(writer, "description", model->description);
+  write_attribute(writer, "generationTool", "lagrange-fmu");
+  write_attribute(writer, "variableNamingConvention", naming_convention(model));
+  write_interfaces(writer, program);
+  write_units(writer, program->interface, program->interface->count);
+  write_log_categories(writer);
+  write_experiment(writer, model);
+  write_variables(writer, program->interface);
+  model_structure_write(writer, program, &structure_of_fmi3);
+  write_annotations(writer, model);
+  return close_document(writer);
+}

@@ -1,0 +1,132 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/xmlwriter.h>
+
+#include "algebra/differentiate.h"
+#include "fmi3_description.h"
+#include "mechanics/arrays.h"
+#include "memory.h"
+#include "xml_output.h"
+
+/* Names of what a flange is made of, by the unit of its coordinate. */
+struct Flange {
+  const char *unit, *position, *velocity, *force, *description;
+};
+
+static const struct Flange flanges[] = {
+    {"m", "position", "velocity", "force", "mechanical flange that is shifted"},
+    {"rad", "angle", "angularVelocity", "torque", "mechanical flange that is turned"},
+};
+
+static const struct Flange *flange_of(const struct Variable *coordinate) {
+  for (size_t i = 0; i < sizeof flanges / sizeof *flanges; i++)
+    if (coordinate->unit != NULL && strcmp(coordinate->unit, flanges[i].unit) == 0) return &flanges[i];
+  return NULL;
+}
+
+enum { NONE = -1, SEVERAL = -2 };
+
+/* Which input is the force along each coordinate, and along no other: its place, NONE or SEVERAL. */
+static int *find_forces(const struct Model *model) {
+  size_t inputs = model->inputs.count, coordinates = model->coordinates.count;
+  int *coordinate_of = allocate(inputs + 1, sizeof *coordinate_of), *force = allocate(coordinates + 1, sizeof *force);
+  for (size_t i = 0; i < inputs; i++) coordinate_of[i] = NONE;
+  for (size_t i = 0; i < coordinates; i++) {
+    struct Gradient gradient = gradient_by_kinds(model->graph, model->forces[i].node, 1u << INPUT);
+    for (size_t j = 0; j < gradient.count; j++) {
+      int *coordinate = &coordinate_of[graph_symbol_of(model->graph, gradient.symbols[j])->index];
+      *coordinate = *coordinate == NONE && gradient.values[j] == ONE ? (int)i : SEVERAL;
+    }
+    gradient_free(&gradient);
+    force[i] = NONE;
+  }
+  for (size_t i = 0; i < inputs; i++)
+    if (coordinate_of[i] >= 0) force[coordinate_of[i]] = force[coordinate_of[i]] == NONE ? (int)i : SEVERAL;
+  free(coordinate_of);
+  return force;
+}
+
+static void write_member(xmlTextWriterPtr writer, const struct InterfaceVariable *variable, const char *member,
+                         const char *kind) {
+  char *name = array_name(variable);
+  xmlTextWriterStartElement(writer, BAD_CAST "TerminalMemberVariable");
+  write_attribute(writer, "variableName", name);
+  write_attribute(writer, "memberName", member);
+  write_attribute(writer, "variableKind", kind);
+  xmlTextWriterEndElement(writer);
+  free(name);
+}
+
+/* The variables of a terminal: scalars, or arrays of as many elements, which are as many flanges. */
+struct Members {
+  const struct InterfaceVariable *position, *velocity, *force; /* NULL where there is no terminal */
+};
+
+static bool are_of_one_size(const struct InterfaceVariable *a, const struct InterfaceVariable *b) {
+  return a->array_count == b->array_count && !b->is_further_element;
+}
+
+/* The members of the terminal of a coordinate, or of the array that begins with it; force as find_forces() tells. */
+static struct Members members_of(const struct Program *program, const int *force, size_t coordinate) {
+  const struct Interface *interface = program->interface;
+  const struct Members none = {NULL, NULL, NULL};
+  const struct InterfaceVariable *position =
+      &interface->variables[interface_find(interface, VARIABLE_STATE, coordinate)];
+  if (position->is_further_element || force[coordinate] < 0) return none;
+  for (size_t i = 1; i < position->array_count; i++)
+    if (force[coordinate + i] != force[coordinate] + (int)i) return none;
+  struct Members members = {
+      position, position + program->model->coordinates.count,
+      &interface->variables[interface_find(interface, VARIABLE_INPUT, (size_t)force[coordinate])]};
+  return are_of_one_size(position, members.velocity) && are_of_one_size(position, members.force) ? members : none;
+}
+
+/* A force on a flange flows into the system: those of connected flanges add up to 0. */
+static bool write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
+                           bool is_open) {
+  const struct Flange *flange = flange_of(&program->model->coordinates.items[coordinate]);
+  struct Members members = members_of(program, force, coordinate);
+  if (flange == NULL || members.position == NULL) return is_open;
+  char *name = array_name(members.position), *description = array_description(members.position);
+  if (!is_open) xmlTextWriterStartElement(writer, BAD_CAST "Terminals");
+  xmlTextWriterStartElement(writer, BAD_CAST "Terminal");
+  write_attribute(writer, "name", name);
+  write_attribute(writer, "matchingRule", "plug");
+  write_attribute(writer, "description", description != NULL ? description : flange->description);
+  write_member(writer, members.position, flange->position, "signal");
+  write_member(writer, members.velocity, flange->velocity, "signal");
+  write_member(writer, members.force, flange->force, "inflow");
+  xmlTextWriterEndElement(writer);
+  free(name);
+  free(description);
+  return true;
+}
+
+/* terminalsAndIcons/icon.png fills the whole of the system's picture. */
+static void write_icon(xmlTextWriterPtr writer) {
+  static const char *const corners[] = {"x1", "y1", "x2", "y2"};
+  static const char *const elements[] = {"CoordinateSystem", "Icon"};
+  xmlTextWriterStartElement(writer, BAD_CAST "GraphicalRepresentation");
+  for (int element = 0; element < 2; element++) {
+    xmlTextWriterStartElement(writer, BAD_CAST elements[element]);
+    for (int i = 0; i < 4; i++) write_number(writer, corners[i], i < 2 ? -100.0 : 100.0);
+    if (element == 0) write_number(writer, "suggestedScalingFactorTo_mm", 0.1);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program) {
+  bool is_open = false;
+  xmlTextWriterPtr writer = open_document(buffer, "fmiTerminalsAndIcons");
+  if (writer == NULL) return false;
+  write_attribute(writer, "fmiVersion", "3.0");
+  write_icon(writer);
+  int *force = find_forces(program->model);
+  for (size_t i = 0; i < program->model->coordinates.count; i++)
+    is_open = write_terminal(writer, program, force, i, is_open);
+  if (is_open) xmlTextWriterEndElement(writer);
+  free(force);
+  return close_document(writer);
+}

@@ -1,0 +1,202 @@
+"""
+Compiles for other platforms than this machine's, with zig, which brings compilers, linkers and C libraries for all of them
+(the Python package ziglang). What every platform needs is here, and nowhere else.
+
+    cross.py fmu PLATFORM SYSTEM.c BINARIES NAME [--fmi 3] [--sundials FOLDER]    a system that lagc wrote, as libraries in binaries/
+    cross.py libraries PLATFORM NAME [--fmi 3]                                    which these are, separated by ;
+    cross.py sundials FOLDER SUNDIALS SUITESPARSE                                 SUNDIALS and KLU for all of them, from their sources
+"""
+
+import argparse
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+
+# Folders in binaries/ of FMI 2.0, with what libraries end in and zig's targets. FMI 2.0.5 has the first three, and for others the names of
+# FMI 3.0, which are those of the targets, one a processor.
+PLATFORMS = {
+    "linux64": (".so", ["x86_64-linux-gnu.2.17"]),
+    "win64": (".dll", ["x86_64-windows-gnu"]),
+    "darwin64": (".dylib", ["x86_64-macos.11.0", "aarch64-macos.11.0"]),
+    "aarch64-linux": (".so", ["aarch64-linux-gnu.2.17"]),
+}
+ROOT = Path(__file__).resolve().parent.parent  # of include/ and src/runtime/
+
+# The same sums and products everywhere: no a*b + c in one operation. Without unused functions.
+FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all"]
+# No linker of all platforms redirects calls, as --wrap does for this machine's libraries: src/runtime/solvers/sundials_memory.c.
+ALLOCATIONS = [f"-D{name}=__wrap_{name}" for name in ("malloc", "calloc", "realloc", "free")]
+SUNDIALS_PARTS = ["sundials", "arkode", "cvode", "nvector/serial", "sunmatrix/dense", "sunmatrix/band", "sunmatrix/sparse", "sunlinsol/dense",
+                  "sunlinsol/band", "sunlinsol/klu", "sunnonlinsol/newton", "sunnonlinsol/fixedpoint"]  # fmt: skip
+# Interfaces to Fortran and to other libraries, and measurements, which not every platform has.
+LEFT_OUT = re.compile(r"^f(ark|cv|n|sun)|xbraid|hypamg|profiler|fused|futils")
+KLU_PARTS = ["KLU", "AMD", "COLAMD", "BTF"]
+
+
+class Failure(Exception):
+    """What cannot be compiled, with the compiler's words."""
+
+
+def zig(*words, cache):
+    """Runs zig; what it compiled of the platforms' C libraries stays where ZIG_GLOBAL_CACHE_DIR says, or zig's own place."""
+    environment = {"ZIG_LOCAL_CACHE_DIR": str(cache), **os.environ}
+    result = subprocess.run([sys.executable, "-m", "ziglang", *map(str, words)], env=environment, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise Failure(result.stderr.strip())
+
+
+@contextmanager
+def scratch(output):
+    """A folder beside the output, for what must not be left behind."""
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".cross-") as folder:
+        yield Path(folder)
+
+
+def libraries_of(platform, name, fmi=2):
+    """The libraries of an FMU for the platform, as paths in binaries/, each with the targets that it is for."""
+    if platform not in PLATFORMS:
+        raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORMS)}")
+    if find_spec("ziglang") is None:
+        package = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
+        raise Failure(f"this Python has no package ziglang, which compiles for {platform}; expected one after pip install {package}")
+    suffix, targets = PLATFORMS[platform]
+    if fmi == 2:
+        return {f"{platform}/{name}{suffix}": targets}
+    return {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets}
+
+
+def folder_of(target):
+    """What FMI 3.0 calls a target."""
+    processor, system = target.split(".")[0].split("-")[:2]
+    return f"{processor}-{'darwin' if system == 'macos' else system}"
+
+
+def universal(slices):
+    """Mach-O files for several processors as one: a header in big endian with the place of each, which is a multiple of 2^14."""
+    align = 14
+    header, content = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
+    start = 1 << align
+    for data in slices:
+        content = content.ljust(-(-len(content) // start) * start, b"\0")
+        processor, variant = struct.unpack_from("<II", data, 4)
+        header += struct.pack(">IIIII", processor, variant, start + len(content), len(data), align)
+        content += data
+    return header.ljust(start, b"\0") + content
+
+
+def compile_target(target, system, library, fmi, source, sundials, folder):
+    """system.c, the parts of the runtime that it includes and the layer of the version of FMI as one library in the folder."""
+    output = folder / target / library
+    output.parent.mkdir()
+    words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.",
+             f"-ffile-prefix-map={system.parent}=."]  # fmt: skip
+    if "macos" in target:
+        words.append(f"-Wl,-install_name,@rpath/{library}")
+    includes = [source / "include", source / "src" / "runtime", *sorted((source / "src" / "runtime").glob("*/"))]
+    layer = [word for file in sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c")) for word in ("-include", file)]
+    libraries = []
+    if sundials is not None:
+        includes.append(sundials / "include")
+        libraries.append(sundials / target / "libsundials.a")
+    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], *layer, system, *libraries, "-lm", "-o", output, cache=folder / "cache")
+    return output.read_bytes()
+
+
+def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=None):
+    """
+    Compiles the system.c of lagc as the platform's libraries in the folder binaries, for an FMU of this name and version of FMI, with the
+    runtime in source/include and source/src/runtime. sundials: the folder that compile_sundials() made, for systems with erk and bdf;
+    others leave it alone.
+    """
+    system, source = Path(system).resolve(), Path(source).resolve()
+    if '#include "sundials_memory.c"' not in system.read_text():
+        sundials = None
+    elif sundials is None or not (Path(sundials) / "include").exists():
+        raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
+    else:
+        sundials = Path(sundials).resolve()
+    for path, targets in libraries_of(platform, name, fmi).items():
+        library = Path(binaries).resolve() / path
+        with scratch(library) as folder:
+            slices = [compile_target(target, system, library.name, fmi, source, sundials, folder) for target in targets]
+            (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])
+            (folder / library.name).replace(library)
+
+
+def sundials_configuration(source):
+    """The header that SUNDIALS' own build would make: doubles, indices of 32 bits, which KLU has on all platforms, and nothing that is optional."""
+    version = re.search(r'PACKAGE_VERSION_MAJOR "(\d+)".*?MINOR "(\d+)".*?PATCH "(\d+)"', (source / "CMakeLists.txt").read_text(), re.S).groups()
+    values = dict(zip(("PACKAGE_VERSION_MAJOR", "PACKAGE_VERSION_MINOR", "PACKAGE_VERSION_PATCH"), version), PACKAGE_VERSION=".".join(version),
+                  PRECISION_LEVEL="#define SUNDIALS_DOUBLE_PRECISION 1", INDEX_TYPE="#define SUNDIALS_INT32_T 1", SUNDIALS_CINDEX_TYPE="int32_t",
+                  SUNDIALS_LOGGING_LEVEL="0")  # fmt: skip
+    there = ("SUNDIALS_C_COMPILER_HAS_MATH_PRECISIONS", "SUNDIALS_C_COMPILER_HAS_ISINF_ISNAN", "SUNDIALS_C_COMPILER_HAS_INLINE",
+             "SUNDIALS_C_COMPILER_HAS_SNPRINTF_AND_VA_COPY")  # fmt: skip
+    text = (source / "include" / "sundials" / "sundials_config.in").read_text()
+    text = re.sub(r"#cmakedefine01 (\w+)", r"#define \1 0", text)
+    text = re.sub(r"#cmakedefine (\w+).*", lambda found: f"#define {found[1]}" if found[1] in there else "", text)
+    return re.sub(r"@(\w+)@", lambda found: values.get(found[1], ""), text)
+
+
+def write_headers(include, sundials, suitesparse):
+    shutil.copytree(sundials / "include", include)
+    (include / "sundials" / "sundials_config.h").write_text(sundials_configuration(sundials))
+    (include / "sundials" / "sundials_export.h").write_text("#define SUNDIALS_EXPORT\n#define SUNDIALS_NO_EXPORT\n#define SUNDIALS_DEPRECATED_EXPORT\n")
+    for header in [*(suitesparse / "SuiteSparse_config").glob("*.h"), *(path for part in KLU_PARTS for path in (suitesparse / part / "Include").glob("*.h"))]:
+        shutil.copy(header, include)
+
+
+def compile_sundials(folder, sundials, suitesparse):
+    """folder/include and folder/TARGET/libsundials.a, with KLU in it, from the unpacked sources of both."""
+    folder, sundials, suitesparse = (Path(path).resolve() for path in (folder, sundials, suitesparse))
+    sources = [path for part in SUNDIALS_PARTS for path in sorted((sundials / "src" / part).glob("*.c")) if not LEFT_OUT.search(path.name)]
+    sources += [path for part in KLU_PARTS for path in sorted((suitesparse / part / "Source").glob("*.c"))]
+    sources.append(suitesparse / "SuiteSparse_config" / "SuiteSparse_config.c")
+    with scratch(folder) as work:
+        write_headers(work / "ready" / "include", sundials, suitesparse)
+        includes = [work / "ready" / "include", *(sundials / "src" / part for part in ("sundials", "arkode", "cvode"))]
+        for target in [target for _, targets in PLATFORMS.values() for target in targets]:
+            library = work / "ready" / target / "libsundials.a"
+            library.parent.mkdir()
+            zig("build-lib", "-static", "-target", target, "-OReleaseFast", "-fstrip", "-fno-compiler-rt", "-lc", "-fPIC", "--name", "sundials",
+                f"-femit-bin={library}", *[f"-I{include}" for include in includes], "-cflags", *FLAGS, *ALLOCATIONS,
+                f"-ffile-prefix-map={work.parent}=.", "-w", "--", *sources, cache=work / "cache")  # fmt: skip
+        shutil.rmtree(folder, ignore_errors=True)
+        (work / "ready").replace(folder)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="cross.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    fmu, libraries, sundials = (commands.add_parser(name) for name in ("fmu", "libraries", "sundials"))
+    for parser_of_one, names in (
+        (fmu, ("platform", "system", "binaries", "name")),
+        (libraries, ("platform", "name")),
+        (sundials, ("folder", "sundials", "suitesparse")),
+    ):
+        for name in names:
+            parser_of_one.add_argument(name)
+    for parser_of_one in (fmu, libraries):
+        parser_of_one.add_argument("--fmi", type=int, choices=(2, 3), default=2)
+    fmu.add_argument("--sundials")
+    words = parser.parse_args()
+    try:
+        if words.command == "libraries":
+            print(";".join(libraries_of(words.platform, words.name, words.fmi)))
+        elif words.command == "fmu":
+            compile_fmu(words.platform, words.system, words.binaries, words.name, words.fmi, sundials=words.sundials)
+        else:
+            compile_sundials(words.folder, words.sundials, words.suitesparse)
+    except Failure as problem:
+        sys.exit(f"cross.py: {problem}")
+
+
+if __name__ == "__main__":
+    main()

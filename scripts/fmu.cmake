@@ -1,0 +1,184 @@
+# lagrange_add_fmu, for CMakeLists.txt and for projects that find the installed package. Before it: the targets lagrange-fmu::lagc
+# and lagrange-fmu::icon, the target lagrange_runtime, which this machine's libraries are linked with, and the variables
+# lagrange_global_names, a file with what nm says of the runtime, and lagrange_sundials, a folder of cross.py (or none).
+get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+find_program(zip zip REQUIRED)
+
+# What no FMU needs is left out: unused functions, and tables to unwind the stack by, which C has no use for.
+set(lagrange_compact -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables)
+file(GLOB_RECURSE lagrange_sources CONFIGURE_DEPENDS ${lagrange_root}/include/*.h ${lagrange_root}/src/runtime/*.[ch])
+
+# append_named_files(list file): the files that a system's file names, and those that they name, each once.
+function(append_named_files list file)
+  set(space "[ \t\r\n]")
+  file(READ ${file} text)
+  string(REGEX REPLACE "[][;]" " " text "${text}") # would mean something in lists
+  string(REGEX MATCHALL "<(include|table|linearization)${space}[^>]*" elements "${text}")
+  get_filename_component(directory ${file} DIRECTORY)
+  foreach(element IN LISTS elements)
+    if(element MATCHES "${space}(file|of)${space}*=${space}*[\"']([^\"']+)[\"']")
+      get_filename_component(named ${CMAKE_MATCH_2} ABSOLUTE BASE_DIR ${directory})
+      if(EXISTS ${named} AND NOT IS_DIRECTORY ${named} AND NOT named IN_LIST ${list})
+        list(APPEND ${list} ${named})
+        append_named_files(${list} ${named})
+      endif()
+    endif()
+  endforeach()
+  set(${list} ${${list}} PARENT_SCOPE)
+endfunction()
+
+# find_platform(platform version): sets lagrange_zig to a Python with the package ziglang, and lagrange_libraries_PLATFORM_VERSION to the
+# paths of its libraries of FMUs named NAME in binaries/, once for all FMUs.
+function(find_platform platform version)
+  find_program(LAGRANGE_PYTHON python3 HINTS ${lagrange_root}/build/venv/bin DOC "A Python with the package ziglang, for other platforms")
+  if(NOT lagrange_libraries_${platform}_${version} OR NOT "${lagrange_zig}" STREQUAL LAGRANGE_PYTHON)
+    execute_process(COMMAND ${LAGRANGE_PYTHON} ${lagrange_root}/scripts/cross.py libraries ${platform} NAME --fmi ${version}
+                    RESULT_VARIABLE status OUTPUT_VARIABLE libraries ERROR_VARIABLE words OUTPUT_STRIP_TRAILING_WHITESPACE)
+    if(NOT status EQUAL 0)
+      message(FATAL_ERROR "${words} (LAGRANGE_PYTHON is ${LAGRANGE_PYTHON})")
+    endif()
+    set(lagrange_zig ${LAGRANGE_PYTHON} CACHE INTERNAL "A Python with the package ziglang")
+    set(lagrange_libraries_${platform}_${version} "${libraries}" CACHE INTERNAL "The platform's libraries of FMUs")
+  endif()
+endfunction()
+
+# add_platform_libraries(list name version folder platforms): for each platform the libraries of folder/system.c by cross.py, added to the
+# list.
+function(add_platform_libraries list name version folder platforms)
+  if(EXISTS "${lagrange_sundials}")
+    set(sundials --sundials ${lagrange_sundials})
+  endif()
+  foreach(platform ${platforms})
+    find_platform(${platform} ${version})
+    set(binaries ${folder}/platforms${version})
+    string(REPLACE NAME ${name} outputs "${lagrange_libraries_${platform}_${version}}")
+    list(TRANSFORM outputs PREPEND ${binaries}/)
+    add_custom_command(OUTPUT ${outputs}
+                       COMMAND ${lagrange_zig} ${lagrange_root}/scripts/cross.py fmu ${platform} ${folder}/system.c ${binaries} ${name}
+                               --fmi ${version} ${sundials}
+                       DEPENDS ${folder}/system.c ${lagrange_sources} ${lagrange_root}/scripts/cross.py
+                       COMMENT "Compiling ${name} of FMI ${version} for ${platform}" VERBATIM)
+    list(APPEND ${list} ${outputs})
+  endforeach()
+  set(${list} ${${list}} PARENT_SCOPE)
+endfunction()
+
+# add_library_here(name version folder): this machine's library of an FMU of this version of FMI, by the project's compiler.
+function(add_library_here name version folder)
+  set(library system_${name})
+  set(binaries linux64)
+  set(map link.map)
+  if(version EQUAL 3)
+    set(library system_3_${name})
+    set(binaries x86_64-linux)
+    set(map link3.map)
+  endif()
+  set(exports ${lagrange_root}/src/runtime/fmi${version}/exports.map)
+  add_library(${library} MODULE $<TARGET_OBJECTS:equations_${name}>)
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME ${name} PREFIX "" LINKER_LANGUAGE C C_VISIBILITY_PRESET hidden C_STANDARD 11
+                        LIBRARY_OUTPUT_DIRECTORY ${folder}/binaries/${binaries})
+  target_compile_options(${library} PRIVATE ${lagrange_compact})
+  target_link_libraries(${library} PRIVATE lagrange_runtime lagrange_fmi${version} m)
+  target_link_options(${library} PRIVATE -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--build-id=none
+                      "SHELL:-Xlinker \"-Map=${folder}/${map}\"" "SHELL:-Xlinker \"--version-script=${exports}\"")
+  if(NOT SANITIZE)
+    target_link_options(${library} PRIVATE -s -Wl,--no-undefined)
+  endif()
+  set_property(TARGET ${library} PROPERTY LINK_DEPENDS ${exports})
+endfunction()
+
+# add_archive(name version folder system platforms): fmu/name.fmu, or fmi3/name.fmu.
+function(add_archive name version folder system platforms)
+  set(library system_${name})
+  set(target fmu_${name})
+  set(fmu ${CMAKE_CURRENT_BINARY_DIR}/fmu/${name}.fmu)
+  if(version EQUAL 3)
+    set(library system_3_${name})
+    set(target fmu_3_${name})
+    set(fmu ${CMAKE_CURRENT_BINARY_DIR}/fmi3/${name}.fmu)
+  endif()
+  if(platforms)
+    add_platform_libraries(libraries ${name} ${version} ${folder} "${platforms}")
+  else()
+    set(libraries $<TARGET_FILE:${library}>)
+  endif()
+  set(scripts ${lagrange_root}/scripts)
+  add_custom_command(OUTPUT ${fmu}
+                     COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
+                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D NAMES=${lagrange_global_names}
+                             -P ${scripts}/pack.cmake
+                     DEPENDS ${folder}/model.png ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
+                             ${scripts}/archive.cmake ${scripts}/one_file.cmake
+                     COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
+  add_custom_target(${target} ALL DEPENDS ${fmu})
+  add_dependencies(${target} icon_${name}) # else each FMU would draw it
+endfunction()
+
+# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the
+# folder that CMake builds the current one in, and fmi3/NAME.fmu where the version 3 is asked for; NAME is the one in SYSTEM.xml, as
+# pack.cmake checks.
+#   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors) and aarch64-linux, by zig; none: this machine alone, by
+#                 the project's compiler
+#   FMI_VERSIONS  2, 3 or both; none: 2
+#   SOLVER        a method of <solver> in place of the system's own, where there is anything that moves
+#   FORM          statements or tables, in place of the form that follows from the system's size
+# The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME, since a system may be named like another target.
+function(lagrange_add_fmu name system)
+  cmake_parse_arguments(PARSE_ARGV 2 fmu "" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
+  if(fmu_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER or FORM")
+  endif()
+  if(NOT fmu_FMI_VERSIONS)
+    set(fmu_FMI_VERSIONS 2)
+  endif()
+  list(REMOVE_DUPLICATES fmu_FMI_VERSIONS)
+  foreach(version ${fmu_FMI_VERSIONS})
+    if(NOT version MATCHES "^[23]$")
+      message(FATAL_ERROR "lagrange_add_fmu(${name}): there is no version ${version} of FMI here; expected 2, 3 or both")
+    endif()
+  endforeach()
+  get_filename_component(system ${system} ABSOLUTE)
+  if(NOT EXISTS ${system})
+    message(FATAL_ERROR "lagrange_add_fmu(${name}): there is no ${system}; expected the file of a system")
+  endif()
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/systems/${name})
+  set(dependencies ${system})
+  append_named_files(dependencies ${system})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${dependencies})
+  set(text "")
+  foreach(file IN LISTS dependencies)
+    file(READ ${file} part)
+    string(APPEND text "${part}")
+  endforeach()
+  if(fmu_SOLVER AND text MATCHES "<(coordinate|linearization|robot)[ \t\r\n]")
+    set(solver --solver ${fmu_SOLVER})
+  endif()
+  if(fmu_FORM)
+    set(form --form ${fmu_FORM})
+  endif()
+  add_custom_command(OUTPUT ${folder}/system.c
+                     BYPRODUCTS ${folder}/modelDescription.xml ${folder}/documentation/index.html
+                     COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form}
+                     DEPENDS lagrange-fmu::lagc ${dependencies}
+                     COMMENT "Deriving ${name}" VERBATIM)
+
+  add_library(equations_${name} OBJECT ${folder}/system.c)
+  set_target_properties(equations_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden C_STANDARD 11)
+  # Generated functions of one type take arguments that not all of them need.
+  target_compile_options(equations_${name} PRIVATE -Wno-unused-parameter -falign-functions=64 ${lagrange_compact})
+  target_link_libraries(equations_${name} PRIVATE lagrange_runtime)
+
+  # This machine's library of FMI 2.0 also draws model.png.
+  add_library_here(${name} 2 ${folder})
+  add_custom_command(OUTPUT ${folder}/model.png
+                     COMMAND lagrange-fmu::icon $<TARGET_FILE:system_${name}> ${folder}/modelDescription.xml ${folder}/model.png
+                     DEPENDS lagrange-fmu::icon system_${name} ${folder}/system.c
+                     COMMENT "Drawing ${name}" VERBATIM)
+  add_custom_target(icon_${name} DEPENDS ${folder}/model.png)
+  if(3 IN_LIST fmu_FMI_VERSIONS AND NOT fmu_PLATFORMS)
+    add_library_here(${name} 3 ${folder})
+  endif()
+  foreach(version ${fmu_FMI_VERSIONS})
+    add_archive(${name} ${version} ${folder} ${system} "${fmu_PLATFORMS}")
+  endforeach()
+endfunction()

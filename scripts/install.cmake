@@ -1,0 +1,22 @@
+# What cmake --install brings: lagc, its man page, and a CMake package, whose folder has what it needs of the tree under the same names.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package ${CMAKE_INSTALL_DATADIR}/lagrange-fmu)
+install(PROGRAMS $<TARGET_FILE:lagc> DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(PROGRAMS $<TARGET_FILE:icon> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/lagrange-fmu)
+install(FILES src/compiler/lagc.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES LICENSE DESTINATION ${package})
+install(DIRECTORY include DESTINATION ${package} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY src/runtime DESTINATION ${package}/src FILES_MATCHING PATTERN "*.[ch]" PATTERN "*.map")
+install(FILES fmu/system.xsd fmu/README.md DESTINATION ${package}/fmu)
+install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/one_file.cmake scripts/cross.py scripts/requirements-platforms.txt
+        DESTINATION ${package}/scripts)
+install(FILES ${lagrange_global_names} DESTINATION ${package})
+# Where scripts/sundials-all has built it: erk and bdf, for all platforms.
+install(DIRECTORY ${lagrange_sundials} DESTINATION ${package} OPTIONAL)
+configure_package_config_file(scripts/lagrange-fmu-config.cmake.in lagrange-fmu-config.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lagrange-fmu
+                              PATH_VARS package CMAKE_INSTALL_BINDIR CMAKE_INSTALL_LIBEXECDIR)
+write_basic_package_version_file(lagrange-fmu-config-version.cmake COMPATIBILITY SameMajorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/lagrange-fmu-config.cmake ${CMAKE_BINARY_DIR}/lagrange-fmu-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lagrange-fmu)

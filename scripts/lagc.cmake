@@ -1,0 +1,30 @@
+# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found, core_sources the files of the runtime's core.
+get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+
+# The schema becomes a string in the program.
+file(READ ${root}/fmu/system.xsd schema HEX)
+string(REGEX REPLACE "(..)" "0x\\1," schema "${schema}")
+file(CONFIGURE OUTPUT system_schema.c CONTENT
+     "extern const char system_schema[];\nconst char system_schema[] = {${schema}0};\n" @ONLY)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/fmu/system.xsd)
+
+# So do the names of the core's files, for FMUs that carry their sources.
+list(TRANSFORM core_sources REPLACE "^.*/(.*)$" "\"\\1\", " OUTPUT_VARIABLE names)
+list(JOIN names "" names)
+file(CONFIGURE OUTPUT runtime_sources.c CONTENT
+     "extern const char *const runtime_sources[];\nconst char *const runtime_sources[] = {${names}(const char *)0};\n" @ONLY)
+
+file(GLOB compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/src/compiler/*/*.c ${root}/modelDescription/*.c)
+list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
+add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
+            ${CMAKE_BINARY_DIR}/runtime_sources.c)
+target_compile_definitions(compiler PUBLIC _XOPEN_SOURCE=700)
+target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/modelDescription)
+target_include_directories(compiler SYSTEM PUBLIC ${LIBXML2_INCLUDE_DIRS})
+target_link_libraries(compiler PUBLIC ${LIBXML2_LIBRARIES} m)
+
+if(NOT LAGC)
+  add_executable(lagc ${root}/src/compiler/main.c)
+  target_link_libraries(lagc PRIVATE compiler)
+  target_compile_definitions(lagc PRIVATE LAGC_VERSION="${PROJECT_VERSION}")
+endif()

@@ -1,0 +1,122 @@
+"""From a system in XML to an FMU: lagc derives, zig compiles, and all is packed."""
+
+import os
+import platform
+import re
+import subprocess
+import tempfile
+import warnings
+from pathlib import Path
+from xml.etree import ElementTree
+
+from .packing import pack, write_sources
+from .problem import Problem
+from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
+
+HERE = Path(__file__).resolve().parent
+NATIVE = "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux"
+
+
+def system_file(system):
+    """The file of a system, which may be given by its folder."""
+    path = Path(system)
+    if path.is_dir():
+        path = path / "system.xml"
+    if not path.is_file():
+        raise Problem(f"there is no file {path}; expected that of a <system>, or its folder with a system.xml in it")
+    return path
+
+
+def derive(system, folder, solver):
+    """Lets lagc write into the folder; returns modelDescription.xml as a tree."""
+    words = [HERE / "bin" / "lagc", system_file(system), "-o", folder]
+    if solver is not None:
+        words += ["--solver", solver]
+    lagc = subprocess.run(words, capture_output=True, text=True)
+    if lagc.returncode != 0:
+        raise Problem(lagc.stderr.strip())
+    if lagc.stderr:
+        warnings.warn(lagc.stderr.strip(), stacklevel=3)
+    return ElementTree.parse(folder / "modelDescription.xml").getroot()
+
+
+def method_of(folder):
+    """The method of the system whose equations are there; "none" for one without states."""
+    found = re.search(r"\.solver = &solver_([a-z]+)", (folder / "system.c").read_text())
+    return found[1] if found else "none"
+
+
+def check(system, solver=None):
+    """Derives the equations and builds nothing; mistakes are a Problem. Returns in a line what came out."""
+    with tempfile.TemporaryDirectory() as scratch:
+        description = derive(system, Path(scratch), solver)
+        method = method_of(Path(scratch))
+    counts = {"states": len(description.findall("ModelStructure/Derivatives/Unknown"))}
+    for causality in ("input", "output", "parameter"):
+        counts[f"{causality}s"] = len(description.findall(f"ModelVariables/ScalarVariable[@causality='{causality}']"))
+    return f"{description.get('modelName')}: {', '.join(f'{count} {kind}' for kind, count in counts.items())}; solver {method}"
+
+
+def compile_libraries(folder, name, platforms, fmi, content):
+    if not {"HOME", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"} & set(os.environ):
+        os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"lagrange-fmu-{os.getuid()}")
+    for platform_name in platforms:
+        try:
+            compile_fmu(platform_name, folder / "system.c", content / "binaries", name, fmi, sundials=HERE / "sundials")
+        except Failure as failure:
+            raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
+
+
+def write_descriptions(folder, name, fmi, content):
+    """What stands beside the libraries; folder holds what lagc wrote."""
+    files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
+    if fmi == 3:
+        files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
+        documentation = (folder / "documentation" / "index.html").read_text(encoding="utf-8")
+        (folder / "documentation" / "index.html").write_text(documentation.replace("../model.png", "../terminalsAndIcons/icon.png"), encoding="utf-8")
+    build_description = folder / "fmi3" / "buildDescription.xml"
+    if build_description.exists():  # then it is complete in C
+        write_sources(folder / "system.c", name, content / "sources" / f"{name}.c", fmi)
+        if fmi == 3:
+            files["sources/buildDescription.xml"] = "fmi3/buildDescription.xml"
+    for member, file in files.items():
+        (content / member).parent.mkdir(exist_ok=True)
+        (folder / file).rename(content / member)
+
+
+def build(system, platforms=None, solver=None, output=".", fmi=2):
+    """
+    Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
+    `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own;
+    `fmi` is the version of FMI, 2 or 3.
+    """
+    platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
+    for name in platforms:
+        if name not in PLATFORMS:
+            raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORMS)}")
+    if fmi not in (2, 3):
+        raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        description = derive(system, folder, solver)
+        name = description.find("CoSimulation").get("modelIdentifier")
+        content = folder / "content"
+        compile_libraries(folder, name, platforms, fmi, content)
+        write_descriptions(folder, name, fmi, content)
+        archive = Path(output) / f"{name}.fmu"
+        archive.parent.mkdir(parents=True, exist_ok=True)
+        pack(content, archive)
+    return archive
+
+
+def new(name):
+    """Writes NAME.xml, a system to begin with, and returns its path."""
+    if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
+        raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
+    path = Path(f"{name}.xml")
+    try:
+        with open(path, "x", encoding="utf-8") as file:
+            file.write((HERE / "template.xml").read_text(encoding="utf-8").replace("@NAME@", name))
+    except FileExistsError:
+        raise Problem(f"{path} is already there; expected another name") from None
+    return path

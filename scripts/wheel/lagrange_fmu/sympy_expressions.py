@@ -1,0 +1,90 @@
+"""Expressions of SymPy in the language of system.xml."""
+
+import re
+import unicodedata
+
+import sympy
+from sympy.printing.str import StrPrinter
+
+from .problem import Problem
+
+# Functions of the language by their names in SymPy.
+FUNCTIONS = {name: name for name in "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log sign atan2".split()}
+FUNCTIONS |= {"Abs": "abs", "Min": "min", "Max": "max"}
+# What follows from those.
+REWRITTEN = {
+    sympy.sec: lambda x: 1 / sympy.cos(x),
+    sympy.csc: lambda x: 1 / sympy.sin(x),
+    sympy.cot: lambda x: sympy.cos(x) / sympy.sin(x),
+    sympy.sech: lambda x: 1 / sympy.cosh(x),
+    sympy.csch: lambda x: 1 / sympy.sinh(x),
+    sympy.coth: lambda x: sympy.cosh(x) / sympy.sinh(x),
+}
+# Names of the language, which nothing else can have.
+TAKEN = {*FUNCTIONS.values(), "sqrt", "pow", "pi", "time", "der", "sum", "if", "kineticEnergy", "potentialEnergy", "totalEnergy", "nonConservativeWork",
+         "solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers"}  # fmt: skip
+
+
+class Names:
+    """Valid names, each once."""
+
+    def __init__(self):
+        self.taken = set(TAKEN)
+
+    def add(self, text):
+        """What is nearest to it of letters, digits and _, and not taken yet: theta_1 for \\theta_{1}."""
+        text = "".join(map(_ascii, str(text).replace("'", "_prime")))
+        text = re.sub(r"[^A-Za-z0-9_]", "_", re.sub(r"[\\{}$^]", "", text))[:150]
+        name = text if re.match("[A-Za-z_]", text) else f"_{text}"
+        while name in self.taken:
+            name += "_"
+        self.taken.add(name)
+        return name
+
+
+def _ascii(letter):
+    """A Greek letter by its name, an accented one without the accent."""
+    if letter.isascii():
+        return letter
+    words = unicodedata.name(letter, "").split()
+    if words[:1] == ["GREEK"] and words[2:3] == ["LETTER"]:
+        return words[3].capitalize() if words[1] == "CAPITAL" else words[3].lower()
+    return unicodedata.normalize("NFKD", letter).encode("ascii", "ignore").decode() or "_"
+
+
+class _Printer(StrPrinter):
+    """Differs from Python in the names of functions and, see text_of, in the sign of powers."""
+
+    def _print_Float(self, number):
+        return repr(float(number))
+
+    def _print_Function(self, function):
+        first, *others = (self._print(argument) for argument in function.args)
+        return f"{FUNCTIONS[function.func.__name__]}({', '.join([first, *others])})"
+
+    def _print_extremum(self, function):
+        """Of any number of arguments in SymPy, of two in the language."""
+        *others, text = (self._print(argument) for argument in function.args)
+        for argument in reversed(others):
+            text = f"{FUNCTIONS[function.func.__name__]}({argument}, {text})"
+        return text
+
+    _print_Abs = _print_Function
+    _print_Max = _print_Min = _print_extremum
+
+
+def prepared(expression):
+    """With derivatives carried out, and without functions that follow from others."""
+    expression = sympy.sympify(expression).doit()
+    for function, rewrite in REWRITTEN.items():
+        expression = expression.replace(function, rewrite)
+    return expression.replace(lambda node: node.is_NumberSymbol and node is not sympy.pi, lambda node: sympy.Float(node))
+
+
+def text_of(expression, where):
+    """Of a prepared expression, all of whose symbols have valid names. `where` begins the message about what cannot be expressed."""
+    for node in sympy.preorder_traversal(expression):
+        known = isinstance(node, (sympy.Add, sympy.Mul, sympy.Pow, sympy.Symbol)) or node is sympy.pi or node.func.__name__ in FUNCTIONS
+        if not known and not (node.is_Number and node.is_finite):
+            raise Problem(f"{where}: {node} cannot be expressed; expected real numbers, + - * / **, sqrt, and of functions {', '.join(sorted(FUNCTIONS))}")
+    return _Printer().doprint(expression).replace("**", "^")

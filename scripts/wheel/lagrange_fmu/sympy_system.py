@@ -1,0 +1,157 @@
+"""A LagrangesMethod of sympy.physics.mechanics as a system in XML."""
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import sympy
+from sympy.core.function import AppliedUndef
+from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
+
+from .problem import Problem
+from .sympy_expressions import Names, prepared, text_of
+
+
+def _generalized_forces(method):
+    """One for each coordinate: of each load, its vector times the derivative of its velocity by that of the coordinate."""
+    frame, forces = method.inertial, [sympy.S.Zero] * len(method.q)
+    for location, vector in method.forcelist or []:
+        if frame is None:
+            raise Problem("the LagrangesMethod has forces and no inertial frame; expected frame=N")
+        velocity = location.ang_vel_in(frame) if isinstance(location, ReferenceFrame) else location.vel(frame)
+        for i, speed in enumerate(method.q.diff(dynamicsymbols._t)):
+            forces[i] += velocity.diff(speed, frame, var_in_dcm=False).dot(vector)
+    return forces
+
+
+class _Content:
+    """What a LagrangesMethod says, with plain symbols of valid names in place of its quantities."""
+
+    def __init__(self, method, speeds):
+        self.time = dynamicsymbols._t
+        self.coordinates = list(method.q)
+        self.velocities = [q.diff(self.time) for q in self.coordinates]
+        if speeds is not None and len(speeds) != len(self.velocities):
+            raise Problem(f"there are {len(speeds)} speeds and {len(self.velocities)} coordinates; expected one for each")
+        self.velocity_of = dict(zip(speeds or [], self.velocities))
+        in_motion = self._prepared([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
+        forces = self._prepared(_generalized_forces(method))
+
+        self.inputs = self._derivatives_of_inputs(in_motion, forces)
+        symbols = set().union(*(expression.free_symbols for expression in in_motion + forces))
+        self.parameters = sorted(symbols - {self.time}, key=str)
+        self.names = self._named(speeds)
+        symbol_of = {quantity: sympy.Symbol(name) for quantity, name in self.names.items()}
+        self.lagrangian, *self.constraints = [expression.xreplace(symbol_of) for expression in in_motion]
+        self.forces = [expression.xreplace(symbol_of) for expression in forces]
+
+    def _prepared(self, expressions):
+        return [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
+
+    def _derivatives_of_inputs(self, in_motion, forces):
+        """The inputs are the functions of time that are no coordinates; with each, how many of its derivatives must be known."""
+        counts = {}
+        for expression in in_motion + forces:
+            for function in expression.atoms(AppliedUndef):
+                if function.args != (self.time,):
+                    raise Problem(f"{function} is a function that is not known; expected coordinates and inputs, which are functions of t alone")
+                if function not in self.coordinates:
+                    # What moves the system does so with its velocity and acceleration.
+                    counts[function] = max(counts.get(function, 0), 2 if expression in in_motion else 0)
+            for derivative in expression.atoms(sympy.Derivative):
+                function, count = derivative.expr, derivative.derivative_count
+                if function in self.coordinates and count > 1:
+                    raise Problem(f"{derivative} is an acceleration; expected energies, forces and constraints without any")
+                if count > 2:
+                    raise Problem(f"{derivative}: expected at most the second derivative of an input")
+                if function in counts:
+                    counts[function] = max(counts[function], count)
+        return dict(sorted(counts.items(), key=str))
+
+    def _named(self, speeds):
+        """The name of each quantity; der(F) is one, too."""
+        self.all_names = Names()
+        functions = [*self.coordinates, *self.inputs]
+        names = {quantity: self.all_names.add(quantity.func.__name__) for quantity in functions}
+        names |= {parameter: self.all_names.add(parameter) for parameter in self.parameters}
+        for q, v, speed in zip(self.coordinates, self.velocities, speeds or self.coordinates):
+            names[v] = self.all_names.add(speed.func.__name__ if speeds else f"{names[q]}_dot")
+        for function, count in self.inputs.items():
+            for i in range(1, count + 1):
+                names[function.diff(self.time, i)] = "der(" * i + names[function] + ")" * i
+        return names | {self.time: "time"}
+
+    def energies(self):
+        """The kinetic energy, which is all terms with velocities, and the potential energy of the others."""
+        velocities = {sympy.Symbol(self.names[v]) for v in self.velocities}
+        terms = sympy.Add.make_args(self.lagrangian)
+        kinetic = [term for term in terms if term.free_symbols & velocities]
+        return sympy.Add(*kinetic), -sympy.Add(*(term for term in terms if term not in kinetic))
+
+
+def _values(given, quantities, kind):
+    """Numbers by quantity; keys count as they are written, since equal symbols may differ in what is assumed of them."""
+    known = {str(quantity): quantity for quantity in quantities}
+    values = {}
+    for key, value in given.items():
+        if str(key) not in known:
+            raise Problem(f"{key} is no {kind} of this LagrangesMethod; expected {', '.join(known)}")
+        try:
+            values[known[str(key)]] = repr(float(value))
+        except (TypeError, ValueError):
+            raise Problem(f"{key}: {value} is no number") from None
+    return values
+
+
+def _variables(content, parameters, start):
+    """The elements of all that has a start value."""
+    values = _values(parameters, content.parameters, "parameter")
+    missing = [str(symbol) for symbol in content.parameters if symbol not in values]
+    if missing:
+        raise Problem(f"there is no value of {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
+    start = {content.velocity_of.get(key, key): value for key, value in start.items()}
+    start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
+    for symbol in content.parameters:
+        yield "parameter", {"name": content.names[symbol], "start": values[symbol]}, None
+    for function, count in content.inputs.items():
+        yield "input", {"name": content.names[function], "start": start.get(function, "0")} | ({"derivatives": str(count)} if count else {}), None
+    for q, v in zip(content.coordinates, content.velocities):
+        names = {"name": content.names[q], "velocity": content.names[v]}
+        yield "coordinate", names | {"start": start.get(q, "0"), "velocityStart": start.get(v, "0")}, None
+
+
+def _equations(content):
+    """The elements of energies, forces and constraints."""
+    kinetic, potential = content.energies()
+    yield "kinetic", {}, text_of(kinetic, "the kinetic energy")
+    if potential != 0:
+        yield "potential", {}, text_of(potential, "the potential energy")
+    for q, force in zip(content.coordinates, content.forces):
+        if force != 0:
+            yield "force", {"coordinate": content.names[q]}, text_of(force, f"the force along {q}")
+    for i, constraint in enumerate(content.constraints, 1):
+        yield "constraint", {"name": content.all_names.add(f"constraint{i}")}, text_of(constraint, f"the constraint {constraint}")
+
+
+def _system_name(path):
+    name = path.stem if path.name != "system.xml" else path.resolve().parent.name
+    if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
+        raise Problem(f"'{name}' cannot name a system; expected a file of letters, digits and _, such as Pendulum.xml")
+    return name
+
+
+def from_sympy(method, path, parameters, start=None, speeds=None, description="", stop_time=10.0):
+    """
+    Writes a LagrangesMethod as NAME.xml, and returns the path. `parameters` are the start values of the symbols in it, `start`
+    those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols that stand for,
+    and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs.
+    """
+    path = Path(path)
+    content = _Content(method, speeds)
+    root = ElementTree.Element("system", name=_system_name(path), description=description)
+    for tag, attributes, text in [*_variables(content, parameters, start or {}), *_equations(content)]:
+        ElementTree.SubElement(root, tag, attributes).text = text
+    ElementTree.SubElement(root, "experiment", stopTime=repr(float(stop_time)))
+    ElementTree.indent(root)
+    path.write_text(ElementTree.tostring(root, encoding="unicode") + "\n", encoding="utf-8")
+    return path

@@ -1,0 +1,92 @@
+/* FMI for Co-Simulation (section 4.2): communication steps and what is told within them. */
+#include <string.h>
+
+#include "check.h"
+#include "fmi3_life_cycle.h"
+#include "steps.h"
+
+/* Calls the importer back; returns when the step shall end in place of end. */
+static double call_back(struct Component *component, double time, double end) {
+  bool can_return_early = component->early_return_allowed && time < end;
+  fmi3Boolean requested = fmi3False;
+  fmi3Float64 requested_time = time;
+  component->intermediate_update(component->environment, time, fmi3False, fmi3True, fmi3True, can_return_early,
+                                 &requested, &requested_time);
+  if (!can_return_early || !requested || !(requested_time < end)) return end;
+  component->has_returned_early = true;
+  return requested_time;
+}
+
+static double update(void *receiver, double time, double end) {
+  return call_back(receiver, time, end);
+}
+
+/* The same at the end of the step, where the instance is. */
+static void update_at_end(struct Component *component) {
+  struct Situation *situation = component->instance.situation;
+  if (component->intermediate_update == NULL) return;
+  situation->mode = MODE_INTERMEDIATE_UPDATE;
+  call_back(component, situation->time, situation->time);
+  if (situation->mode == MODE_INTERMEDIATE_UPDATE) situation->mode = MODE_STEP_COMPLETE;
+}
+
+/* Observes the steps of an instance whose importer wants to know of them. */
+static void observe(struct Component *component) {
+  if (component->intermediate_update == NULL) return;
+  component->intermediate.update = update;
+  component->intermediate.receiver = component;
+  component->instance.intermediate = &component->intermediate;
+  component->instance.observe = intermediate_observe;
+}
+
+/*
+ * A step that did not come to its end is an early return where the importer knows these; else it is discarded, and the
+ * instance is as it was before.
+ */
+static enum Status end_part_of_step(struct Component *component, double start) {
+  struct Situation *situation = component->instance.situation;
+  if (component->early_return_allowed && situation->time > start) {
+    situation->mode = MODE_STEP_COMPLETE;
+    component->has_returned_early = true;
+    return STATUS_DONE;
+  }
+  instance_restore(&component->instance, component->before);
+  return STATUS_DISCARD;
+}
+
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
+                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
+  struct Component *component = c;
+  struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
+  (void)noSetFMUStatePriorToCurrentPoint;
+  if (instance == NULL || !check_array(instance, eventHandlingNeeded, 1, __func__, "eventHandlingNeeded") ||
+      !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation") ||
+      !check_array(instance, earlyReturn, 1, __func__, "earlyReturn") ||
+      !check_array(instance, lastSuccessfulTime, 1, __func__, "lastSuccessfulTime"))
+    return fmi3Error;
+  memcpy(component->before, instance->situation, situation_size());
+  component->has_returned_early = false;
+  observe(component);
+  enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__);
+  if (status == STATUS_DISCARD) status = end_part_of_step(component, currentCommunicationPoint);
+  if (status == STATUS_DONE && instance->situation->mode == MODE_STEP_COMPLETE) update_at_end(component);
+  /* What went wrong in the callback was logged. */
+  if (instance->situation->mode == MODE_ERROR) status = STATUS_ERROR;
+  *eventHandlingNeeded = *terminateSimulation = fmi3False;
+  *earlyReturn = component->has_returned_early;
+  *lastSuccessfulTime = instance->situation->time;
+  return fmi3_status(status);
+}
+
+fmi3Status fmi3EnterStepMode(fmi3Instance c) {
+  enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
+  return fmi3Error;
+}
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime) {
+  (void)clockReference;
+  (void)activationTime;
+  enter(c, FUNCTION_ACTIVATE_MODEL_PARTITION, __func__);
+  return fmi3Error;
+}

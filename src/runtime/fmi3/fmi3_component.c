@@ -1,0 +1,163 @@
+/* Creation and end of an instance, and its messages to the caller's logger (section 2.3.1). */
+#include "fmi3_component.h"
+
+#include <string.h>
+
+#include "fmi3_life_cycle.h"
+#include "fmi3_memory.h"
+#include "log_categories.h"
+
+static unsigned wanted_statuses(const struct Component *component) {
+  return component->logger != NULL ? log_wanted(component->categories) : 0;
+}
+
+/* '#' introduces a variable in a message. */
+static void send(void *receiver, enum Status status, const char *message) {
+  const struct Component *component = receiver;
+  char escaped[2 * MESSAGE_LENGTH];
+  log_escape(message, "#", escaped);
+  component->logger(component->environment, fmi3_status(status), log_category_of(status), escaped);
+}
+
+/* Where the component's messages go. */
+static struct Log log_of(struct Component *component) {
+  return (struct Log){.write = send, .receiver = component, .wanted = wanted_statuses(component)};
+}
+
+/* Checks the arguments that all kinds have. Why there is no instance is told with logging or without. */
+static bool can_instantiate(const struct Log *log, const char *name, const char *token, const char *function) {
+  if (name == NULL || name[strspn(name, " \t\r\n")] == '\0')
+    log_write(log, STATUS_ERROR, "%s: the instance has no name; expected one", function);
+  else if (token == NULL || strcmp(token, lagrangian.guid) != 0)
+    log_write(log, STATUS_ERROR, "%s: the instantiation token is '%s'; expected '%s', that of this binary", function,
+              token != NULL ? token : "NULL", lagrangian.guid);
+  else return true;
+  return false;
+}
+
+/* Whether the variables exist and have values within a communication step. */
+static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference *references, size_t count,
+                                const char *function) {
+  if (references == NULL && count > 0) {
+    log_write(log, STATUS_ERROR, "%s: requiredIntermediateVariables is NULL; expected %zu elements", function, count);
+    return false;
+  }
+  for (size_t i = 0; i < count; i++) {
+    if (references[i] < lagrangian.variable_count && is_intermediate(&lagrangian.variables[references[i]])) continue;
+    log_write(log, STATUS_ERROR,
+              "%s: the value reference %u among requiredIntermediateVariables is of no variable with "
+              "intermediateUpdate=\"true\"",
+              function, references[i]);
+    return false;
+  }
+  return true;
+}
+
+/* What a new component is made of; NULL, and nothing is allocated, where there is no memory. */
+static struct Component *component_create(const struct Component *description, enum Kind kind) {
+  struct Component *component = fmi3_memory.allocate(1, sizeof *component);
+  void *before = fmi3_memory.allocate(1, situation_size()), *kept = fmi3_memory.allocate(1, situation_size());
+  if (component != NULL && before != NULL && kept != NULL) {
+    *component = *description;
+    component->before = before;
+    component->intermediate.kept = kept;
+    struct Log log = log_of(component);
+    if (instance_create(&component->instance, kind, &fmi3_memory, &log)) return component;
+  }
+  fmi3_memory.free(component);
+  fmi3_memory.free(before);
+  fmi3_memory.free(kept);
+  return NULL;
+}
+
+static struct Component *instantiate(const struct Component *description, enum Kind kind, bool logging,
+                                     const struct Log *log, const char *function) {
+  struct Component *component = component_create(description, kind);
+  if (component == NULL) {
+    log_write(log, STATUS_ERROR, "%s: there is no memory", function);
+    return NULL;
+  }
+  component->categories = logging ? ALL_CATEGORIES : 0;
+  component->instance.log = log_of(component);
+  log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);
+  return component;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
+                                          fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage) {
+  (void)resourcePath;
+  (void)visible;
+  struct Component description = {.logger = logMessage, .environment = environment, .categories = ALL_CATEGORIES};
+  struct Log log = log_of(&description);
+  if (!can_instantiate(&log, instanceName, instantiationToken, __func__)) return NULL;
+  return instantiate(&description, KIND_MODEL_EXCHANGE, loggingOn, &log, __func__);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
+                                         fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                         fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
+                                         const fmi3ValueReference requiredIntermediateVariables[],
+                                         size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback logMessage,
+                                         fmi3IntermediateUpdateCallback intermediateUpdate) {
+  (void)resourcePath;
+  (void)visible;
+  struct Component description = {.logger = logMessage,
+                                  .environment = environment,
+                                  .categories = ALL_CATEGORIES,
+                                  .intermediate_update = intermediateUpdate,
+                                  .early_return_allowed = earlyReturnAllowed};
+  struct Log log = log_of(&description);
+  if (!can_instantiate(&log, instanceName, instantiationToken, __func__) ||
+      !can_be_intermediate(&log, requiredIntermediateVariables, nRequiredIntermediateVariables, __func__))
+    return NULL;
+  if (eventModeUsed) {
+    log_write(&log, STATUS_ERROR, "%s: eventModeUsed is true; expected false, since there is no hasEventMode",
+              __func__);
+    return NULL;
+  }
+  return instantiate(&description, KIND_CO_SIMULATION, loggingOn, &log, __func__);
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,
+                                               fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                               fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage,
+                                               fmi3ClockUpdateCallback clockUpdate,
+                                               fmi3LockPreemptionCallback lockPreemption,
+                                               fmi3UnlockPreemptionCallback unlockPreemption) {
+  (void)instanceName;
+  (void)instantiationToken;
+  (void)resourcePath;
+  (void)visible;
+  (void)loggingOn;
+  (void)clockUpdate;
+  (void)lockPreemption;
+  (void)unlockPreemption;
+  struct Component description = {.logger = logMessage, .environment = environment, .categories = ALL_CATEGORIES};
+  struct Log log = log_of(&description);
+  log_write(&log, STATUS_ERROR, "%s: the FMU is for model exchange and co-simulation alone", __func__);
+  return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance c) {
+  struct Component *component = c;
+  if (component == NULL) return;
+  instance_destroy(&component->instance);
+  fmi3_memory.free(component->before);
+  fmi3_memory.free(component->intermediate.kept);
+  for (int i = 0; i < WORKSPACE_COUNT; i++) fmi3_memory.free(component->workspaces[i].block);
+  fmi3_memory.free(component);
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[]) {
+  struct Component *component = c;
+  struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
+  unsigned chosen = 0;
+  if (instance == NULL || !log_choose(instance, categories, nCategories, &chosen, __func__)) return fmi3Error;
+  if (nCategories == 0) chosen = ALL_CATEGORIES;
+  component->categories = loggingOn ? chosen : component->categories & ~chosen;
+  instance->log.wanted = wanted_statuses(component);
+  return fmi3OK;
+}

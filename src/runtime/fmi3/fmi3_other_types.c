@@ -1,0 +1,85 @@
+/* Types of which there are no variables, and clocks (sections 2.2.6 and 2.2.8). */
+#include "fmi3_life_cycle.h"
+
+static fmi3Status no_variable(fmi3Instance c, enum Function function, const char *name, size_t nvr) {
+  struct Instance *instance = enter(c, function, name);
+  if (instance == NULL) return fmi3Error;
+  if (nvr == 0) return fmi3OK;
+  return fmi3_status(log_error(instance, "%s: the FMU has no variable for this function", name));
+}
+
+/* The functions of one type. */
+#define NO_VARIABLES(type, setter)                                                                                     \
+  fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3##type values[],             \
+                           size_t nValues) {                                                                           \
+    (void)vr;                                                                                                          \
+    (void)values;                                                                                                      \
+    (void)nValues;                                                                                                     \
+    return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);                                                          \
+  }                                                                                                                    \
+  NO_SETTER(type, setter)
+#define NO_SETTER(type, function)                                                                                      \
+  fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3##type values[],       \
+                           size_t nValues) {                                                                           \
+    (void)vr;                                                                                                          \
+    (void)values;                                                                                                      \
+    (void)nValues;                                                                                                     \
+    return no_variable(c, function, __func__, nvr);                                                                    \
+  }
+
+NO_VARIABLES(Float32, FUNCTION_SET_FLOAT)
+NO_VARIABLES(Int8, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(UInt8, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(Int16, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(UInt16, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(UInt32, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(UInt64, FUNCTION_SET_DISCRETE)
+NO_VARIABLES(String, FUNCTION_SET_DISCRETE)
+/* Those of the type Int64 are statistics, which can be read alone. */
+NO_SETTER(Int64, FUNCTION_SET_DISCRETE)
+
+fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, size_t valueSizes[],
+                         fmi3Binary values[], size_t nValues) {
+  (void)vr;
+  (void)valueSizes;
+  (void)values;
+  (void)nValues;
+  return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const size_t valueSizes[],
+                         const fmi3Binary values[], size_t nValues) {
+  (void)vr;
+  (void)valueSizes;
+  (void)values;
+  (void)nValues;
+  return no_variable(c, FUNCTION_SET_DISCRETE, __func__, nvr);
+}
+
+/* A function for clocks, with its further parameters. */
+#define NO_CLOCKS(function, parameters, ...)                                                                           \
+  fmi3Status function parameters {                                                                                     \
+    const void *unused[] = {__VA_ARGS__};                                                                              \
+    (void)unused;                                                                                                      \
+    (void)nvr;                                                                                                         \
+    enter(c, FUNCTION_CLOCK, __func__);                                                                                \
+    return fmi3Error;                                                                                                  \
+  }
+#define REFERENCES fmi3Instance c, const fmi3ValueReference vr[], size_t nvr
+
+NO_CLOCKS(fmi3GetClock, (REFERENCES, fmi3Clock values[]), vr, values)
+NO_CLOCKS(fmi3SetClock, (REFERENCES, const fmi3Clock values[]), vr, values)
+NO_CLOCKS(fmi3GetIntervalDecimal, (REFERENCES, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[]), vr,
+          intervals, qualifiers)
+NO_CLOCKS(fmi3GetIntervalFraction,
+          (REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[]), vr,
+          counters, resolutions, qualifiers)
+NO_CLOCKS(fmi3GetShiftDecimal, (REFERENCES, fmi3Float64 shifts[]), vr, shifts)
+NO_CLOCKS(fmi3GetShiftFraction, (REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[]), vr, counters,
+          resolutions)
+NO_CLOCKS(fmi3SetIntervalDecimal, (REFERENCES, const fmi3Float64 intervals[]), vr, intervals)
+NO_CLOCKS(fmi3SetIntervalFraction, (REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]), vr,
+          counters, resolutions)
+NO_CLOCKS(fmi3SetShiftDecimal, (REFERENCES, const fmi3Float64 shifts[]), vr, shifts)
+NO_CLOCKS(fmi3SetShiftFraction, (REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]), vr, counters,
+          resolutions)

@@ -1,0 +1,59 @@
+#include "fmi3_references.h"
+
+#include "check.h"
+#include "fmi3_memory.h"
+
+/* The array with the variable in it; NULL for a scalar. */
+static const struct ArrayVariable *array_with(unsigned reference) {
+  for (size_t i = 0; i < lagrangian.array_count; i++)
+    if (reference - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
+  return NULL;
+}
+
+/* How many values the variables have. False after logging where a reference is of an element alone. */
+static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count,
+                         const char *function) {
+  *count = 0;
+  for (size_t i = 0; i < nvr; i++) {
+    const struct ArrayVariable *array = array_with(vr[i]);
+    *count += array != NULL ? array->count : 1;
+    if (array == NULL || array->first == vr[i]) continue;
+    log_error(instance, "%s: the value reference %u is of '%s', an element of an array; expected %zu, of the array",
+              function, vr[i], lagrangian.variables[vr[i]].name, array->first);
+    return false;
+  }
+  return true;
+}
+
+void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size,
+                        const char *function) {
+  struct Workspace *workspace = &component->workspaces[use];
+  if (workspace->block != NULL && count <= workspace->size / size) return workspace->block;
+  fmi3_memory.free(workspace->block);
+  workspace->block = fmi3_memory.allocate(count + 1, size);
+  workspace->size = workspace->block != NULL ? count * size : 0;
+  if (workspace->block == NULL)
+    log_error(&component->instance, "%s: there is no memory for %zu values", function, count);
+  return workspace->block;
+}
+
+const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
+                                  size_t nvr, struct Values values, const char *function) {
+  struct Instance *instance = &component->instance;
+  size_t count;
+  if (!check_array(instance, vr, nvr, function, "valueReferences") ||
+      !check_array(instance, values.array, values.count, function, "values") ||
+      !count_values(instance, vr, nvr, &count, function))
+    return NULL;
+  if (count != values.count) {
+    log_error(instance, "%s: %zu values; expected %zu, as many as the variables have", function, values.count, count);
+    return NULL;
+  }
+  if (count > 0 && lagrangian.array_count == 0) return vr;
+  unsigned *references = reserve_workspace(component, use, count, sizeof *references, function);
+  for (size_t i = 0, k = 0; i < nvr && references != NULL; i++) {
+    const struct ArrayVariable *array = array_with(vr[i]);
+    for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = vr[i] + j;
+  }
+  return references;
+}

@@ -1,0 +1,80 @@
+/* Getting and setting variables of the types that there are (sections 2.2.6 and 2.4.7). */
+#include "check.h"
+#include "fmi3_life_cycle.h"
+#include "fmi3_references.h"
+#include "values.h"
+
+/* The references of scalars where the function may be called with these arrays; NULL after logging where it may not. */
+static const unsigned *enter_with_values(fmi3Instance c, enum Function function, const char *name,
+                                         const fmi3ValueReference vr[], size_t nvr, const void *values,
+                                         size_t nValues) {
+  if (enter(c, function, name) == NULL) return NULL;
+  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues}, name);
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 values[],
+                          size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  return fmi3_status(values_get(&component->instance, references, nValues, values, __func__));
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 values[],
+                          size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_SET_FLOAT, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  return fmi3_status(values_set(&component->instance, references, nValues, values, __func__));
+}
+
+/* Counts of the statistics are of the type Int64. */
+fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int64 values[], size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  return fmi3_status(values_get_counts(&component->instance, references, nValues, values, __func__));
+}
+
+/* Parameters of whole numbers are of the type Int32. */
+fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int32 values[], size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  for (size_t i = 0; i < nValues; i++)
+    if (references[i] < lagrangian.variable_count && lagrangian.variables[references[i]].kind == VARIABLE_STATISTIC)
+      return fmi3_status(log_error(&component->instance, "%s: '%s' is of the type Int64", __func__,
+                                   lagrangian.variables[references[i]].name));
+  return fmi3_status(values_get_whole(&component->instance, references, nValues, values, TYPE_INTEGER, __func__));
+}
+
+fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 values[],
+                        size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  return fmi3_status(values_set_whole(&component->instance, references, nValues, values, TYPE_INTEGER, __func__));
+}
+
+fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Boolean values[],
+                          size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  int *whole = reserve_workspace(component, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  if (whole == NULL) return fmi3Error;
+  enum Status status = values_get_whole(&component->instance, references, nValues, whole, TYPE_BOOLEAN, __func__);
+  for (size_t i = 0; i < nValues && status == STATUS_DONE; i++) values[i] = whole[i] != 0;
+  return fmi3_status(status);
+}
+
+fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Boolean values[],
+                          size_t nValues) {
+  struct Component *component = c;
+  const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
+  if (references == NULL) return fmi3Error;
+  int *whole = reserve_workspace(component, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  if (whole == NULL) return fmi3Error;
+  for (size_t i = 0; i < nValues; i++) whole[i] = values[i];
+  return fmi3_status(values_set_whole(&component->instance, references, nValues, whole, TYPE_BOOLEAN, __func__));
+}

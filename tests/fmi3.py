@@ -1,0 +1,99 @@
+"""Instances of the FMUs of FMI 3.0 through FMPy, by variable names instead of value references."""
+
+import functools
+import tempfile
+from ctypes import c_double, c_uint32
+from pathlib import Path
+
+import fmpy
+import numpy as np
+from fmpy.fmi3 import FMU3Model, FMU3Slave
+
+import fmu
+
+
+def archive(name):
+    return fmu.archive(name).parent.parent / "fmi3" / f"{name}.fmu"
+
+
+@functools.cache
+def unpacked(name):
+    folder = tempfile.TemporaryDirectory(prefix=name)
+    fmu.temporary_folders.append(folder)
+    return Path(fmpy.extract(archive(name), folder.name))
+
+
+@functools.cache
+def description(name):
+    return fmpy.read_model_description(unpacked(name))
+
+
+def library(name):
+    return unpacked(name) / "binaries" / "x86_64-linux" / f"{name}.so"
+
+
+class Instance:
+    """
+    One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where their
+    status is worse than a warning.
+    """
+
+    def __init__(self, name, kind=FMU3Slave, logging=True, token=None, **options):
+        self.description = description(name)
+        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self.messages = []
+        self.fmu = kind(
+            guid=token or self.description.instantiationToken, unzipDirectory=str(unpacked(name)), modelIdentifier=name,
+            instanceName="instance",
+        )  # fmt: skip
+        self.fmu.component = None
+        self.time = 0.0
+        self.fmu.instantiate(loggingOn=logging, logMessage=self._log, **options)
+
+    def _log(self, environment, status, category, message):
+        self.messages.append((status, category.decode(), message.decode()))
+
+    def vr(self, *names):
+        return [self.variables[name].valueReference for name in names]
+
+    def size(self, *names):
+        return sum(int(np.prod(self.variables[name].shape)) if self.variables[name].shape else 1 for name in names)
+
+    def get(self, *names):
+        return np.array(self.fmu.getFloat64(self.vr(*names), self.size(*names)))
+
+    def set(self, values=(), **named):
+        values = {**dict(values), **named}
+        flat = [float(number) for value in values.values() for number in np.atleast_1d(value)]
+        self.fmu.setFloat64(self.vr(*values), flat)
+
+    def initialize(self, values=(), **words):
+        self.set(values)
+        self.fmu.enterInitializationMode(**words)
+        self.fmu.exitInitializationMode()
+        self.time = words.get("startTime", 0.0)
+        return self
+
+    def step(self, size):
+        """The out-arguments of fmi3DoStep: eventHandlingNeeded, terminateSimulation, earlyReturn, lastSuccessfulTime."""
+        result = self.fmu.doStep(self.time, size)
+        self.time = result[3]
+        return result
+
+    def partial(self, what, unknowns, knowns, seed):
+        """fmi3GetDirectionalDerivative or fmi3GetAdjointDerivative."""
+        of_seed, of_result = (knowns, unknowns) if what == "Directional" else (unknowns, knowns)
+        values = (c_double * self.size(*of_seed))(*seed)
+        result = (c_double * self.size(*of_result))()
+        references = [(c_uint32 * len(names))(*self.vr(*names)) for names in (unknowns, knowns)]
+        function = getattr(self.fmu, f"fmi3Get{what}Derivative")
+        function(self.fmu.component, references[0], len(unknowns), references[1], len(knowns), values, len(values), result, len(result))
+        return np.array(result)
+
+    def free(self):
+        if self.fmu.component:
+            self.fmu.fmi3FreeInstance(self.fmu.component)
+            self.fmu.freeLibrary()
+            self.fmu.component = None
+
+
