@@ -10,10 +10,11 @@ from typing import NamedTuple
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
-from numerics import accelerations, energy, footprint, mechanisms, stiff, work_precision
+from numerics import accelerations, energy, footprint, mechanisms, stiff, switching, work_precision
 from numerics.failures import failure
 from numerics.peers import PEERS
-from numerics.plots import energy_plot, legend, mechanism_legend, mechanism_plot, stiff_legend, stiff_plot, work_precision_plot
+from numerics.plots import SWITCHING_STYLES, energy_plot, events_plot, legend, mechanism_legend, mechanism_plot
+from numerics.plots import stiff_legend, stiff_plot, work_precision_plot
 from numerics.scenarios import check_of_reference
 from progress import Progress
 
@@ -133,6 +134,26 @@ def mechanisms_section(quick, progress):
     return Section(sentences, content + "".join(tables) + accelerations_part(quick, progress))
 
 
+def switching_section(quick, progress):
+    samples, counted, missing, failures = switching.collect(quick, progress)
+    write_csv(FOLDER / "switching.csv", switching.SAMPLES_HEADER, map(switching.sample_row, samples))
+    write_csv(FOLDER / "switching_events.csv", ["events", *switching.SAMPLES_HEADER], [[count, *switching.sample_row(s)] for count, s in counted])
+    rows, counted_rows = switching.rows(samples, missing), switching.counted_rows(counted)
+    write_csv(FOLDER / "switching_ratios.csv", switching.HEADER, rows)
+    sentences = switching.summary(rows, samples)
+    absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
+    plots = ""
+    for problem in switching.PROBLEMS:
+        points = {method: switching.points_of(samples, problem, method) for method in switching.METHODS}
+        plots += mechanism_plot(problem.title, "largest error of a position", points, SWITCHING_STYLES) if any(points.values()) else ""
+    for problem in switching.GROWING:
+        points = {method: [(count, s.error) for count, s in counted if (s.problem, s.method) == (problem.name, method)] for method in switching.METHODS}
+        title = f"{problem.title}, tolerance {switching.TOLERANCE:g}"
+        plots += events_plot(title, points, SWITCHING_STYLES) if any(points.values()) else ""
+    first = paragraphs([*failures, *absent, *switching.NOTES]) + mechanism_legend(SWITCHING_STYLES)
+    return Section(sentences, first + f'<div class="plots">{plots}</div>' + table(switching.HEADER, rows) + table(switching.COUNTED, counted_rows))
+
+
 def accelerations_part(quick, progress):
     title = "One evaluation of the accelerations of a robot"
     try:
@@ -178,7 +199,7 @@ def missing_peers(samples, peers=PEERS):
 
 
 SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
-            ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
+            ("Switching", switching_section), ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
             ("References", references_section), ("Machine and versions", machine_section)]  # fmt: skip
 
 
@@ -207,7 +228,7 @@ def main(words=None):
     parser.add_argument("--quick", action="store_true", help="five systems, few tolerances: two minutes")
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
-    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 1
+    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 1 + len(switching.PROBLEMS) + len(switching.GROWING)
     progress, sections = Progress(count + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
         sections[title] = attempt(title, section, quick, progress)

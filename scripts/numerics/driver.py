@@ -21,6 +21,7 @@ class Stepped:
     rows: np.ndarray  # a row for each recorded communication point
     steps: int  # of the solver, 0 where it does not count them
     evaluations: int  # of the equations of motion
+    events: int  # that switched it
 
     def columns(self, names):
         return self.rows[:, [self.names.index(name) for name in names]]
@@ -41,20 +42,22 @@ def changing_input(amplitude, k):
     return amplitude * (7 * k % 11 - 5) / 5
 
 
-def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, timeout=60, changing=()):
+def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, timeout=60, changing=(), importer=False):
     """
     The time and the states of a simulation; None where the FMU gives up or takes longer than the timeout.
     changing: (input, amplitude), an input that changes at every step. The points are recorded in a run of their own; without
-    repeats that one is timed, and without points there is none.
+    repeats that one is timed, and without points there is none. importer: by CVODE in model exchange in place of the solver.
     """
     description = description_of(solver, name)
     references = {v.name: v.valueReference for v in description.modelVariables}
     names = [v.name for v in description.modelVariables if v.type == "Real"]
     names = [n for n in names if references[n] <= references["totalEnergy"]]
     library = folder_of(solver) / "systems" / name / "binaries" / "linux64" / f"{name}.so"
-    counted = [name for name in ("solverSteps", "derivativeEvaluations") if name in references]
-    words = [BUILD / "bin/stepping", library, description.guid, tolerance, end, steps, repeats, len(names), points,
-             ",".join(str(references[name]) for name in counted),
+    listed = lambda names: ",".join(str(references[name]) for name in names)
+    counted = [name for name in ("solverSteps", "derivativeEvaluations", "events") if name in references]
+    words = [BUILD / "bin" / ("exchange" if importer else "stepping"), library, description.guid, tolerance, end, steps, repeats,
+             listed(names), points, listed(counted),
+             *([description.numberOfContinuousStates, description.numberOfEventIndicators] if importer else []),
              *(f"{references[variable]}={value!r}" for variable, value in starts.items()),
              *([f"{references[changing[0]]}~{changing[1]!r}"] if changing else [])]  # fmt: skip
     try:
@@ -66,7 +69,7 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
     *rows, seconds, last = result.stdout.splitlines()
     counts = dict(zip(counted, map(int, last.split())))
     return Stepped(float(seconds), names, np.array([[float(x) for x in row.split()] for row in rows]),
-                   counts.get("solverSteps", 0), counts.get("derivativeEvaluations", 0))  # fmt: skip
+                   counts.get("solverSteps", 0), counts.get("derivativeEvaluations", 0), counts.get("events", 0))  # fmt: skip
 
 
 def step_repeatedly(solver, name, starts, end, tolerance, steps):

@@ -145,14 +145,19 @@ def runners_of(problem, quick):
     return runners, missing
 
 
+def take_turns(runners, quick):
+    """Adds the seconds of each round to the samples of what runs."""
+    for turn in range(2 if quick else 5):
+        for runner, sample in runners:
+            if turn < 2 or min(sample.times) < LONG:
+                sample.times.append(runner.run())
+
+
 def sample_problem(problem, quick):
     """(samples, methods that are not installed): all take turns, so that what disturbs the machine disturbs all."""
     with silence(), contextlib.redirect_stdout(io.StringIO()):
         runners, missing = runners_of(problem, quick)
-        for turn in range(2 if quick else 5):
-            for runner, sample in runners:
-                if turn < 2 or min(sample.times) < LONG:
-                    sample.times.append(runner.run())
+        take_turns(runners, quick)
     return [sample for _, sample in runners], missing
 
 

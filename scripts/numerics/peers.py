@@ -4,6 +4,7 @@ import contextlib
 import functools
 import os
 import time
+import weakref
 
 import numpy as np
 import sympy
@@ -12,6 +13,7 @@ from fmpy.fmi2 import FMU2Model
 from scipy.integrate import solve_ivp
 
 from fmu import archive, unpacked
+from numerics.driver import POINTS
 from numerics.scenarios import SCENARIOS, states_of, times_of, values_of
 from systems_in_sympy import system
 
@@ -57,28 +59,35 @@ def scipy_method(method):
 
 
 def fmpy_cvode(name, tolerance):
-    """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
-    folder, description = str(unpacked(name)), read_model_description(archive(name))
-    instance = FMU2Model(guid=description.guid, unzipDirectory=folder, instanceName="peer",
-                         modelIdentifier=description.modelExchange.modelIdentifier)  # fmt: skip
-    instance.instantiate()
-    end = SCENARIOS[name][1]
-
-    def simulate():
-        instance.reset()
-        return simulate_fmu(folder, model_description=description, fmu_instance=instance, fmi_type="ModelExchange", solver="CVode",
-                            stop_time=end, output_interval=end / 100, relative_tolerance=tolerance,
-                            start_values=SCENARIOS[name][0], output=states_of(name))  # fmt: skip
-
+    starts, end = SCENARIOS[name]
+    importer = FmpyCvode(name, starts, end, states_of(name), tolerance)
     try:
-        with silence():
-            seconds, result = fastest(simulate, 0.5, 5)
+        seconds, rows = fastest(importer.simulate, 0.5, 5)
     except RuntimeError:
         return None
-    finally:
-        instance.freeInstance()
-    rows = np.array([result[state] for state in states_of(name)]).T[1:]
-    return (seconds, rows) if len(rows) == 100 else None
+    return (seconds, rows) if len(rows) == POINTS else None
+
+
+class FmpyCvode:
+    """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
+
+    def __init__(self, name, starts, end, outputs, tolerance):
+        description = read_model_description(archive(name))
+        self.folder, self.outputs = str(unpacked(name)), outputs
+        self.instance = FMU2Model(guid=description.guid, unzipDirectory=self.folder, instanceName="peer",
+                                  modelIdentifier=description.modelExchange.modelIdentifier)  # fmt: skip
+        self.instance.instantiate()
+        weakref.finalize(self, self.instance.freeInstance)
+        self.words = dict(model_description=description, fmu_instance=self.instance, fmi_type="ModelExchange", solver="CVode",
+                          stop_time=end, output_interval=end / POINTS, relative_tolerance=tolerance, start_values=starts,
+                          output=outputs, record_events=False)  # fmt: skip
+
+    def simulate(self):
+        """A row for each of the communication points, unless it gives up."""
+        with silence():
+            self.instance.reset()
+            result = simulate_fmu(self.folder, **self.words)
+        return np.array([result[output] for output in self.outputs]).T[1:]
 
 
 @contextlib.contextmanager

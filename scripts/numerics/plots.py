@@ -1,5 +1,7 @@
 """The plots of the report."""
 
+import math
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -13,6 +15,9 @@ MARKERS = {"SciPy DOP853": "s", "SciPy LSODA": "v", "SciPy Radau": "^", "FMPy CV
            "heyoka": "*", "MuJoCo RK4": "P", "MuJoCo Euler": "X"}  # fmt: skip
 MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#8338ec", "o"), "exudyn generalized-alpha": ("#2a6f97", "s"),
                     "exudyn trapezoidal, index 2": ("#2a6f97", "v"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
+SWITCHING_STYLES = {"FMU": ("#c1121f", "o"), "FMU, one step": ("#f4a261", "o"), "CVODE in C (model exchange)": ("#8338ec", "D"),
+                    "FMPy CVode (model exchange)": ("#999", "D"), "SciPy DOP853 with events": ("#999", "s"),
+                    "heyoka with events": ("#2a6f97", "*"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
 PEER_STYLES = {peer: ("#999", marker) for peer, marker in MARKERS.items()} | MECHANISM_STYLES
 LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk": "built with erk", "bdf": "built with bdf"}
 
@@ -101,14 +106,14 @@ def stiff_legend(peers):
     return svg(figure)
 
 
-def mechanism_plot(title, measure, points):
-    """points: (seconds, error) of each method."""
+def mechanism_plot(title, measure, points, styles=MECHANISM_STYLES):
+    """points: (seconds, error) of each method; the first style is that of the FMU."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     for method, pairs in points.items():
         if pairs:
             best = front([(seconds, max(error, 1e-17)) for seconds, error in pairs])
-            colour, marker = MECHANISM_STYLES[method]
-            axes.loglog(best[:, 1], best[:, 0], color=colour, marker=marker, markersize=4, linewidth=2 if method == "taylor" else 1)
+            colour, marker = styles[method]
+            axes.loglog(best[:, 1], best[:, 0], color=colour, marker=marker, markersize=4, linewidth=2 if method == next(iter(styles)) else 1)
     axes.set_xlabel(measure)
     axes.set_ylabel("run time [s]")
     axes.invert_xaxis()
@@ -118,10 +123,26 @@ def mechanism_plot(title, measure, points):
     return svg(figure)
 
 
-def mechanism_legend():
-    """One for all plots of mechanisms."""
-    figure, axes = plt.subplots(figsize=(11, 0.5))
-    for method, (colour, marker) in MECHANISM_STYLES.items():
+def events_plot(title, points, styles):
+    """points: (number of events, error) of each method."""
+    figure, axes = plt.subplots(figsize=(6.2, 4.6))
+    for method, pairs in points.items():
+        if pairs:
+            counts, errors = zip(*pairs)
+            colour, marker = styles[method]
+            axes.loglog(counts, np.maximum(errors, 1e-17), color=colour, marker=marker, markersize=4)
+    axes.set_xlabel("events")
+    axes.set_ylabel("largest error of a position")
+    axes.grid(alpha=0.3)
+    axes.set_title(title, fontsize=10)
+    figure.tight_layout()
+    return svg(figure)
+
+
+def mechanism_legend(styles=MECHANISM_STYLES):
+    """One for all plots of mechanisms, or of other methods."""
+    figure, axes = plt.subplots(figsize=(11, 0.25 * math.ceil(len(styles) / 6) + 0.25))
+    for method, (colour, marker) in styles.items():
         axes.plot([], [], color=colour, marker=marker, label=method)
     axes.axis("off")
     axes.legend(ncols=6, fontsize=8, loc="center", frameon=False)

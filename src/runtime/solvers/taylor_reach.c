@@ -189,6 +189,15 @@ static double exact_reach(const struct Taylor *taylor, double step) {
 }
 
 /*
+ * A root has no series where its operand is 0, but leaves the accelerations finite: the state goes on along its first
+ * terms alone.
+ */
+static void cut_off(const struct Taylor *taylor) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
+}
+
+/*
  * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one in which
  * the state moves by a millionth of a millionth of its scale, so that two such points are not taken for one, and in which
  * all that changes is less than the tolerance, or less than the rounding of time makes of it. Returns that step, whose
@@ -205,19 +214,14 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
   for (int trial = 0; trial < 4 && step > length; trial++) {
     step = exact_reach(taylor, step);
     double size = defect_over(instance, taylor, step);
-    if (size <= 1.0 || (step <= 2.0 * smallest && isfinite(size))) return step;
+    if (size <= 1.0) return step;
+    if (step <= 2.0 * smallest && isfinite(size)) {
+      cut_off(taylor); /* no more terms belong to so short a step than the rounding of time leaves */
+      if (isfinite(defect(instance, taylor, step))) return step;
+    }
     step = fmax(0.1 * step, fmin(step, smallest));
   }
   return 0.0;
-}
-
-/*
- * A root has no series where its operand is 0, but leaves the accelerations finite: the state goes on along its first
- * terms alone.
- */
-static void cut_off(const struct Taylor *taylor) {
-  for (size_t i = 0; i < lagrangian.state_count; i++)
-    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
 }
 
 /* Shortens the step until its defect is small. A defect that rounding explains stays in a shorter step too. */

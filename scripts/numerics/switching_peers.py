@@ -1,0 +1,192 @@
+"""Systems that switch by other programs: each is built before the clock runs, and recorded apart from the timed run."""
+
+import time
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from numerics.driver import POINTS, step
+from numerics.peers import FmpyCvode, impatient
+
+
+class Timed:
+    """One call from Python, whose processor time counts."""
+
+    def run(self):
+        begin = time.process_time()
+        self.simulate()
+        return time.process_time() - begin
+
+    def record(self):
+        return self.simulate()
+
+
+class Fmu:
+    """The FMU in a C program with so many communication steps; importer: by CVODE in model exchange, asked as often."""
+
+    def __init__(self, problem, tolerance, patience, steps=POINTS, importer=False):
+        self.words = ("shipped", problem.system, problem.values, problem.end, tolerance, steps)
+        self.names, self.importer, self.patience, self.repeats, self.events = problem.compared, importer, patience, 1, 0
+
+    def run(self):
+        """The fastest of several repeats, whose loop alone is timed."""
+        stepped = step(*self.words, self.repeats, 0, importer=self.importer)
+        self.repeats = int(min(max(0.02 / stepped.seconds, 1), 500))
+        return stepped.seconds
+
+    def record(self):
+        stepped = step(*self.words, 0, timeout=self.patience, importer=self.importer)
+        if stepped is None:
+            raise RuntimeError("it gave up, or took too long")
+        self.events = stepped.events
+        return stepped.columns(self.names)
+
+
+class Fmpy(Timed):
+    """FMPy's loop in Python around CVode, of the same FMU in model exchange."""
+
+    def __init__(self, problem, tolerance, patience):
+        self.simulate = FmpyCvode(problem.system, problem.values, problem.end, problem.compared, tolerance).simulate
+
+
+class Scipy(Timed):
+    """A call of solve_ivp for each phase, ended by its event."""
+
+    def __init__(self, problem, tolerance, patience):
+        self.problem, self.tolerance, self.patience = problem, tolerance, patience
+        self.phases = problem.phases(problem.all_values)
+
+    def simulate(self):
+        problem, times, begin, state = self.problem, self.problem.times, 0.0, self.problem.start
+        name, rows, check = next(iter(self.phases)), [], impatient(lambda: None, self.patience)
+        while begin < problem.end:
+            check()
+            phase = self.phases[name]
+            right = lambda t, y: (y[1], phase.acceleration(*y, np))
+            solution = solve_ivp(right, (begin, problem.end), state, "DOP853", times[(times > begin)], rtol=self.tolerance,
+                                 atol=self.tolerance, events=self.event_of(phase))  # fmt: skip
+            rows += list(solution.y[0]) if len(solution.t) else []
+            if solution.status != 1:
+                break
+            begin, (*state, name) = solution.t_events[0][0], phase.leave(*solution.y_events[0][0], self.tolerance)
+        return np.array(rows)[:, None]
+
+    @staticmethod
+    def event_of(phase):
+        if phase.guard is None:
+            return None
+        event = lambda t, y: phase.guard(*y)
+        event.terminal, event.direction = True, -1
+        return event
+
+
+# Seconds in which an event is not seen again: heyoka's own choice passes over bounces that are close to one another, and none at all sees one twice.
+COOLDOWN = 1e-12
+
+
+class Heyoka(Timed):
+    """An integrator for each phase, compiled before the clock runs, ended by its terminal event."""
+
+    def __init__(self, problem, tolerance, patience):
+        import heyoka
+
+        heyoka.set_logger_level_error()
+        self.problem, self.tolerance, self.patience = problem, tolerance, patience
+        self.limit = heyoka.taylor_outcome.time_limit
+        self.phases = problem.phases(problem.all_values)
+        self.integrators = {name: self.integrator(heyoka, phase) for name, phase in self.phases.items()}
+
+    def integrator(self, heyoka, phase):
+        q, v = heyoka.make_vars("q", "v")
+        falling = dict(direction=heyoka.event_direction.negative, cooldown=COOLDOWN)
+        events = [] if phase.guard is None else [heyoka.t_event(phase.guard(q, v), **falling)]
+        right = phase.acceleration(q, v, heyoka)
+        return heyoka.taylor_adaptive([(q, v), (v, right + heyoka.expression(0.0))], list(self.problem.start), tol=self.tolerance, t_events=events)
+
+    def begin(self):
+        self.name = next(iter(self.phases))
+        self.enter(0.0, self.problem.start)
+
+    def enter(self, now, state):
+        self.now = self.integrators[self.name]
+        self.now.time, self.now.state[:] = now, state
+
+    def go_to(self, end, check):
+        while self.now.propagate_until(end)[0] != self.limit:
+            check()
+            *state, self.name = self.phases[self.name].leave(*self.now.state, self.tolerance)
+            self.enter(self.now.time, state)
+
+    def simulate(self):
+        self.begin()
+        self.go_to(self.problem.end, impatient(lambda: None, self.patience))
+
+    def record(self):
+        self.begin()
+        check, rows = impatient(lambda: None, self.patience), []
+        for time in self.problem.times:
+            self.go_to(time, check)
+            rows.append([self.now.state[0]])
+        return np.array(rows)
+
+
+def contact_rate(length):
+    """Radians a second of a contact's spring, for steps of so many seconds: in shorter steps it is stiffer, and has more steps as well, as both make errors."""
+    return 0.3 * (length / 0.01) ** 0.25 / length
+
+
+def damping_ratio(restitution):
+    """Of a spring and damper that push and do not pull: a body leaves them when their force is 0 (Schwager and Pöschel, 2007)."""
+    def excess(damping):
+        rate = np.sqrt(1 - damping**2)
+        return -damping / rate * (np.pi - np.arctan2(2 * damping * rate, rate**2 - damping**2)) - np.log(restitution)
+
+    return brentq(excess, 0.0, 0.99)
+
+
+class MuJoCo(Timed):
+    """Contacts as MuJoCo has them, soft: as stiff as the steps allow, and damped so that they give the restitution."""
+
+    def __init__(self, problem, steps, integrator, patience):
+        import mujoco
+
+        self.library, self.problem, self.steps = mujoco, problem, int(steps)
+        self.model = mujoco.MjModel.from_xml_string(self.text(problem.end / steps, integrator))
+        self.data = mujoco.MjData(self.model)
+
+    def text(self, length, integrator):
+        values = self.problem.all_values
+        rate = contact_rate(length)
+        contact = f'solref="{-(rate**2)!r} {-2 * rate * damping_ratio(values["e"])!r}" solimp="0.9999 0.9999 0.001"'
+        return (f'<mujoco><compiler angle="radian"/><option timestep="{length!r}" integrator="{integrator}" gravity="0 0 -{values["g"]!r}"/>'
+                f"<worldbody>{self.problem.stiff(values, contact)}</worldbody></mujoco>")  # fmt: skip
+
+    def start(self):
+        self.library.mj_resetData(self.model, self.data)
+        self.data.qpos[0], self.data.qvel[0] = self.problem.start
+
+    def simulate(self):
+        self.start()
+        self.library.mj_step(self.model, self.data, self.steps)
+
+    def record(self):
+        self.start()
+        rows = []
+        for _ in range(POINTS):
+            self.library.mj_step(self.model, self.data, self.steps // POINTS)
+            rows.append([self.data.qpos[0]])
+        return np.array(rows)
+
+
+# Method: (program, what builds it of (problem, tolerance or number of steps, patience)).
+METHODS = {
+    "FMU": ("FMU", Fmu),
+    "FMU, one step": ("FMU", lambda problem, tolerance, patience: Fmu(problem, tolerance, patience, 1)),
+    "CVODE in C (model exchange)": ("importer", lambda problem, tolerance, patience: Fmu(problem, tolerance, patience, importer=True)),
+    "FMPy CVode (model exchange)": ("importer", Fmpy),
+    "SciPy DOP853 with events": ("SciPy", Scipy),
+    "heyoka with events": ("heyoka", Heyoka),
+    "MuJoCo RK4": ("MuJoCo", lambda problem, steps, patience: MuJoCo(problem, steps, "RK4", patience)),
+    "MuJoCo implicitfast": ("MuJoCo", lambda problem, steps, patience: MuJoCo(problem, steps, "implicitfast", patience)),
+}

@@ -1,0 +1,246 @@
+"""Systems that switch at events, with their motions in closed form, and once more as phases that other programs are built from."""
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import mpmath
+import numpy as np
+
+from closed_forms import pendulum_angle, pendulum_half_period
+from fmu import start_values
+from numerics.driver import POINTS
+
+DIGITS = 30
+
+
+@dataclass
+class Phase:
+    """What holds between events, for one coordinate; functions take it, its velocity, and a module with sin."""
+
+    acceleration: Callable
+    guard: Callable | None = None  # the phase ends where this falls through 0
+    leave: Callable | None = None  # (coordinate, velocity, tolerance) before to (coordinate, velocity, name of the next phase)
+
+
+@dataclass
+class Switching:
+    system: str  # in fmu/
+    title: str
+    values: dict  # start values other than the FMU's own
+    end: float  # s
+    compared: list  # positions, which do not jump
+    positions: Callable  # (values, times): rows of what is compared
+    end_of: Callable | None  # (values, n): a time behind n events
+    phases: Callable | None = None  # values: phases by name, the first of which is the start; None where they are too many to write down
+    stiff: Callable | None = None  # values: the body of a MuJoCo model whose contact is a spring with a damper
+    methods: tuple = ()  # programs that can express it, beside importers of the FMU
+    label: str = ""  # what tells it from others with the same system
+
+    @property
+    def name(self):
+        return f"{self.system}{', ' if self.label else ''}{self.label}"
+
+    @functools.cached_property
+    def all_values(self):
+        return start_values(self.system) | self.values
+
+    @property
+    def times(self):
+        return self.end * np.arange(1, POINTS + 1) / POINTS
+
+    @functools.cached_property
+    def exact(self):
+        with mpmath.workdps(DIGITS):
+            return np.array(self.positions(self.all_values, self.times), dtype=float)
+
+    @property
+    def start(self):
+        """Of the only coordinate and its velocity."""
+        name = self.compared[0]
+        velocity = {"h": "v", "theta": "omega", "x": "v"}[name]
+        return np.array([self.all_values[name], self.all_values[velocity]], dtype=float)
+
+    def error(self, rows):
+        """The largest of any position at the last communication points, of which there are so many rows."""
+        return float(np.max(np.abs(rows - self.exact[-len(rows) :])))
+
+    def with_events(self, count):
+        """Until so many have happened."""
+        return replace(self, end=float(self.end_of(self.all_values, count)))
+
+
+def exactly(values, *names):
+    return [mpmath.mpf(values[name]) for name in names]
+
+
+# A run ends a little before the middle between two events, so that its communication points see all phases of the motion.
+BEFORE = 0.6
+
+
+# --- A ball that bounces ---
+
+
+def ball_heights(values, times):
+    """Parabolas, each e^2 as high as the one before; at rest from sqrt(2 h/g) (1 + e)/(1 - e) on."""
+    height, g, e = exactly(values, "h", "g", "e")
+    fall = mpmath.sqrt(2 * height / g)
+    start, speed = -fall, g * fall  # of the parabola on which the ball begins, at its foot
+    rest = fall * (1 + e) / (1 - e) if e < 1 else mpmath.inf
+    rows = []
+    for time in map(mpmath.mpf, times):
+        while time < rest and time > start + 2 * speed / g:
+            start, speed = start + 2 * speed / g, e * speed
+        rows.append([speed * (time - start) - g * (time - start) ** 2 / 2 if time < rest else mpmath.mpf(0)])
+    return rows
+
+
+def ball_phases(values):
+    g, e = values["g"], values["e"]
+
+    def bounce(h, v, tolerance):
+        return (0.0, 0.0, "rest") if e * abs(v) < tolerance else (0.0, -e * v, "flight")
+
+    return {"flight": Phase(lambda h, v, of: -g + 0.0 * h, lambda h, v: h, bounce), "rest": Phase(lambda h, v, of: 0.0 * h)}
+
+
+def ball_body(values, contact):
+    return (f'<geom type="plane" size="10 10 1" {contact}/><body pos="0 0 0.1"><joint type="slide" axis="0 0 1"/>'
+            f'<geom type="sphere" size="0.1" mass="{values["m"]!r}" {contact}/></body>')  # fmt: skip
+
+
+# --- A pendulum that hits a stop ---
+
+
+def quarter(values, k):
+    """Seconds between the turning point whose half angle has the sine k, and the stop on the other side."""
+    g, length, stop = exactly(values, "g", "l", "thetaStop")
+    return (mpmath.ellipk(k * k) + mpmath.ellipf(mpmath.asin(-mpmath.sin(stop / 2) / k), k * k)) / mpmath.sqrt(g / length)
+
+
+def pendulum_angles(values, times):
+    """Between impacts the motion from a turning point, 2 asin(k cd(rate t, k)), whose energy an impact takes down."""
+    g, length, e, stop, theta = exactly(values, "g", "l", "e", "thetaStop", "theta")
+    rate, low, k = mpmath.sqrt(g / length), mpmath.sin(stop / 2), mpmath.sin(theta / 2)
+    turning, rows, half = mpmath.mpf(0), [], quarter(values, k)
+    for time in map(mpmath.mpf, times):
+        while time > turning + half:
+            turning += half
+            k = mpmath.sqrt(low**2 + e**2 * (k**2 - low**2))
+            half = quarter(values, k)
+            turning += half
+        rows.append([2 * mpmath.asin(k * mpmath.ellipfun("cd", rate * (time - turning), m=k * k))])
+    return rows
+
+
+def pendulum_phases(values):
+    rate, e, stop = values["g"] / values["l"], values["e"], values["thetaStop"]
+    return {"swing": Phase(lambda theta, omega, of: -rate * of.sin(theta), lambda theta, omega: theta - stop,
+                           lambda theta, omega, tolerance: (stop, -e * omega, "swing"))}  # fmt: skip
+
+
+def pendulum_body(values, contact):
+    return (f'<body><joint type="hinge" axis="0 -1 0" limited="true" range="{values["thetaStop"]!r} 3" '
+            f'{contact.replace("solref", "solreflimit").replace("solimp", "solimplimit")}/>'
+            f'<inertial pos="0 0 {-values["l"]!r}" mass="{values["m"]!r}" diaginertia="1e-12 1e-12 1e-12"/></body>')  # fmt: skip
+
+
+# --- A block on a belt ---
+
+
+@dataclass
+class Slips:
+    """The block is at rest at first, slips until the belt has taken it along, and from then on sticks and slips by turns."""
+
+    rate: float
+    centre: float  # of slips
+    limit: float  # where the block slips
+    belt: float
+
+    @classmethod
+    def of(cls, values):
+        m, k, belt, normal, static, sliding = exactly(values, "m", "k", "vBelt", "normalForce", "muStatic", "muSliding")
+        return cls(mpmath.sqrt(k / m), sliding * normal / k, static * normal / k, belt)
+
+    @property
+    def first_stick(self):
+        return mpmath.asin(self.belt / (self.centre * self.rate)) / self.rate
+
+    @property
+    def first_slip(self):
+        stuck = self.centre * (1 - mpmath.cos(self.rate * self.first_stick))
+        return self.first_stick + (self.limit - stuck) / self.belt
+
+    @property
+    def slip(self):
+        """Its seconds: half a turn, and twice the angle whose tangent is that of the start."""
+        return (mpmath.pi + 2 * mpmath.atan(self.belt / self.rate / (self.limit - self.centre))) / self.rate
+
+    @property
+    def period(self):
+        return self.slip + 2 * (self.limit - self.centre) / self.belt
+
+    def position(self, time):
+        if time < self.first_stick:
+            return self.centre * (1 - mpmath.cos(self.rate * time))
+        if time < self.first_slip:
+            return self.limit - self.belt * (self.first_slip - time)
+        since = mpmath.fmod(time - self.first_slip, self.period)
+        if since > self.slip:
+            return self.limit - self.belt * (self.period - since)
+        angle = self.rate * since
+        return self.centre + (self.limit - self.centre) * mpmath.cos(angle) + self.belt / self.rate * mpmath.sin(angle)
+
+
+def block_positions(values, times):
+    slips = Slips.of(values)
+    return [[slips.position(mpmath.mpf(time))] for time in times]
+
+
+def block_end(values, count):
+    slips = Slips.of(values)
+    return slips.first_slip + slips.period * (count / 2 - BEFORE)
+
+
+def block_phases(values):
+    m, k, belt, normal = (values[name] for name in ("m", "k", "vBelt", "normalForce"))
+    sliding, stiction = values["muSliding"] * normal, values["muStatic"] * normal
+    return {"slip": Phase(lambda x, v, of: (sliding - k * x) / m, lambda x, v: belt - v, lambda x, v, tolerance: (x, belt, "stick")),
+            "stick": Phase(lambda x, v, of: 0.0 * x, lambda x, v: stiction - k * x, lambda x, v, tolerance: (x, v, "slip"))}  # fmt: skip
+
+
+# --- Newton's cradle ---
+
+
+def cradle_angles(values, times):
+    """One of the two outer balls swings at a time, the others hang."""
+    rate = math.sqrt(values["g"] / values["l"])
+    angles = [pendulum_angle(values["theta[1]"], rate, time) for time in times]
+    return [[min(angle, 0.0), 0.0, 0.0, 0.0, max(angle, 0.0)] for angle in angles]
+
+
+def cradle_end(values, count):
+    return (count - BEFORE / 2) * pendulum_half_period(values["theta[1]"], math.sqrt(values["g"] / values["l"]))
+
+
+def ball_end(values, count):
+    return (2 * count - BEFORE) * mpmath.sqrt(2 * values["h"] / mpmath.mpf(values["g"]))
+
+
+def pendulum_end(values, count):
+    return (2 * count - BEFORE) * quarter(values, mpmath.sin(mpmath.mpf(values["theta"]) / 2))
+
+
+BALL = Switching("BouncingBall", "ball that bounces without loss", dict(e=1.0), 10.0, ["h"], ball_heights, ball_end, ball_phases, ball_body,
+                 ("SciPy", "heyoka", "MuJoCo"), "e = 1")  # fmt: skip
+RESTING_BALL = replace(BALL, title="ball that bounces until it rests", values=dict(e=0.8), end=5.0, end_of=None, label="e = 0.8")
+PENDULUM = Switching("HardStopPendulum", "pendulum that hits a stop", {}, 10.0, ["theta"], pendulum_angles, None, pendulum_phases,
+                     pendulum_body, ("SciPy", "heyoka", "MuJoCo"))  # fmt: skip
+LOSSLESS_PENDULUM = replace(PENDULUM, title="pendulum that hits a stop without loss", values=dict(e=1.0), end_of=pendulum_end, label="e = 1")
+BLOCK = Switching("StickSlip", "block that sticks and slips on a belt", {}, 60.0, ["x"], block_positions, block_end, block_phases,
+                  methods=("SciPy", "heyoka"))  # fmt: skip
+CRADLE = Switching("NewtonsCradle", "Newton's cradle of five balls", {}, 10.0, [f"theta[{i}]" for i in range(1, 6)], cradle_angles, cradle_end)
+
+PROBLEMS = [BALL, RESTING_BALL, PENDULUM, BLOCK, CRADLE]
+GROWING = [BALL, LOSSLESS_PENDULUM, BLOCK, CRADLE]  # followed for more and more events
