@@ -171,8 +171,8 @@ static void test_the_language_follows(void **state) {
     char one[40], two[40];
     snprintf(one, sizeof one, "%s(x)", name);
     snprintf(two, sizeof two, "%s(x, y)", name);
-    bool is_internal = is_leaf(operation) || operation == ADD || operation == MULTIPLY || operation == LESS ||
-                       operation == GATE;
+    bool is_internal =
+        is_leaf(operation) || operation == ADD || operation == MULTIPLY || operation == LESS || operation == GATE;
     bool has_two = operation_arity(operation) == 2;
     Node first = parse(&e, one);
     assert_int_equal(e.diagnostics.errors, is_internal || has_two ? 1 : 0);

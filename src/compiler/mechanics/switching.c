@@ -56,7 +56,7 @@ static void find_branches(const struct Model *model, struct List *roots, struct 
     for (size_t i = 0; i < switches->count && grown; i++)
       if (is_used[i]) append(roots, switches->items[i].indicator);
   }
-  switching->branches = allocate(switches->count, sizeof *switching->branches);
+  switching->branches = allocate(switches->count, sizeof(const struct Switch *));
   for (size_t i = 0; i < switches->count; i++)
     if (is_used[i]) switching->branches[switching->branch_count++] = &switches->items[i];
   free(is_used);

@@ -162,12 +162,14 @@ static size_t find_pulling(const struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct ContactFacts *contact = &switches->contacts[i];
     if (mode_of(settlement, contact->mode) == 0.0) continue;
-    double force = fmin(settlement->acceleration[lagrangian.coordinate_count + contact->constraint], 0.0);
-    bool parts = is_hit(settlement, indicator_of_contact(settlement, i)) && settlement->was_opened[i] == 0.0 &&
-                 !settlement->jumped;
+    double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
+    /* An importer comes to a zero or past it, and does not tell whose. */
+    bool is_reached = is_hit(settlement, indicator_of_contact(settlement, i)) ||
+                      (settlement->occasion == IN_EXCHANGE && force <= 0.0);
+    bool parts = is_reached && settlement->was_opened[i] == 0.0 && !settlement->jumped;
     if (!(force < 0.0) && !parts) continue;
-    if (found < switches->contact_count && force >= most) continue;
-    most = force;
+    if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
+    most = fmin(force, 0.0);
     found = i;
   }
   return found;

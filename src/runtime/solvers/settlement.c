@@ -26,7 +26,7 @@ static size_t search_work_count(void) {
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return search_work_count() + 2 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
+  return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
          switches->contact_count + rows_of_matrix() + switches->mode_count + 3 * lagrangian.state_count + corrections;
 }
 
@@ -36,7 +36,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   struct Settlement settlement = {.instance = instance, .switches = switches};
   settlement.value = instance->switching_work + search_work_count();
   settlement.noise = settlement.value + values;
-  settlement.condition = settlement.noise + values;
+  settlement.largest = settlement.noise + values;
+  settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
   settlement.acceleration = settlement.was_opened + switches->contact_count;
@@ -45,6 +46,7 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.rounded = settlement.kept_velocities + lagrangian.state_count;
   settlement.derivative = settlement.rounded + lagrangian.state_count;
   settlement.correction = settlement.derivative + lagrangian.state_count;
+  memset(settlement.largest, 0, values * sizeof(double));
   memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
   return settlement;
 }
@@ -71,6 +73,12 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
   return true;
 }
 
+/* What a jump leaves of a velocity is rounded as what it had before. */
+static void measure_velocity(struct Settlement *settlement, size_t place) {
+  settlement->largest[place] = fmax(settlement->largest[place], fabs(settlement->value[place]));
+  settlement->noise[place] = fmax(settlement->noise[place], 8.0 * DBL_EPSILON * settlement->largest[place]);
+}
+
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = decision_count(settlement->switches);
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
@@ -81,6 +89,10 @@ bool settlement_evaluate(struct Settlement *settlement) {
     double noise = 8.0 * fabs(settlement->noise[i] - settlement->value[i]);
     settlement->noise[i] = isfinite(noise) ? noise : 0.0;
   }
+  for (size_t i = 0; i < settlement->switches->contact_count; i++)
+    measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
+  for (size_t i = 0; i < settlement->switches->friction_count; i++)
+    measure_velocity(settlement, friction_place(settlement, i, FRICTION_VELOCITY));
   return true;
 }
 

@@ -16,6 +16,7 @@ struct Settlement {
   enum Occasion occasion;
   size_t indicator;           /* for AT_EVENT */
   double *value, *noise;      /* value[], and what rounding may make of it */
+  double *largest;            /* of each velocity in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
   double *acceleration;       /* and forces of constraints */

@@ -15,6 +15,9 @@
 
 enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
 
+/* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
+static const double shortest_slip = 1e-4;
+
 /* Whether some constraint of a contact or friction holds, so that indicators are forces. */
 static bool holds_any(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -50,15 +53,18 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   double rate = settlement->value[place + FRICTION_RATE],
          noise = settlement_noise(settlement, place, place + FRICTION_RATE);
   double flips = settlement->flips[indicator_of_friction(settlement, friction)];
-  bool is_moving = fabs(velocity) > noise, is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
+  bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
+  bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
   double direction = velocity > 0.0 ? 1.0 : -1.0;
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    double beyond = fabs(force) - settlement->value[place + FRICTION_STICTION];
-    /* An importer that stands on the zero itself would not see the indicator leave it. */
-    bool is_at_limit = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
-                       (settlement->occasion == IN_EXCHANGE && beyond == 0.0);
-    bool slips = beyond > 0.0 || (is_at_limit && is_first && !settlement->jumped);
+    double stiction = settlement->value[place + FRICTION_STICTION];
+    /* An importer comes to a zero or past it, and does not tell whose. */
+    bool is_reached = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
+                      (settlement->occasion == IN_EXCHANGE && fabs(force) >= stiction);
+    bool slips = fabs(force) > stiction || (is_reached && is_first && !settlement->jumped);
     if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
     return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
   }
@@ -66,7 +72,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   if (is_moving && settlement->jumped) return direction;
   if (is_moving && !turns) return mode;
   if (is_first_of_all && is_first) return 0.0;
-  double least = -settlement->noise[place + FRICTION_RATE];
+  double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
   if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
   return 0.0;
 }
@@ -219,8 +225,9 @@ static const char *settle(struct Instance *instance, double time, double *state,
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
     problem = "the constraints cannot be kept at an event";
-  if (problem == NULL && settlement.changed && lagrangian.projection != NULL && occasion != AT_START)
-    problem = solver_project(instance, time, state);
+  /* In exchange the event mode itself takes up what an importer went too far. */
+  bool has_to_keep = lagrangian.projection != NULL && occasion != AT_START && occasion != IN_EXCHANGE;
+  if (problem == NULL && settlement.changed && has_to_keep) problem = solver_project(instance, time, state);
   if (settlement.changed && occasion != AT_START) instance->situation->statistics[STATISTIC_EVENTS]++;
   *changed = settlement.changed;
   return problem;
