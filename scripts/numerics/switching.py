@@ -23,10 +23,11 @@ PATIENCE = 10.0  # seconds of a run; longer ones are not tried
 
 NOTES = [
     "An error is the largest of any position at 100 communication points, against closed forms evaluated with 30 digits: parabolas, Jacobi's elliptic "
-    "functions, harmonic motions. Velocities, which jump, are not compared. All take turns in one run, and the fastest round counts; medians are in the CSV file.",
+    "functions, harmonic motions. Velocities, which jump, are not compared. All take turns in one run, and the fastest round counts, by the processor's time; "
+    "medians are in the CSV files.",
     "The FMU does 100 communication steps in a C program; \"one step\" does one, whose error is that at the end. CVODE in C is the same FMU in model exchange, "
-    "in a loop as FMPy has it (BDF, roots of the event indicators, the same tolerances and largest steps, asked 100 times), in C without Python, with the SUNDIALS that the FMUs are "
-    "built with. FMPy's times include its loop in Python, as its users see them.",
+    "in a loop as FMPy has it (BDF, roots of the event indicators, the same tolerances and largest steps, asked 100 times), in C without Python, with the "
+    "SUNDIALS that the FMUs are built with. FMPy's times include its loop in Python, as its users see them.",
     "SciPy's and heyoka's equations, guards and jumps are written for each phase; each gets one call a phase, and a ball rests where its bounce is slower than the "
     "tolerance. heyoka is compiled before the clock runs, has the numbers of parameters in its code, and a cooldown of 1e-12 s: with its own it passes over the "
     "last bounces of the ball, which then falls through the ground.",
@@ -100,10 +101,11 @@ def one_setting(problem):
 
 
 def grown(problem, quick, progress):
-    """(samples of more and more events, methods that are not installed); a method that was too slow is not asked for more."""
+    """((events, sample) for more and more of them, methods that are not installed)."""
     samples, missing = [], set()
     for count in COUNTS[:3] if quick else COUNTS:
-        some, absent = sample_problem(problem.with_events(count), one_setting(problem.with_events(count)), quick)
+        longer = problem.with_events(count)
+        some, absent = sample_problem(longer, one_setting(longer), quick)
         samples, missing = samples + [(count, sample) for sample in some], missing | absent
     progress(f"{problem.name}, more and more events")
     return samples, missing
