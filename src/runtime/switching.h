@@ -21,6 +21,8 @@ struct CommunicationStep;
 struct EventProgress {
   double searched; /* no event before this time is left */
   int gathered;    /* how many have come within the rounding of time, or of what they wait for */
+  double last;     /* event, from the start of the step on; 0 for none */
+  double distance; /* between the last two; 0 for none */
 };
 
 struct Switching {
@@ -67,8 +69,8 @@ extern const struct Switching switching;
 /* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
 bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator);
 
-/* A state that differs from another by what rounding may do to it; of that at least one way. */
-void switching_round(const double *state, double *rounded);
+/* A state that differs from another by what rounding may do to it, in one way or otherwise. */
+void switching_round(const double *state, bool otherwise, double *rounded);
 
 /* switching.find */
 bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator);

@@ -9,6 +9,9 @@
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
 
+/* What is looked at first, in units of the time between the last two events. */
+static const double window_share = 1.25;
+
 static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
 static const char no_modes[] = "the parameters leave no acceleration there";
@@ -46,19 +49,33 @@ static const char *pass_event(struct Instance *instance, const struct Communicat
   return problem;
 }
 
+/*
+ * Looks for the next event up to an end, in windows that begin somewhat longer than the last two events lay apart: the
+ * solver's step may reach far beyond the next one. False where there is none.
+ */
+static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
+                      size_t *indicator) {
+  double window = window_share * progress->distance;
+  while (progress->searched < end) {
+    double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
+    if (switching.find(instance, progress->searched, near, time, indicator)) return true;
+    progress->searched = near;
+    progress->gathered = 0;
+    window *= 2.0;
+  }
+  return false;
+}
+
 const char *switching_pass(struct Instance *instance, const struct CommunicationStep *step,
                            struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator;
-  if (!(progress->searched < end)) return NULL;
-  if (!switching.find(instance, progress->searched, end, &time, &indicator)) {
-    progress->searched = end;
-    progress->gathered = 0;
-    return NULL;
-  }
+  if (!find_next(instance, end, progress, &time, &indicator)) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
   bool is_close = instance->was_at_zero || solver_rests(time, time - progress->searched);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
+  progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
+  progress->last = time - step->start;
   progress->searched = time;
   if (progress->gathered == EVENT_LIMIT) return gathering;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";

@@ -27,6 +27,7 @@ struct Search {
   double *state, *rounded; /* state_count each */
   double *values;          /* one a indicator */
   double *samples;         /* SEARCH_NODES rows of them */
+  double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
   int windows;             /* that were looked at */
   double departure;        /* the sign of what left 0 last */
@@ -40,6 +41,7 @@ static struct Search search_of(struct Instance *instance) {
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
   search.noise = search.samples + SEARCH_NODES * count;
+  search.exact = search.noise + count;
   return search;
 }
 
@@ -58,14 +60,17 @@ static double value_at(struct Search *search, size_t indicator, double time) {
 
 static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
-  double later = time * (1.0 + 4.0 * DBL_EPSILON);
+  double later = time * (1.0 + 4.0 * DBL_EPSILON), *exact = search->exact;
   sample(search, time, search->values);
-  memcpy(search->noise, search->values, count * sizeof *search->noise);
-  switching_round(search->state, search->rounded);
-  bool known = switching_indicators(search->instance, later, search->rounded, search->values);
-  for (size_t i = 0; i < count; i++) {
-    double change = known ? 8.0 * fabs(search->values[i] - search->noise[i]) : 0.0;
-    search->noise[i] = isfinite(change) ? change : 0.0;
+  memset(search->noise, 0, count * sizeof *search->noise);
+  memcpy(exact, search->values, count * sizeof *exact);
+  for (int way = 0; way < 2; way++) {
+    switching_round(search->state, way == 1, search->rounded);
+    bool known = switching_indicators(search->instance, later, search->rounded, search->values);
+    for (size_t i = 0; i < count && known; i++) {
+      double change = 8.0 * fabs(search->values[i] - exact[i]);
+      if (isfinite(change)) search->noise[i] = fmax(search->noise[i], change);
+    }
   }
 }
 

@@ -20,7 +20,7 @@ static size_t rows_of_matrix(void) {
 }
 
 static size_t search_work_count(void) {
-  return 2 * lagrangian.state_count + (SEARCH_NODES + 2) * indicator_count(lagrangian.switches);
+  return 2 * lagrangian.state_count + (SEARCH_NODES + 3) * indicator_count(lagrangian.switches);
 }
 
 size_t settlement_work_count(void) {
@@ -51,11 +51,11 @@ struct Settlement settlement_of(struct Instance *instance) {
   return settlement;
 }
 
-void switching_round(const double *state, double *rounded) {
+void switching_round(const double *state, bool otherwise, double *rounded) {
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
-    double change = (double)(1 + i * 7 % 5) * DBL_EPSILON * size;
-    rounded[i] = state[i] + (i % 2 == 0 ? change : -change);
+    double change = (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
+    rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }
 }
 
@@ -82,7 +82,7 @@ static void measure_velocity(struct Settlement *settlement, size_t place) {
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = decision_count(settlement->switches);
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
-  switching_round(settlement->state, settlement->rounded);
+  switching_round(settlement->state, false, settlement->rounded);
   if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {
