@@ -201,13 +201,15 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
-/* Whether the pieces of an energy change with something else than the coordinates. */
+/* Whether the pieces of an energy may differ where they meet, or change with something else than the coordinates. */
 static bool steps_in_time(const struct Model *model) {
   const struct Graph *graph = model->graph;
   bool steps = false;
   if (!graph_depends_on(graph, model->potential.node, MODE)) return false;
   for (size_t i = 0; i < model->switches.count; i++) {
     Node indicator = model->switches.items[i].indicator;
+    const char *function = model->switches.items[i].function;
+    steps |= strcmp(function, "sign") == 0 || strcmp(function, "a condition") == 0;
     steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
              graph_depends_on(graph, indicator, INPUT);
   }

@@ -181,9 +181,9 @@ static void check_definitions_used(struct Reader *reader) {
 
 /* Results that every system has; their names must stay free. */
 static void reserve_result_names(struct Scope *scope) {
-  static const char *const results[] = {"kineticEnergy",       "potentialEnergy", "totalEnergy",
-                                        "nonConservativeWork", "solverSteps",     "derivativeEvaluations",
-                                        "jacobianEvaluations", "eventIndicator"};
+  static const char *const results[] = {
+      "kineticEnergy",         "potentialEnergy",     "totalEnergy",    "nonConservativeWork", "solverSteps",
+      "derivativeEvaluations", "jacobianEvaluations", "eventIndicator", "solverHandovers",     "events"};
   for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
 }
 

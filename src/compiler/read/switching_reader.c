@@ -208,6 +208,9 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   reader->constraints_read++;
   struct Quantity velocity = {.node = ZERO};
   if (!read_velocity(reader, node, &velocity)) return;
+  if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
   struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
   if (!velocity.dimension.known) unit = dimension_unknown;
   struct Quantity sliding = read_friction_force(reader, node, "force", unit), stiction = sliding;

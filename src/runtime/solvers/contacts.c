@@ -114,12 +114,18 @@ static bool push(struct Settlement *settlement, size_t contact, double restituti
 static bool take_impact(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
+  if (!(restitution >= 0.0 && restitution <= 1.0)) {
+    log_message(settlement->instance, STATUS_DISCARD,
+                "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
+                switches->contacts[contact].name, restitution);
+    return false;
+  }
   double *modes = settlement->instance->parameter + lagrangian.parameter_count - switches->mode_count;
   memcpy(settlement->kept_modes, modes, switches->mode_count * sizeof *modes);
   set_frictions(settlement, contact);
   open_all(settlement);
   settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
-  bool done = push(settlement, contact, restitution > 0.0 ? fmin(restitution, 1.0) : 0.0);
+  bool done = push(settlement, contact, restitution);
   memcpy(modes, settlement->kept_modes, switches->mode_count * sizeof *modes);
   open_all(settlement);
   settlement->jumped = true;
@@ -137,6 +143,9 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   if (!(fall > settlement->noise[gap + CONTACT_ACCELERATION])) return false;
   double start = settlement->instance->situation->start_time;
   double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
+  /* An importer may come below the ground, and finds no further zero there. */
+  bool is_below = settlement->occasion == IN_EXCHANGE && value[CONTACT_GAP] < 0.0;
+  if (is_below && rate * rate / (2.0 * fall) <= -value[CONTACT_GAP]) return true;
   return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
          rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
 }
