@@ -15,7 +15,8 @@ CLEAN = {"ASAN_OPTIONS": "detect_leaks=1", "UBSAN_OPTIONS": "print_stacktrace=1"
 
 def words_for(name, build):
     description = fmu.description(name)
-    reals = sum(variable.type == "Real" for variable in description.modelVariables)
+    types = [variable.type for variable in description.modelVariables]
+    reals = next((i for i, kind in enumerate(types) if kind != "Real"), len(types))  # those before the first of another type
     library = build / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     return [build / "bin" / "drive", library, description.guid, str(reals), str(len(fmu.states_of(name)))]
 

@@ -70,7 +70,8 @@ def path_of(platform, program):
 
 
 def compile_program(platform, program):
-    path, sources = path_of(platform, program), [ROOT / "tests" / "c" / f"{source}.c" for source in (program, "fmu_library")]
+    parts = (program, "fmu_library", *(["measuring"] if program == "stepping" else []))
+    path, sources = path_of(platform, program), [ROOT / "tests" / "c" / f"{part}.c" for part in parts]
     if path.exists() and path.stat().st_mtime > max(source.stat().st_mtime for source in sources):
         return
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -121,10 +122,14 @@ def life(platform, name):
     return run(platform, "drive", name, reals_of(name), states)
 
 
+def first_reals(name):
+    return ",".join(map(str, range(reals_of(name))))
+
+
 @functools.cache
 def motion(platform, name):
     """All variables at ten points."""
-    lines = run(platform, "stepping", name, 1e-8, 0.5, 50, 0, reals_of(name), 10, ",").splitlines()
+    lines = run(platform, "stepping", name, 1e-8, 0.5, 50, 0, first_reals(name), 10, ",").splitlines()
     return np.array([[float(word) for word in line.split()] for line in lines[:10]])
 
 
@@ -166,7 +171,7 @@ def test_same_motion(name, platform):
 def test_this_machine_has_the_same_motion(name):
     """By the compiler of this machine, in the archive that scripts/run builds."""
     guid = fmu.description(name).guid
-    words = [BUILD / "bin" / "stepping", fmu.library(name), guid, *map(str, (1e-8, 0.5, 50, 0, reals_of(name), 10, ","))]
+    words = [BUILD / "bin" / "stepping", fmu.library(name), guid, *map(str, (1e-8, 0.5, 50, 0, first_reals(name), 10, ","))]
     lines = output_of(*words).splitlines()[:10]
     ours = np.array([[float(word) for word in line.split()] for line in lines])
     np.testing.assert_allclose(ours, motion("linux64", name), rtol=1e-9, atol=1e-9)
