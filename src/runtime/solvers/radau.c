@@ -17,6 +17,9 @@
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double radau_safety = 0.05;
 
+/* As a share of the time: in much less, rounding is all that changes. */
+static const double shortest_first_step = 1e-12;
+
 enum {
   ITERATION_LIMIT = 12,
   ATTEMPT_LIMIT = 60,
@@ -257,7 +260,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
     if (iteration > 1) {
       double theta = change / before;
       *contraction = iteration == 2 ? theta : sqrt(theta * *contraction);
-      bool rounds = change <= 20 * DBL_EPSILON / relative; /* rounding alone changes the iterates */
+      bool rounds = change <= 200 * DBL_EPSILON / relative; /* rounding alone changes the iterates */
       if (*contraction >= 0.99 && !rounds) return 0;
       expected = rounds ? 0.0 : *contraction / (1.0 - *contraction);
       if (expected * change * pow(*contraction, ITERATION_LIMIT - 1 - iteration) > enough && !rounds) return 0;
@@ -325,11 +328,17 @@ static const char *begin(struct Instance *instance, struct Radau *radau, double 
   return is_solvable ? NULL : "the equations have no solution there";
 }
 
-/* The step to try: what the control says, at first no more than the communication step. */
+/*
+ * The step to try: what the control says, at first no more than the length of the communication step, of which less may be
+ * left behind an event, but always enough to change the time.
+ */
 static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
   const struct RadauSaved *saved = radau->saved;
   double step = saved->next;
-  if (saved->step == 0.0) step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
+  if (saved->step == 0.0) {
+    step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
+    step = fmax(step, shortest_first_step * fabs(time));
+  }
   double longest = fmin(lagrangian.max_step, 2.0 * step);
   return fmin(step, first_terms_step(instance, radau->series, time, radau->state, longest));
 }
@@ -366,7 +375,7 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
   if (problem != NULL) return problem;
   const struct RadauMethod *method = &methods[saved->next_method];
   bool failed = false;
-  double step = trial_step(instance, radau, time, communication->end - time);
+  double step = trial_step(instance, radau, time, communication->end - communication->start);
   for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
     if (solver_rests(time, step)) return solver_resting;
     double contraction = saved->contraction, error = 1.0;
