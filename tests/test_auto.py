@@ -89,13 +89,17 @@ def test_friction_that_is_nearly_dry(open_fmu):
     assert count(instance, "solverSteps") < 3000
 
 
-def test_flights_belong_to_the_series(open_fmu):
-    """Where no force depends on the state, no method gets further; three bounces against SciPy."""
-    instance = open_fmu("AutoBall").initialize(tolerance=1e-8)
+@pytest.mark.parametrize("tolerance", 10.0 ** -np.linspace(5.5, 12.5, 15))
+def test_flights_belong_to_the_series(open_fmu, tolerance):
+    """
+    Where no force depends on the state, no method gets further; three bounces against SciPy. The force has no value on the
+    other side of the ground, whatever rounding makes of the end of a step.
+    """
+    instance = open_fmu("AutoBall").initialize(tolerance=tolerance)
     instance.step(0.7)
     force = lambda t, y: [y[1], -9.81 + 1e8 * max(-y[0], 0) ** 1.5 * (1 - 0.5 * y[1])]
     expected = solve_ivp(force, (0, 0.7), [0.1, 0], method="DOP853", rtol=1e-11, atol=1e-13, max_step=1e-4).y[:, -1]
-    assert instance.get("x", "v") == pytest.approx(expected, abs=1e-5)
+    assert instance.get("x", "v") == pytest.approx(expected, abs=max(1e-6, 10 * tolerance))
     assert count(instance, "solverHandovers") == 0 or count(instance, "solverHandovers") >= 5
 
 

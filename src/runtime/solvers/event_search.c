@@ -221,10 +221,26 @@ static double tangent_to_zero(struct Search *search, double time, const double *
   return way;
 }
 
+/*
+ * The branch whose zero the state has passed by no more than rounding, which no search tells from none: its piece may have
+ * no value there. branch_count for none.
+ */
+static size_t find_passed(struct Search *search, double time) {
+  size_t count = lagrangian.switches->branch_count;
+  sample(search, time, search->values);
+  for (size_t i = 0; i < count; i++)
+    if (switching_sign(search->instance, i) * search->values[i] < 0.0) return i;
+  return count;
+}
+
 bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
   double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
+  memcpy(state, search.state, lagrangian.state_count * sizeof *state);
+  *time = last;
+  *indicator = find_passed(&search, last);
+  if (*indicator < lagrangian.switches->branch_count) return true;
   if (!solver_derivatives(instance, last, search.state, rate)) return false;
   double way = tangent_to_zero(&search, last, rate, indicator);
   if (!isfinite(way)) return false;
