@@ -104,6 +104,11 @@ BROKEN = [
 STRANGE = [
     "<system name='A'><coordinate name='q' velocity='v'/><particle mass='1' x='q^0.5^q'/>"
     "<force coordinate='q'>sum(i, 1, 30, der(q)^i)</force></system>",
+    # Symbols of branches come after lists of the symbols were made.
+    "<system name='A'><coordinate name='q' velocity='v'/><particle mass='1' x='q'/><potential>abs(q - 1)</potential>"
+    "<output name='y'>der(abs(q)) + der(max(q^3, v))</output></system>",
+    "<system name='A'><coordinate name='q' velocity='v'/><displacement name='s'/><particle mass='1' x='q + s'/>"
+    "<potential>abs(q + s) + abs(q - 1 + s) + abs(q - 3)*s</potential></system>",
 ]
 
 

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "switching.h"
-
 #include "initial_state.h"
 #include "switching.h"
 

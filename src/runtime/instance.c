@@ -75,7 +75,8 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
-  instance->event_state = instance->acceleration - (lagrangian.switching != NULL ? 2 * lagrangian.state_count : 0);
+  if (lagrangian.switching != NULL)
+    instance->event_state = instance->switching_work + lagrangian.switching->work_count();
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 

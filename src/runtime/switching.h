@@ -37,16 +37,6 @@ struct Switching {
                         bool *changed);
   /* Sets the modes to what start values say, as long as these may be set: no contact is closed, and all friction slides. */
   void (*guess)(struct Instance *instance);
-  /*
-   * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
-   * where none does. The time is NAN where its zeros cannot be told from one another.
-   */
-  bool (*find)(struct Instance *instance, double from, double to, double *time, size_t *indicator);
-  /*
-   * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
-   * last step along its tangent behind a zero that is nearer than the state's digits matter. False where there is none.
-   */
-  bool (*jump)(struct Instance *instance, double *time, double *state, size_t *indicator);
   /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
   bool (*start)(struct Instance *instance, const char *function);
   /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
@@ -72,10 +62,16 @@ bool switching_indicators(struct Instance *instance, double time, const double *
 /* A state that differs from another by what rounding may do to it, in one way or otherwise. */
 void switching_round(const double *state, bool otherwise, double *rounded);
 
-/* switching.find */
+/*
+ * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
+ * where none does. The time is NAN where its zeros cannot be told from one another.
+ */
 bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator);
 
-/* switching.jump */
+/*
+ * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
+ * last step along its tangent behind a zero that is nearer than the state's digits matter. False where there is none.
+ */
 bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
 
 /* The functions of the same names in struct Switching. */

@@ -195,10 +195,15 @@ struct Equations *equations_create(const struct Model *model) {
   return equations;
 }
 
+/* What an output tells: forces of reaction may decide on its branches, and have branches themselves. */
+static Node output_of(const struct Model *model, const Node *reactions, Node node) {
+  node = with_reactions(model, reactions, without_branches(model, node));
+  return without_branches(model, node);
+}
+
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->outputs.count; i++)
-    equations->outputs[i] =
-        without_branches(model, with_reactions(model, equations->reactions, model->outputs.items[i].node));
+    equations->outputs[i] = output_of(model, equations->reactions, model->outputs.items[i].node);
   for (size_t i = 0; i < model->places.count; i++)
     equations->places[i] = without_branches(model, model->places.items[i].node);
 }

@@ -9,6 +9,7 @@
 /* Its mode is the sign of its indicator, -1, 0 or 1; at a zero the mode changes. */
 struct Switch {
   Node mode, indicator;
+  unsigned kinds;       /* of the symbols that decide on the mode, those of further modes among them */
   const char *function; /* that has the pieces, and where: for messages */
   long line;
 };

@@ -24,6 +24,7 @@ static struct List roots_of(const struct Model *model, const struct Equations *e
   struct List roots = {0};
   for (size_t i = 0; i < row_count(equations); i++) append(&roots, equations->residual[i]);
   append(&roots, equations->power);
+  for (size_t i = 0; i < model->constraints.count; i++) append(&roots, model->constraints.items[i].node);
   for (size_t i = 0; i < switches->contact_count; i++) {
     append(&roots, switches->contacts[i].gap);
     append(&roots, switches->contacts[i].restitution);

@@ -4,6 +4,7 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/other_units.h"
+#include "mechanics/reactions.h"
 #include "memory.h"
 
 bool is_element(xmlNodePtr node, const char *name) {
@@ -69,6 +70,11 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 Node without_displacements(struct Reader *reader, long line, const char *what, Node node) {
   struct Graph *graph = reader->model->graph;
   if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
+  if (reader->undisplaced_count < graph->symbol_count) { /* what has been read since may have switches */
+    free(reader->undisplaced);
+    reader->undisplaced = undisplaced_symbols(graph);
+    reader->undisplaced_count = graph->symbol_count;
+  }
   graph->not_finite = false;
   substitute(graph, &node, 1, reader->undisplaced, &node);
   if (graph->not_finite)
@@ -107,14 +113,6 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
       .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   struct Quantity value = parse_expression(reader->scope, text, place);
   free(text);
-  return value;
-}
-
-struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
-  struct Switches *switches = reader->scope->switches;
-  reader->scope->switches = NULL;
-  struct Quantity value = expression_text_of(reader, node, what, kinds);
-  reader->scope->switches = switches;
   return value;
 }
 

@@ -33,7 +33,8 @@ struct Reader {
   bool has_solver, has_experiment;
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
-  Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced */
+  Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced; NULL until it is asked for */
+  size_t undisplaced_count;
   size_t constraints_read, contacts_read, frictions_read;
 };
 
@@ -88,9 +89,6 @@ struct Matrix matrix_without_displacements(struct Reader *reader, long line, con
 
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
-
-/* The same where no event waits for its pieces: abs, min and the like stay whole. */
-struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);

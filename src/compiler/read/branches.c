@@ -2,10 +2,23 @@
 
 #include <stdlib.h>
 
+#include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "mechanics/switches.h"
 #include "memory.h"
+
+unsigned kinds_that_decide(const struct Scope *scope, Node node) {
+  const struct Graph *graph = scope->graph;
+  unsigned kinds = graph->vertices[node].kinds;
+  if (scope->switches == NULL || !graph_depends_on(graph, node, MODE)) return kinds;
+  cone_collect(graph->cone, graph, &node, 1, NULL);
+  for (size_t i = 0; i < scope->switches->count; i++) {
+    const struct Switch *item = &scope->switches->items[i];
+    if (cone_has(graph->cone, item->mode)) kinds |= item->kinds;
+  }
+  return kinds;
+}
 
 /* The mode of the switch with this indicator; a new one where there is none. */
 static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line) {
@@ -15,7 +28,11 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
   char *name = format_text("branch %zu", switches->count);
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   free(name);
-  append_switch(switches, (struct Switch){mode, indicator, function, scope_line(scope, line)});
+  append_switch(switches, (struct Switch){.mode = mode,
+                                          .indicator = indicator,
+                                          .kinds = kinds_that_decide(scope, indicator),
+                                          .function = function,
+                                          .line = scope_line(scope, line)});
   return mode;
 }
 

@@ -13,6 +13,9 @@
  */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
+/* The kinds of symbols that a node rests on, also by what decides on its pieces. */
+unsigned kinds_that_decide(const struct Scope *scope, Node node);
+
 /* abs, sign, min or max of nodes, by their pieces. */
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
 

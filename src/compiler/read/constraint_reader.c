@@ -64,7 +64,7 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
 void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable *constraint = &model->constraints.items[reader->constraints_read++];
-  struct Quantity value = whole_expression_of(reader, node, "the constraint", IN_CONSTRAINT);
+  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
   constraint->node = value.node;
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);

@@ -184,7 +184,7 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
 static void read_output(struct Reader *reader, xmlNodePtr node) {
   struct Variable output = common_attributes(reader, node);
   char *what = format_text("the output '%s'", output.name);
-  struct Quantity value = whole_expression_of(reader, node, what, IN_OUTPUT);
+  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
   require_unit(reader, output.line, what, value, output.dimension);
   if (!output.dimension.known) output.dimension = value.dimension;
   output.node = value.node = without_displacements(reader, output.line, what, value.node);

@@ -9,6 +9,7 @@
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "read/branches.h"
 #include "read/conditions.h"
 #include "read/hints.h"
 #include "read/quantities.h"
@@ -205,7 +206,7 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     return nothing;
   }
   if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
-  unsigned surplus = parser->graph->vertices[quantity->node].kinds & ~parser->place.kinds;
+  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~parser->place.kinds;
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,

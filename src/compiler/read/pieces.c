@@ -12,7 +12,7 @@ static Node way_from(struct Graph *graph, Node x, double knot) {
 /* Positive from the knot on, the knot itself included. */
 static Node from_knot_on(struct Scope *scope, Node x, double knot) {
   struct Graph *graph = scope->graph;
-  Node before = negate(graph, branch_of(scope, way_from(graph, x, knot), needed_by, 0));
+  Node before = negate(graph, branch_of(scope, way_from(graph, x, knot), needed_by, scope->table_line));
   return subtract(graph, ONE, function(graph, GATE, before, ONE));
 }
 
@@ -26,7 +26,7 @@ Node way_in(struct Scope *scope, Node x, double from, double to) {
 Node way_before(struct Scope *scope, Node x, double start) {
   struct Graph *graph = scope->graph;
   Node way = way_from(graph, x, start);
-  return function(graph, GATE, negate(graph, branch_of(scope, way, needed_by, 0)), way);
+  return function(graph, GATE, negate(graph, branch_of(scope, way, needed_by, scope->table_line)), way);
 }
 
 Node way_behind(struct Scope *scope, Node x, double end) {

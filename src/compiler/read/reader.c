@@ -12,7 +12,6 @@
 #include "read/includes.h"
 #include "read/linearization_reader.h"
 #include "mechanics/massless.h"
-#include "mechanics/reactions.h"
 #include "memory.h"
 #include "read/parser.h"
 #include "read/robot_system.h"
@@ -215,12 +214,12 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
   append_reactions(reader->model, reader->scope);
-  reader->undisplaced = undisplaced_symbols(reader->model->graph);
   read_children(reader, root, DEFINITIONS);
   definitions_resolve(reader->definitions, reader);
   read_children(reader, root, POSITIONS);
   evaluate_start_expressions(reader);
   read_children(reader, root, EXPRESSIONS);
+  undisplace_switches(reader);
   reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
   if (reader->diagnostics->errors == 0) hold_massless_coordinates(reader->model);

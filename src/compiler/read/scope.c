@@ -117,27 +117,34 @@ bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct
   return !scope->checks_units || dimension_agrees(first, second);
 }
 
+/* Symbols that are new, those of branches among them, are constant until something else is said. */
+static Node *time_derivatives_of(struct Scope *scope) {
+  size_t count = scope->graph->symbol_count;
+  if (scope->time_derivative_count < count)
+    scope->time_derivatives = reallocate(scope->time_derivatives, count, sizeof *scope->time_derivatives);
+  while (scope->time_derivative_count < count) scope->time_derivatives[scope->time_derivative_count++] = ZERO;
+  return scope->time_derivatives;
+}
+
 Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
                   long line) {
   Node node = graph_symbol(scope->graph, kind, index, name);
-  scope->time_derivatives =
-      reallocate(scope->time_derivatives, scope->graph->symbol_count, sizeof *scope->time_derivatives);
-  scope->time_derivatives[scope->graph->symbol_count - 1] = ZERO;
   if (kind < SEED_PARAMETER && kind != ACCELERATION)
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, line);
   return node;
 }
 
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative) {
-  scope->time_derivatives[scope->graph->vertices[symbol].left] = derivative;
+  time_derivatives_of(scope)[scope->graph->vertices[symbol].left] = derivative;
 }
 
 Node time_derivative_of_symbol(const struct Scope *scope, Node symbol) {
-  return scope->time_derivatives[scope->graph->vertices[symbol].left];
+  size_t number = scope->graph->vertices[symbol].left;
+  return number < scope->time_derivative_count ? scope->time_derivatives[number] : ZERO;
 }
 
 Node total_time_derivative(struct Scope *scope, Node node) {
   Node derivative = ZERO;
-  derivative_along(scope->graph, &node, 1, scope->time_derivatives, &derivative);
+  derivative_along(scope->graph, &node, 1, time_derivatives_of(scope), &derivative);
   return derivative;
 }

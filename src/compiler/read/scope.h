@@ -18,9 +18,11 @@ struct Scope {
   struct Requirements requirements; /* of all expressions read */
   struct Names *tables;             /* full name -> struct Table, see tables.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
-  struct Switches *switches;        /* the model's; NULL where expressions stay whole, as for a linearisation */
-  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters */
+  struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
+  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
+  size_t time_derivative_count;     /* of the symbols so far; branches make some without the scope */
   const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
+  long table_line;                  /* where the present table is used */
   long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */
 };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "algebra/differentiate.h"
+#include "algebra/rational.h"
 #include "algebra/simplify.h"
 #include "memory.h"
 #include "read/branches.h"
@@ -233,6 +234,23 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
     force->node = add(graph, force->node, multiply(graph, push, levers.values[i]));
   }
   gradient_free(&levers);
+}
+
+/* --- Branches --- */
+
+void undisplace_switches(struct Reader *reader) {
+  struct Graph *graph = reader->model->graph;
+  struct Switches *switches = &reader->model->switches;
+  for (size_t i = 0; i < switches->count; i++) {
+    struct Switch *item = &switches->items[i];
+    if (!graph_depends_on(graph, item->indicator, DISPLACEMENT)) continue;
+    item->indicator = without_displacements(reader, item->line, item->function, item->indicator);
+    if (simplify_fraction(graph, item->indicator) == ZERO)
+      report_error(reader->diagnostics, item->line,
+                   "%s turns where the displacements are 0, so that the force of reaction has no value there; expected "
+                   "it to turn elsewhere",
+                   item->function);
+  }
 }
 
 /* --- Events --- */

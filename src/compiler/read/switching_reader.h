@@ -19,4 +19,7 @@ void read_stop(struct Reader *reader, xmlNodePtr node);
 void read_friction(struct Reader *reader, xmlNodePtr node);
 void read_event(struct Reader *reader, xmlNodePtr node);
 
+/* After all expressions: what decides on branches has the displacements at 0; reports what turns just there. */
+void undisplace_switches(struct Reader *reader);
+
 #endif

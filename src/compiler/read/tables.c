@@ -203,6 +203,7 @@ struct Quantity table_at(struct Parser *parser, const struct Table *table, const
   bool outside = table->is_constant_outside, has_two = table->has_two_arguments;
   if (!check_argument(parser, table->arguments[0], name, has_two ? "first " : "", arguments[0])) return value;
   if (has_two && !check_argument(parser, table->arguments[1], name, "second ", arguments[1])) return value;
+  parser->scope->table_line = current_line(parser);
   value.node = has_two ? surface_at(parser->scope, &table->surface, outside, arguments[0].node, arguments[1].node)
                        : curve_at(parser->scope, &table->curve, outside, arguments[0].node);
   return value;

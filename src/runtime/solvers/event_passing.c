@@ -16,21 +16,24 @@ static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
 static const char no_modes[] = "the parameters leave no acceleration there";
 
-bool switching_start(struct Instance *instance, const char *function) {
+/* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
+static const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion,
+                          size_t indicator) {
   bool changed;
-  double time = instance->situation->time;
+  const char *problem = switching.settle(instance, time, state, occasion, indicator, &changed);
+  return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
+}
+
+bool switching_start(struct Instance *instance, const char *function) {
   instance->is_starting = true;
-  const char *problem = switching.settle(instance, time, instance->state, AT_START, 0, &changed);
-  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
+  const char *problem = settle(instance, instance->situation->time, instance->state, AT_START, 0);
   instance->is_starting = false;
   if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
   return problem == NULL;
 }
 
 bool switching_resume(struct Instance *instance, double time) {
-  bool changed;
-  const char *problem = switching.settle(instance, time, instance->state, AT_CHANGE, 0, &changed);
-  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
+  const char *problem = settle(instance, time, instance->state, AT_CHANGE, 0);
   if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
   return problem == NULL;
 }
@@ -39,11 +42,9 @@ bool switching_resume(struct Instance *instance, double time) {
 static const char *pass_event(struct Instance *instance, const struct CommunicationStep *step, double time,
                               size_t indicator) {
   const struct Solver *solver = lagrangian.solver;
-  bool changed;
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
-  const char *problem = switching.settle(instance, time, instance->event_state, AT_EVENT, indicator, &changed);
+  const char *problem = settle(instance, time, instance->event_state, AT_EVENT, indicator);
   instance->situation->last_step = (struct Span){time, time};
-  if (problem == NULL && evaluate_prepare(instance) != STATUS_DONE) problem = no_modes;
   if (solver->restart != NULL && !solver->restart(instance, instance->event_state, step))
     return "there is no memory for the solver";
   return problem;
@@ -58,7 +59,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   double window = window_share * progress->distance;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
-    if (switching.find(instance, progress->searched, near, time, indicator)) return true;
+    if (switching_find(instance, progress->searched, near, time, indicator)) return true;
     progress->searched = near;
     progress->gathered = 0;
     window *= 2.0;
@@ -87,7 +88,7 @@ const char *switching_pass_barrier(struct Instance *instance, const struct Commu
   double time;
   size_t indicator;
   if (++progress->gathered >= EVENT_LIMIT) return problem;
-  if (!switching.jump(instance, &time, instance->event_state, &indicator)) return problem;
+  if (!switching_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator);

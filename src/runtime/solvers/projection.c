@@ -181,6 +181,7 @@ static bool approach_from(struct Instance *instance, double time, double *state,
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < START_LIMIT; iteration++) {
     if (!least) memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    if (evaluate_prepare(instance) != STATUS_DONE) return false; /* before the start the pieces follow the state */
     if (!evaluate_lack(instance, time, state, target)) return false;
     double size = size_of(work.change, state, 0);
     move_positions(&work, state, least && size > largest_move ? largest_move / size : 1.0);
@@ -194,7 +195,8 @@ static size_t approach_positions(struct Instance *instance, double time, double 
   struct Work work = work_of(instance);
   if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (!evaluate_lack(instance, time, state, target)) return find_without_value(&work);
+  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, target);
+  if (!has_value) return find_without_value(&work);
   return find_lacking(&work, state, 0);
 }
 
@@ -250,17 +252,20 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
 
 /*
  * A constraint such as (x^2 + y^2 - l^2)^2 = 0 has no derivatives where it holds, and with them no hold on the motion. The
- * rows of J are held against those of a state nearby. Returns its number; constraint_count for none.
+ * rows of J are held against those of a state nearby. Returns its number; constraint_count for none. state is that of the
+ * instance, whose pieces follow it.
  */
-static size_t find_vanishing(struct Instance *instance, double time, const double *state) {
+static size_t find_vanishing(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
-  double *nearby = work.moved; /* which the velocities do not need */
+  double *there = work.moved; /* which the velocities do not need */
   if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraint_count;
   memcpy(work.first_slope, work.slope, lagrangian.constraint_count * sizeof *work.slope);
-  for (size_t i = 0; i < lagrangian.state_count; i++)
-    nearby[i] = state[i] + (i < n ? (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i) : 0.0);
-  if (!evaluate_lack(instance, time, nearby, VELOCITIES)) return lagrangian.constraint_count;
+  memcpy(there, state, lagrangian.state_count * sizeof *state);
+  for (size_t i = 0; i < n; i++) state[i] += (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i);
+  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, VELOCITIES);
+  memcpy(state, there, lagrangian.state_count * sizeof *state);
+  if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraint_count;
   while (found < lagrangian.constraint_count &&
          (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
     found++; /* one of an open contact has no slope anywhere */

@@ -22,7 +22,9 @@ struct Settlement {
   double *acceleration;       /* and forces of constraints */
   double *kept_modes, *kept_velocities;
   double *rounded, *derivative, *correction;
-  bool changed, jumped; /* jumped: velocities did */
+  const struct BranchFacts *switched; /* the branch that was first; NULL for none */
+  double overshoot;                   /* in s: how long before its indicator was 0 */
+  bool changed, jumped;               /* jumped: velocities did */
   int impacts;
 };
 

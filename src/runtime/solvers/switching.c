@@ -22,6 +22,11 @@ enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8, FRICTION_FLIP_LIMIT = 500 };
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
 
+/* In units of the scales of the state: less of a change may be rounding. */
+static const double least_kink = 1e-6;
+
+static const char not_kept[] = "the constraints cannot be kept at an event";
+
 /* Whether some constraint of a contact or friction holds, so that indicators are forces. */
 static bool holds_any(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -116,6 +121,47 @@ static const char *refuse_branch(const struct Settlement *settlement, size_t bra
   return without_end;
 }
 
+/*
+ * A branch that switches must not move a constraint: positions and velocities would have to jump. What the solver has left
+ * of the constraints is taken up before.
+ */
+static const char *begin_to_switch(struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  double rate = settlement->value[switches->branch_count + branch];
+  settlement->switched = &switches->branches[branch];
+  settlement->overshoot = rate != 0.0 ? fabs(settlement->value[branch] / rate) : 0.0;
+  if (lagrangian.projection == NULL || settlement->occasion == AT_START || settlement->jumped) return NULL;
+  double moved = lagrangian.projection->project(settlement->instance, settlement->time, settlement->state);
+  return isfinite(moved) ? NULL : not_kept;
+}
+
+/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
+static double largest_move(const struct Settlement *settlement) {
+  double change = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
+    size_t velocity = lagrangian.coordinate_count + i;
+    double scale = fmax(fabs(settlement->state[velocity]), lagrangian.nominal[velocity]);
+    change = fmax(change, fabs(settlement->acceleration[i]) / scale);
+  }
+  return least_kink + 4.0 * settlement->overshoot * change;
+}
+
+/* Whether the constraints hold as before in the branches that were switched to. */
+static const char *check_constraints(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  if (lagrangian.projection == NULL || settlement->switched == NULL || settlement->jumped) return NULL;
+  if (evaluate_prepare(instance) != STATUS_DONE) return not_kept;
+  bool starts = settlement->occasion == AT_START;
+  double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
+                        : lagrangian.projection->project(instance, settlement->time, settlement->state);
+  if (moved <= largest_move(settlement)) return NULL;
+  log_message(instance, starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+              "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, and positions or velocities "
+              "would have to jump with it; expected a constraint without kinks, or a <contact>, which has impacts",
+              settlement->time, settlement->switched->function, settlement->switched->line);
+  return not_kept;
+}
+
 static const char *switch_branches(struct Settlement *settlement, bool *switched) {
   const struct SwitchTable *switches = settlement->switches;
   *switched = false;
@@ -123,6 +169,8 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
     double mode = branch_mode(settlement, i);
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
     if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
+    const char *problem = settlement->switched == NULL ? begin_to_switch(settlement, i) : NULL;
+    if (problem != NULL) return problem;
     settlement_set_mode(settlement, switches->branches[i].mode, mode);
     *switched = true;
   }
@@ -229,7 +277,8 @@ static const char *settle(struct Instance *instance, double time, double *state,
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
-    problem = "the constraints cannot be kept at an event";
+    problem = not_kept;
+  if (problem == NULL) problem = check_constraints(&settlement);
   /* In exchange the event mode itself takes up what an importer went too far. */
   bool has_to_keep = lagrangian.projection != NULL && occasion != AT_START && occasion != IN_EXCHANGE;
   if (problem == NULL && settlement.changed && has_to_keep) problem = solver_project(instance, time, state);
@@ -278,8 +327,6 @@ static bool is_due(struct Instance *instance) {
 const struct Switching switching = {.work_count = settlement_work_count,
                                     .settle = settle,
                                     .guess = guess,
-                                    .find = switching_find,
-                                    .jump = switching_jump,
                                     .start = switching_start,
                                     .resume = switching_resume,
                                     .pass = switching_pass,

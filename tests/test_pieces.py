@@ -1,0 +1,293 @@
+"""abs, if, tables and the like wherever an expression may stand: in constraints, outputs that forces use, displacements."""
+
+import itertools
+import subprocess
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from scipy.interpolate import CubicSpline
+from scipy.integrate import solve_ivp
+
+import fmu
+from fmu import DISCARD, ERROR, build_systems, lagc
+
+METHODS = ["taylor", "erk", "radau", "bdf", "auto"]
+G = 9.81
+
+# A bead on a curve y = f(x) that begins to curve at x = 0, at a speed of 2 from x = -1 on.
+BEAD = """
+<system name="{name}">
+  <coordinate name="x" velocity="v" start="-1" velocityStart="{speed}"/>
+  <coordinate name="y" velocity="w" start="{y}"/>
+  {before}
+  <particle mass="1" x="x" y="y"/>
+  <potential>9.81*y</potential>
+  <constraint name="curve">{constraint}</constraint>
+  <solver method="{method}" tolerance="1e-10"/>
+</system>
+"""
+CURVES = {"Max": "y - max(x, 0)^3", "If": "y - if(x &gt; 0, x^3, 0)", "Defined": "hidden"}
+KNOTS = [(-3, 1.5), (-1.5, 0.3), (-0.6, 0.1), (0.2, 0), (1, 0.7), (3, 2.5)]
+CAM = "<table name='cam' interpolation='spline'>" + "\n".join(f"{x} {y}" for x, y in KNOTS) + "</table>"
+# What does not go on smoothly.
+KINKS = {
+    "Fold": ("y - abs(x)", 1, "abs, line"),
+    "Step": ("y - if(x &gt; 0, 1, 0)", 0, "a condition, line"),
+    "Bend": ("y - if(x &gt; 0, 1e-4*x, 0)", 0, "a condition, line"),
+    "Polygon": ("y - rail(x)", 0, "a table, line"),
+    "Named": ("y - hidden", 1, "abs, line"),
+}
+RAIL = "<table name='rail' interpolation='linear'>\n-5 0\n0 0\n5 0.01</table>"
+
+# A push of 1 towards 0 by way of an output; parabolas in time, with the period 4 sqrt(2 x0).
+PUSHED = """
+<system name="{name}">
+  <coordinate name="x" velocity="v" start="0.7"/>
+  <particle mass="1" x="x"/>
+  <output name="push">{push}</output>
+  <force coordinate="x">push</force>
+  <solver method="{method}"/>
+</system>
+"""
+PUSHES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
+
+# A displacement of what turns and has knots.
+STRETCHED = """
+<system name="Stretched">
+  <parameter name="k" start="2"/>
+  <coordinate name="x" velocity="v" start="2.5"/>
+  <displacement name="s"/>
+  <particle mass="1" x="x"/>
+  <potential>abs(x + s) + 3*abs(x - k + s)^2 + s*abs(x - 3*k) + if(x + 2*s &lt; 1, 5*(1 - x - 2*s)^2, 0)</potential>
+  <output name="rate">der(abs(x)) + der(max(x^2, k)) + der(min(x^3, 1))</output>
+  <output name="decided">if(s.force &lt; -3, 1, 2)</output>
+</system>
+"""
+
+# What begins to push at t = 0.5.
+LATE = """
+<system name="Late{method}">
+  <coordinate name="x" velocity="v" start="-1" velocityStart="2"/>
+  <particle mass="1" x="x"/>
+  <potential>max(x, 0)^3</potential>
+  <solver method="{method}" tolerance="{tolerance}"/>
+</system>
+"""
+
+
+def bead(name, constraint, method="taylor", y=0, speed=2, before=""):
+    if "hidden" in constraint:
+        before += '<define name="hidden">%s</define>' % ("y - if(x &gt; 0, x^3, 0)" if constraint == "hidden" else "abs(x)")
+    return BEAD.format(name=name, constraint=constraint, method=method, y=y, speed=speed, before=before)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts = {"Stretched": STRETCHED, "Cam": bead("Cam", "y - cam(x)", y=0, before=CAM)}
+    for method, (curve, text) in itertools.product(METHODS, CURVES.items()):
+        name = f"Bead{curve}{method.title()}"
+        texts[name] = bead(name, text, method)
+    for name, (text, y, _) in KINKS.items():
+        for method in METHODS:
+            texts[f"{name}{method.title()}"] = bead(f"{name}{method.title()}", text, method, y, before=RAIL)
+    for method, (push, text) in itertools.product(METHODS, PUSHES.items()):
+        name = f"Pushed{push}{method.title()}"
+        table = "<table name='steps'>\n-9 1\n-1e-9 1\n1e-9 -1\n9 -1</table>" if push == "Curve" else ""
+        texts[name] = PUSHED.format(name=name, push=text, method=method).replace("<particle", table + "<particle")
+    for method in METHODS:
+        texts[f"Late{method}"] = LATE.format(method=method, tolerance=1e-10)
+    build_systems("pieces", texts)
+
+
+def along_curve(height, slope, curvature, x, speed, end):
+    """The bead's x and its rate at the end, by the equation in x alone, from the height of the curve and its derivatives."""
+
+    def rate(_, state):
+        f, d = slope(state[0]), curvature(state[0])
+        return [state[1], -f * (d * state[1] ** 2 + G) / (1 + f * f)]
+
+    x_rate = speed / (1 + slope(x) ** 2)  # the part of the velocity (speed, 0) that is along the curve
+    return solve_ivp(rate, [0, end], [x, x_rate], rtol=1e-12, atol=1e-13, max_step=1e-3).y[:, -1]
+
+
+@pytest.fixture(scope="module")
+def bead_at_the_end():
+    cubic = [lambda x: max(x, 0) ** 3, lambda x: 3 * max(x, 0) ** 2, lambda x: 6 * max(x, 0)]
+    return along_curve(*cubic, -1, 2, 1.5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("curve", CURVES)
+def test_a_constraint_has_pieces(open_fmu, bead_at_the_end, curve, method):
+    instance = open_fmu(f"Bead{curve}{method.title()}").initialize()
+    while instance.time < 1.5:
+        instance.step(0.125)
+        x, y = instance.get("x", "y")
+        assert y == pytest.approx(max(x, 0) ** 3, abs=1e-12)
+    assert instance.get("x", "v") == pytest.approx(bead_at_the_end, abs=1e-7)
+    assert instance.get("totalEnergy") == pytest.approx(2, abs=1e-7)
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_a_constraint_has_pieces_in_model_exchange(bead_at_the_end, curve):
+    archive = str(fmu.archive(f"Bead{curve}Taylor"))
+    result = fmpy.simulate_fmu(archive, fmi_type="ModelExchange", stop_time=1.5, relative_tolerance=1e-10, output=["x", "v"])
+    assert list(result[-1])[1:] == pytest.approx(bead_at_the_end, abs=1e-5)
+
+
+def test_a_follower_runs_over_a_cam(open_fmu):
+    """The curve is that of SciPy."""
+    spline = CubicSpline(*zip(*KNOTS))
+    instance = open_fmu("Cam").initialize({"x": -1, "y": float(spline(-1)), "v": 3, "w": 3 * float(spline(-1, 1))})
+    assert instance.get("v") == pytest.approx(3, abs=1e-12)
+    speed = 3 * (1 + spline(-1, 1) ** 2)
+    expected = along_curve(spline, lambda x: spline(x, 1), lambda x: spline(x, 2), -1, speed, 0.9)
+    assert np.ptp([-1, expected[0]]) > 1.3  # over several knots
+    instance.run(0.9, 0.1, "x")
+    assert instance.get("x", "v") == pytest.approx(expected, abs=1e-8)
+    assert instance.get("y") == pytest.approx(spline(instance.get("x")), abs=1e-12)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("kink", KINKS)
+def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
+    """Velocities would have to jump, and by no law that the system tells."""
+    instance = open_fmu(f"{kink}{method.title()}").initialize()
+    with instance.fails(DISCARD, KINKS[kink][2] + r" \d+ of system.xml, turns or jumps there in a constraint"):
+        for _ in range(12):
+            instance.step(0.125)
+    assert instance.get("x") == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("kink", KINKS)
+def test_a_kink_in_a_constraint_is_refused_in_model_exchange(kink):
+    messages = []
+    logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])
+    with pytest.raises(FMICallException) as raised:
+        fmpy.simulate_fmu(str(fmu.archive(f"{kink}Taylor")), fmi_type="ModelExchange", stop_time=1.5, logger=logger)
+    assert raised.value.status == ERROR
+    assert any("turns or jumps there in a constraint" in message for message in messages)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("push", PUSHES)
+def test_a_force_by_way_of_an_output(open_fmu, push, method):
+    instance = open_fmu(f"Pushed{push}{method.title()}").initialize(tolerance=1e-9)
+    quarter = np.sqrt(2 * 0.7)
+    for time in np.linspace(0.05, 9.7, 40):
+        instance.step(time - instance.time)
+        phase, s = divmod(time / quarter + 1, 2)  # half periods begin where x passes 0
+        t = (s - 1) * quarter
+        expected = (-1) ** phase * (0.7 - t**2 / 2)
+        assert instance.get("x") == pytest.approx(expected, abs=1e-6)
+        assert instance.get("push") == pytest.approx(-np.sign(expected), abs=1e-12)
+
+
+def test_pieces_of_what_is_displaced(open_fmu):
+    instance = open_fmu("Stretched")
+    for x, v in [(2.5, 0.3), (0.4, -1.1), (-0.7, 2.0), (7.5, 1.0), (1.2, 0.2)]:
+        instance.reset().initialize({"x": x, "v": v})
+        force = -(np.sign(x) + 6 * (x - 2) + abs(x - 6) + (-20 * (1 - x) if x < 1 else 0))
+        rate = np.sign(x) * v + (2 * x * v if x * x > 2 else 0) + (3 * x * x * v if x**3 < 1 else 0)
+        acceleration = -(np.sign(x) + 6 * (x - 2) + (-10 * (1 - x) if x < 1 else 0))
+        assert instance.get("s.force", "rate", "der(v)") == pytest.approx([force, rate, acceleration], abs=1e-12)
+        assert instance.get("decided") == (1 if force < -3 else 2)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_event_next_to_a_communication_point(open_fmu, method):
+    """However little time is left behind an event, the step comes to its end."""
+    instance = open_fmu(f"Late{method}")
+    for ulps in [0, 1, 2, 5, 8, 30, 100, 1000, -1, -2, -5, -300]:
+        instance.reset().initialize()
+        instance.step(0.5 + ulps * 2.0**-53)
+        instance.step(0.7)
+        instance.step(0.3)
+        assert instance.get("totalEnergy") == pytest.approx(2, abs=1e-8)
+
+
+# --- Every function in every place ---
+
+PLACES = {
+    "kinetic": "<kinetic>(1 + {})*v^2/2</kinetic>",
+    "potential": "<potential>{}</potential>",
+    "force": '<force coordinate="x">{}</force><work/>',
+    "dissipation": "<dissipation>(1 + {})*v^2</dissipation>",
+    "position": '<particle mass="1" x="{}" y="x"/>',
+    "output": '<output name="o">{}</output><force coordinate="y">v</force>',
+    "rate": '<define name="e">{}</define><output name="o">der(e)</output><potential>e*x</potential>',
+    "constraint": '<constraint name="E">y - {}</constraint>',
+    "friction": '<friction name="F" velocity="v" force="{}"/>',
+    "stiction": '<friction name="F" velocity="v" force="1" stiction="1 + {}"/>',
+    "along": '<friction name="F" velocity="{}*v" force="1"/>',
+    "gap": '<contact name="G" gap="{} + 5"/>',
+    "restitution": '<contact name="G" gap="x + 10" restitution="{}"/>',
+    "when": '<event when="{}"><set velocity="v">-v</set></event>',
+    "condition": '<event when="{} &gt; 0.5"><set velocity="v">-v</set></event>',
+    "set": '<event when="x - 1"><set velocity="v">{}</set></event>',
+    "mode": '<event when="x - 1"><set mode="m">{}</set></event>',
+    "on": '<force on="P" x="{}" y="0"/>',
+    "stop": '<stop coordinate="x" max="{} + 4"/>',
+}
+FUNCTIONS = ["{}", "abs({} - 0.3)", "if({} &gt; 0.1 and x &lt; 3, x, 2)", "table({})"]
+OPERANDS = "k u x v s x+s m der(v) s.force C.force der(x*s) byVelocity byAcceleration byDisplacement byForce byInput told P.x".split()
+PLACED = """
+<system name="A">
+  <parameter name="k" start="2"/>
+  <input name="u" derivatives="2"/>
+  <coordinate name="x" velocity="v" start="1"/>
+  <coordinate name="y" velocity="w" start="2"/>
+  <displacement name="s"/>
+  <mode name="m" start="1"/>
+  <define name="byVelocity">sign(v)*k</define>
+  <define name="byAcceleration">max(der(v), 1)</define>
+  <define name="byDisplacement">sign(s - 1)</define>
+  <define name="byForce">if(s.force &gt; 1, x, 2)</define>
+  <define name="byInput">sign(u)</define>
+  <output name="told">if(x &gt; 0.5, x, 1) + abs(y)</output>
+  <table name="table" interpolation="linear">
+    0 0
+    1 2
+    4 7
+  </table>
+  <particle name="P" mass="1" x="x + s" y="y"/>
+  <potential>x^2 + y^2</potential>
+  {element}
+</system>
+"""
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_what_is_taken_compiles(tmp_path, place):
+    """lagc refuses or writes C that a compiler takes, for all combinations."""
+    taken = 0
+    for i, (function, operand) in enumerate(itertools.product(FUNCTIONS, OPERANDS)):
+        element = PLACES[place].format(function.format(operand))
+        element += '<constraint name="C">y - 2*x</constraint>' if operand == "C.force" else ""
+        (tmp_path / "system.xml").write_text(PLACED.format(element=element))
+        result = lagc("system.xml", "-o", str(i), cwd=tmp_path)
+        assert result.returncode in (0, 1), (element, result.stderr)
+        assert (result.returncode == 0) == (result.stderr == ""), (element, result.stderr)
+        taken += result.returncode == 0
+    assert taken >= 3
+    sources = sorted(tmp_path.glob("*/system.c"))
+    assert len(sources) == taken
+    words = ["gcc", "-std=c11", "-fsyntax-only", "-Wall", f"-I{fmu.ROOT / 'include'}", f"-I{fmu.ROOT / 'src' / 'runtime'}"]
+    compiled = subprocess.run([*words, "-Werror", "-Wno-unused", *sources], capture_output=True, text=True)
+    assert compiled.returncode == 0, compiled.stderr[:2000]
+
+
+@pytest.mark.parametrize("name, place, kind", [
+    ("byVelocity", "position", "velocities"), ("byVelocity", "gap", "velocities"), ("byAcceleration", "potential", "accelerations"),
+    ("byForce", "force", "forces of reaction"), ("byDisplacement", "friction", "displacements"), ("byInput", "force", None),
+])  # fmt: skip
+def test_what_decides_on_a_piece_counts(tmp_path, name, place, kind):
+    """A velocity cannot come into a position by way of a name whose sign it decides on."""
+    (tmp_path / "system.xml").write_text(PLACED.format(element=PLACES[place].format(name)))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    if kind is None:
+        assert result.returncode == 0, result.stderr
+    else:
+        assert result.returncode == 1 and f"cannot depend on {kind}, but '{name}' does" in result.stderr
