@@ -116,6 +116,13 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
   return value;
 }
 
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  reader->scope->keeps_whole = true;
+  struct Quantity value = expression_text_of(reader, node, what, kinds);
+  reader->scope->keeps_whole = false;
+  return value;
+}
+
 struct Dimension unit_of(const char *text) {
   struct Dimension dimension;
   const char *problem;

@@ -90,6 +90,9 @@ struct Matrix matrix_without_displacements(struct Reader *reader, long line, con
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 
+/* The same where no event waits for its pieces: abs, min and the like stay whole. */
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);
 

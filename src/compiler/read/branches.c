@@ -36,9 +36,13 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
   return mode;
 }
 
+static bool keeps_whole(const struct Scope *scope) {
+  return scope->switches == NULL || scope->keeps_whole;
+}
+
 Node branch_of(struct Scope *scope, Node node, const char *function_name, long line) {
   struct Graph *graph = scope->graph;
-  if (scope->switches == NULL || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
+  if (keeps_whole(scope) || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
   Node mode = mode_of(scope, base, function_name, line);
@@ -49,8 +53,7 @@ Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node ri
   struct Graph *graph = scope->graph;
   bool has_two = operation_arity(operation) == 2;
   Node turning = has_two ? subtract(graph, left, right) : left;
-  if (scope->switches == NULL || graph_is_constant_in_time(graph, turning))
-    return function(graph, operation, left, right);
+  if (keeps_whole(scope) || graph_is_constant_in_time(graph, turning)) return function(graph, operation, left, right);
   Node sign = branch_of(scope, turning, functions[operation].name, line);
   switch (operation) {
   case ABSOLUTE: return multiply(graph, sign, left);

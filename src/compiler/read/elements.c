@@ -187,7 +187,10 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
   require_unit(reader, output.line, what, value, output.dimension);
   if (!output.dimension.known) output.dimension = value.dimension;
-  output.node = value.node = without_displacements(reader, output.line, what, value.node);
+  value.node = without_displacements(reader, output.line, what, value.node);
+  /* What it tells waits for no events, unlike expressions that use its name. */
+  Node told = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
+  output.node = without_displacements(reader, output.line, what, told);
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
   free(what);
