@@ -35,6 +35,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
                                     program->interface->output_derivative_order);
   write_attribute(writer, "providesIntermediateUpdate", "true");
+  if (program->interface->switching != NULL) write_attribute(writer, "hasEventMode", "true");
   if (program->interface->method != NULL) {
     /* Where a solver comes to a part of a step alone, and where the importer asks for it. */
     write_attribute(writer, "mightReturnEarlyFromDoStep", "true");

@@ -41,7 +41,7 @@ void instance_reset(struct Instance *instance) {
       instance->parameter[variable->index] = variable->start;
   }
   initial_state_follow(instance);
-  instance->situation->changed = 1;
+  instance->situation->changed = CHANGED_VALUES;
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_early_reading = false;
   instance->told_singularity = 0;

@@ -26,6 +26,9 @@ enum Mode {
   MODE_COUNT
 };
 
+/* Since the last step: nothing; state, inputs or parameters; or the modes and the state by an event, which agree. */
+enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT };
+
 /* From one time to a later one. */
 struct Span {
   double start, end;
@@ -41,7 +44,9 @@ struct Situation {
   int32_t kind; /* enum Kind */
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the step to come */
-  int32_t changed;               /* state, inputs or parameters were, since the last step */
+  int32_t changed;               /* enum Change: what was, since the last step */
+  int32_t waiting_event; /* 1 + the indicator whose zero ended the last step, where stops_at_events; 0 for none */
+  int32_t gathered;      /* such events one after another that the time hardly tells apart */
   int64_t statistics[STATISTIC_COUNT];
   double time, start_time, stop_time;
   double tolerance;
@@ -77,6 +82,8 @@ struct Instance {
   double *projection_work;   /* projection_work_count() */
   double *switching_work;    /* switching->work_count() */
   double departure;          /* the sign with which a branch that rested at 0 leaves it, as found last */
+  bool uses_event_mode;      /* of a co-simulation: the importer goes through events between steps */
+  bool stops_at_events;      /* and an event ends the step */
   bool was_at_zero;          /* what changed its sign last had not left 0 by more than rounding before */
   double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */

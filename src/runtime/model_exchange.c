@@ -73,16 +73,19 @@ bool exchange_needs_event(struct Instance *instance) {
 
 /* Brings the modes into agreement with the state. */
 static enum Status settle_modes(struct Instance *instance, bool *changed) {
-  if (lagrangian.switching == NULL) return STATUS_DONE;
+  const struct Switching *switcher = lagrangian.switching;
+  if (switcher == NULL) return STATUS_DONE;
   const char *problem =
-      lagrangian.switching->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
+      instance->kind == KIND_CO_SIMULATION
+          ? switcher->update(instance, changed)
+          : switcher->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
   return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
 }
 
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
   enum Status status = settle_modes(instance, states_changed);
-  if (status != STATUS_DONE || lagrangian.projection == NULL) return status;
+  if (status != STATUS_DONE || lagrangian.projection == NULL || instance->kind == KIND_CO_SIMULATION) return status;
   status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);

@@ -1,5 +1,5 @@
 /*
- * What an importer that integrates asks for. In an event modes may change, and a state that drifted from the constraints is
+ * What an importer that integrates asks for; in FMI 3.0 events also in co-simulation. In an event modes may change, and a state that drifted from the constraints is
  * brought back. Messages come under the name of the function that the caller called.
  */
 #ifndef MODEL_EXCHANGE_H

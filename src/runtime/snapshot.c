@@ -15,7 +15,7 @@ struct Header {
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
-enum { VERSION = 3 };
+enum { VERSION = 4 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + situation_size();
@@ -39,11 +39,20 @@ bool snapshot_is_finite(const void *numbers, size_t count) {
   return true;
 }
 
-/* Whether an instance of this kind can come to the mode. */
-static bool has_mode(int32_t kind, int32_t mode) {
+/* Whether such an instance can come to the mode. */
+static bool has_mode(const struct Instance *instance, int32_t mode) {
   bool of_exchange = mode == MODE_EVENT || mode == MODE_CONTINUOUS_TIME;
   bool of_steps = mode == MODE_STEP_COMPLETE || mode == MODE_STEP_FAILED;
-  return mode >= 0 && mode < MODE_INTERMEDIATE_UPDATE && !(kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
+  if (mode == MODE_EVENT && instance->uses_event_mode) return true;
+  return mode >= 0 && mode < MODE_INTERMEDIATE_UPDATE &&
+         !(instance->kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
+}
+
+static bool can_wait(const struct Instance *instance, const struct Situation *fixed) {
+  if (fixed->gathered < 0 || fixed->gathered > 100) return false;
+  if (fixed->waiting_event == 0) return true;
+  return instance->stops_at_events && fixed->waiting_event > 0 &&
+         (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
 static bool are_counts(const int64_t *statistics) {
@@ -91,7 +100,7 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
-  return has_mode(fixed->kind, fixed->mode) && are_counts(fixed->statistics) &&
+  return has_mode(instance, fixed->mode) && can_wait(instance, fixed) && are_counts(fixed->statistics) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&

@@ -69,22 +69,29 @@ bool solver_rests(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
 
+/* Constraints and modes for a state and parameters that were set. False after logging why the step is discarded. */
+static bool settle_what_was_set(struct Instance *instance, double time) {
+  if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
+  return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
+}
+
 /* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
   struct Situation *situation = instance->situation;
   if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
-  bool goes_on = !solver->starts_anew && !situation->changed && step->start >= situation->last_step.start &&
-                 step->start <= situation->last_step.end && (!instance->solver_is_stale || solver->resume != NULL);
+  bool goes_on = !solver->starts_anew && situation->changed == CHANGED_NOTHING &&
+                 step->start >= situation->last_step.start && step->start <= situation->last_step.end &&
+                 (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
     situation->last_step = (struct Span){step->start, step->start};
-    /* The state or the parameters may have been set. */
-    if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return STEP_PARTIAL;
-    if (lagrangian.switching != NULL && !lagrangian.switching->resume(instance, step->start)) return STEP_PARTIAL;
+    /* The state or the parameters may have been set, unless an event has settled all. */
+    bool is_settled = situation->changed == CHANGED_BY_EVENT;
+    if (!is_settled && !settle_what_was_set(instance, step->start)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
-  situation->changed = 0;
+  situation->changed = CHANGED_NOTHING;
   return STEP_DONE;
 }
 
@@ -102,7 +109,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
   const struct Span *last = &instance->situation->last_step;
   const struct Switching *switcher = lagrangian.switching;
-  struct EventProgress progress = {.searched = step->start};
+  struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
@@ -156,7 +163,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
               step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
               solver->remedy != NULL ? solver->remedy : usual_remedy,
               others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
-  instance->situation->changed = 1;
+  instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
 }
 

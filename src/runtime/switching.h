@@ -41,10 +41,15 @@ struct Switching {
   bool (*start)(struct Instance *instance, const char *function);
   /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
   bool (*resume)(struct Instance *instance, double time);
+  /*
+   * The modes and the state behind the event that ended a step, or after a parameter, an input or a state was set; changed
+   * tells whether anything was. NULL, or the reason why the motion cannot go on.
+   */
+  const char *(*update)(struct Instance *instance, bool *changed);
   /* Goes through the next event of the solver's last step. NULL, or the reason why the motion ends there. */
-  const char *(*pass)(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress);
+  const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
   /* Where the solver cannot go on: a zero that it cannot reach may be next to it. The problem, or NULL. */
-  const char *(*pass_barrier)(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+  const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);
   /* The indicators at the situation; false where there are no accelerations. */
   bool (*indicators)(struct Instance *instance, double *value);
@@ -77,9 +82,9 @@ bool switching_jump(struct Instance *instance, double *time, double *state, size
 /* The functions of the same names in struct Switching. */
 bool switching_start(struct Instance *instance, const char *function);
 bool switching_resume(struct Instance *instance, double time);
-const char *switching_pass(struct Instance *instance, const struct CommunicationStep *step,
-                           struct EventProgress *progress);
-const char *switching_pass_barrier(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+const char *switching_update(struct Instance *instance, bool *changed);
+const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
+const char *switching_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                    struct EventProgress *progress);
 
 /* 1, -1 or 0: the sign that an indicator has while its mode stays; 0 of a branch that rests at 0. */

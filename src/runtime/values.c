@@ -105,7 +105,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
                                                       : &instance->parameter[variable->index];
   if (*target == value) return;
   *target = value;
-  instance->situation->changed = 1;
+  instance->situation->changed = CHANGED_VALUES;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 
@@ -152,6 +152,6 @@ enum Status values_set_input_derivatives(struct Instance *instance, const unsign
   for (size_t i = 0; i < count; i++)
     instance->input_derivatives[(size_t)(order[i] - 1) * inputs + lagrangian.variables[reference[i]].index] = value[i];
   instance->situation->input_derivatives_set = 1;
-  instance->situation->changed = 1;
+  instance->situation->changed = CHANGED_VALUES;
   return STATUS_DONE;
 }

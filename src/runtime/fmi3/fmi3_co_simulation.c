@@ -65,6 +65,11 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
       !check_array(instance, earlyReturn, 1, __func__, "earlyReturn") ||
       !check_array(instance, lastSuccessfulTime, 1, __func__, "lastSuccessfulTime"))
     return fmi3Error;
+  if (instance->situation->waiting_event != 0)
+    return fmi3_status(log_error(instance,
+                                 "%s: the step before ended at an event; expected fmi3EnterEventMode, "
+                                 "fmi3UpdateDiscreteStates and fmi3EnterStepMode",
+                                 __func__));
   memcpy(component->before, instance->situation, situation_size());
   component->has_returned_early = false;
   observe(component);
@@ -73,15 +78,20 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   if (status == STATUS_DONE && instance->situation->mode == MODE_STEP_COMPLETE) update_at_end(component);
   /* What went wrong in the callback was logged. */
   if (instance->situation->mode == MODE_ERROR) status = STATUS_ERROR;
-  *eventHandlingNeeded = *terminateSimulation = fmi3False;
-  *earlyReturn = component->has_returned_early;
+  bool is_at_event = status == STATUS_DONE && instance->situation->waiting_event != 0;
+  bool is_early = is_at_event && instance->situation->time < currentCommunicationPoint + communicationStepSize;
+  *eventHandlingNeeded = is_at_event;
+  *terminateSimulation = fmi3False;
+  *earlyReturn = component->has_returned_early || is_early;
   *lastSuccessfulTime = instance->situation->time;
   return fmi3_status(status);
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) {
-  enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
-  return fmi3Error;
+  struct Instance *instance = enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
+  if (instance == NULL) return fmi3Error;
+  instance->situation->mode = MODE_STEP_COMPLETE;
+  return fmi3OK;
 }
 
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime) {

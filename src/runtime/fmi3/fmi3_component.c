@@ -112,12 +112,16 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
   if (!can_instantiate(&log, instanceName, instantiationToken, __func__) ||
       !can_be_intermediate(&log, requiredIntermediateVariables, nRequiredIntermediateVariables, __func__))
     return NULL;
-  if (eventModeUsed) {
-    log_write(&log, STATUS_ERROR, "%s: eventModeUsed is true; expected false, since there is no hasEventMode",
-              __func__);
+  if (eventModeUsed && lagrangian.switching == NULL) {
+    log_write(&log, STATUS_ERROR,
+              "%s: eventModeUsed is true; expected false, since the system has no events (no hasEventMode)", __func__);
     return NULL;
   }
-  return instantiate(&description, KIND_CO_SIMULATION, loggingOn, &log, __func__);
+  struct Component *component = instantiate(&description, KIND_CO_SIMULATION, loggingOn, &log, __func__);
+  if (component == NULL) return NULL;
+  component->instance.uses_event_mode = eventModeUsed;
+  component->instance.stops_at_events = eventModeUsed && earlyReturnAllowed;
+  return component;
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,

@@ -3,19 +3,23 @@
 #include "fmi3_life_cycle.h"
 #include "model_exchange.h"
 
-static fmi3Status change_mode(fmi3Instance c, enum Function function, const char *name, enum Mode mode) {
-  struct Instance *instance = enter(c, function, name);
+fmi3Status fmi3EnterEventMode(fmi3Instance c) {
+  struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);
   if (instance == NULL) return fmi3Error;
-  instance->situation->mode = (int32_t)mode;
+  if (instance->kind == KIND_CO_SIMULATION && !instance->uses_event_mode)
+    return fmi3_status(log_error(instance,
+                                 "%s is not allowed in the state '%s' of an instance that was made with eventModeUsed "
+                                 "false; expected true",
+                                 __func__, instance_mode_name(instance)));
+  instance->situation->mode = MODE_EVENT;
   return fmi3OK;
 }
 
-fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-  return change_mode(c, FUNCTION_ENTER_EVENT_MODE, __func__, MODE_EVENT);
-}
-
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
-  return change_mode(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__, MODE_CONTINUOUS_TIME);
+  struct Instance *instance = enter(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__);
+  if (instance == NULL) return fmi3Error;
+  instance->situation->mode = MODE_CONTINUOUS_TIME;
+  return fmi3OK;
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {

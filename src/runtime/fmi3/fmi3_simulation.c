@@ -22,7 +22,10 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
-  return instance == NULL ? fmi3Error : fmi3_status(simulation_start(instance, __func__));
+  if (instance == NULL) return fmi3Error;
+  enum Status status = simulation_start(instance, __func__);
+  if (status == STATUS_DONE && instance->uses_event_mode) instance->situation->mode = MODE_EVENT;
+  return fmi3_status(status);
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c) {

@@ -38,16 +38,43 @@ bool switching_resume(struct Instance *instance, double time) {
   return problem == NULL;
 }
 
-/* Goes through an event, whose state is in event_state. NULL, or the reason why the motion ends there. */
-static const char *pass_event(struct Instance *instance, const struct CommunicationStep *step, double time,
-                              size_t indicator) {
+const char *switching_update(struct Instance *instance, bool *changed) {
+  struct Situation *situation = instance->situation;
+  enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
+  size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
+  if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
+  const char *problem = switching.settle(instance, situation->time, instance->state, occasion, indicator, changed);
+  bool is_new = occasion == AT_EVENT || *changed;
+  if (is_new && situation->changed == CHANGED_NOTHING) situation->changed = CHANGED_BY_EVENT;
+  situation->waiting_event = 0;
+  return problem;
+}
+
+/* Lets the solver start anew at the event. */
+static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
+  bool is_done = solver->restart == NULL || solver->restart(instance, instance->event_state, step);
+  return is_done ? NULL : "there is no memory for the solver";
+}
+
+/*
+ * Goes through an event, whose state is in event_state, or ends the step before it. NULL, or the reason why the motion ends
+ * there.
+ */
+static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
+                              size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
+  if (instance->stops_at_events) {
+    instance->situation->waiting_event = (int32_t)indicator + 1;
+    instance->situation->last_step = (struct Span){time, time};
+    step->end = time;
+    step->length = time - step->start;
+    return start_anew(instance, step);
+  }
   const char *problem = settle(instance, time, instance->event_state, AT_EVENT, indicator);
   instance->situation->last_step = (struct Span){time, time};
-  if (solver->restart != NULL && !solver->restart(instance, instance->event_state, step))
-    return "there is no memory for the solver";
-  return problem;
+  const char *obstacle = start_anew(instance, step);
+  return problem != NULL ? problem : obstacle;
 }
 
 /*
@@ -67,23 +94,25 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   return false;
 }
 
-const char *switching_pass(struct Instance *instance, const struct CommunicationStep *step,
-                           struct EventProgress *progress) {
+const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator;
-  if (!find_next(instance, end, progress, &time, &indicator)) return NULL;
+  bool is_found = find_next(instance, end, progress, &time, &indicator);
+  instance->situation->gathered = 0;
+  if (!is_found) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
   bool is_close = instance->was_at_zero || solver_rests(time, time - progress->searched);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   progress->last = time - step->start;
   progress->searched = time;
-  if (progress->gathered == EVENT_LIMIT) return gathering;
+  if (progress->gathered >= EVENT_LIMIT) return gathering;
+  if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
   return pass_event(instance, step, time, indicator);
 }
 
-const char *switching_pass_barrier(struct Instance *instance, const struct CommunicationStep *step, const char *problem,
+const char *switching_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                    struct EventProgress *progress) {
   double time;
   size_t indicator;

@@ -61,7 +61,7 @@ bool sundials_tiny_step(struct Instance *instance, const struct CommunicationSte
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += size * derivative[i];
   situation->last_step = (struct Span){step->start, step->end};
   situation->statistics[STATISTIC_STEPS]++;
-  situation->changed = 1;
+  situation->changed = CHANGED_VALUES;
   return true;
 }
 

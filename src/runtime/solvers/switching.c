@@ -99,6 +99,9 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   /* Where its zero was located, it may be left as far below as event_search.c takes for rounding. */
   double noise = settlement_noise(settlement, branch, rate) * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
   double sign = sign_with_noise(settlement->value[branch], noise);
+  bool comes_back = mode * sign < 0.0 && fabs(settlement->value[branch]) <= FLOOR_IN_NOISE * noise &&
+                    mode * settlement->value[rate] > settlement->noise[rate];
+  if (comes_back) return mode; /* from what an event has left of it */
   if (sign != 0.0) return sign;
   /* What an event has set is not what rounding has left, however small. */
   sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
@@ -329,6 +332,7 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .guess = guess,
                                     .start = switching_start,
                                     .resume = switching_resume,
+                                    .update = switching_update,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .indicators = situation_indicators,

@@ -1,0 +1,197 @@
+"""Event mode of a co-simulation by FMI 3.0: a step ends at an event, and the importer goes through it (sections 4.2.1 and 2.3.5)."""
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+
+import fmi3
+import fmu
+from fmu import ERROR
+from test_fmi3 import Importer, observed, opened  # noqa: F401
+from test_switching import SWITCHED, bounces
+
+# Bounces that an event makes, which come without end in a finite time.
+ZENO = """
+<system name="Zeno">
+  <coordinate name="h" velocity="v" start="1"/>
+  <particle mass="1" y="h"/>
+  <potential>9.81*h</potential>
+  <event when="h"><set velocity="v">-0.5*v</set></event>
+</system>
+"""
+EVENTS = dict(eventModeUsed=True, earlyReturnAllowed=True)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    fmu.build_systems("fmi3-events", {"Zeno": ZENO}, "-DFMI_VERSIONS=3")
+
+
+def go_through(instance):
+    *_, changed, defined, _ = update = instance.fmu.updateDiscreteStates()
+    assert update[:3] == (False, False, False) and not defined
+    instance.fmu.enterStepMode()
+    return changed
+
+
+def start(opened, name, values=(), **options):  # noqa: F811
+    instance = opened(name, **(EVENTS | options)).initialize(values)
+    assert not go_through(instance), "the start has been settled in initialization mode"
+    return instance
+
+
+def to(instance, end, at_event=lambda: None):
+    """Steps with all events; how many there were."""
+    count = 0
+    while instance.time < end:
+        need, terminate, early, last = instance.step(end - instance.time)
+        assert not terminate and early == (last < end) and (need or last == end)
+        if need:
+            at_event()
+            instance.fmu.enterEventMode()
+            go_through(instance)
+            count += 1
+    return count
+
+
+def test_who_has_event_mode(opened):  # noqa: F811
+    for name in fmu.all_names():
+        has = name in SWITCHED or bool(fmi3.description(name).eventIndicators)
+        assert fmi3.description(name).coSimulation.hasEventMode == has
+
+
+def test_an_importer_sees_both_sides_of_a_bounce(opened):  # noqa: F811
+    h, e = 0.7, 0.6
+    instance = start(opened, "BouncingBall", {"h": h, "e": e})
+    times, speeds = bounces(h, e, 8)
+    before = np.concatenate([[speeds[0] / e], speeds[:-1]])
+    for time, into, out in zip(times, before, speeds):
+        need, _, early, last = instance.step(2.0)
+        assert need and early and last == pytest.approx(time, rel=1e-13)
+        assert instance.get("h", "v") == pytest.approx([0, -into], abs=1e-11)
+        instance.fmu.enterEventMode()
+        assert instance.get("v") == pytest.approx(-into, abs=1e-11)
+        assert go_through(instance)
+        assert instance.get("h", "v") == pytest.approx([0, out], abs=1e-11)
+
+
+@pytest.mark.parametrize("name", SWITCHED)
+def test_event_mode_does_not_change_the_motion(opened, name):  # noqa: F811
+    """Of what bounces on the table, differences grow tenfold from one to the next."""
+    end, bound = (0.6, 1e-10) if name == "VibratingTable" else (3.0, 1e-11)
+    handled, inside, late = start(opened, name), opened(name).initialize(), start(opened, name, earlyReturnAllowed=False)
+    count = sum(to(handled, time) for time in np.linspace(0.1, end, 29))
+    inside.step(end)
+    late_events = to(late, end)
+    states = [variable.name for variable in fmi3.description(name).modelVariables if variable.causality == "output"]
+    assert handled.get(*states) == pytest.approx(inside.get(*states), abs=bound)
+    assert list(late.get(*states)) == list(inside.get(*states)) and late_events == 0
+    assert count > 0
+
+
+def test_a_step_to_an_event_and_no_further(opened):  # noqa: F811
+    """Where the communication point is the time of the event, to rounding, the event is told then or at once after it."""
+    first = start(opened, "BouncingBall")
+    _, _, _, impact = first.step(1.0)
+    for ulps in range(-3, 4):
+        instance = start(opened, "BouncingBall")
+        end = impact + ulps * 2.0**-54
+        need, _, early, last = instance.step(end)
+        assert early == (last < end) and last <= end
+        if not need:
+            assert last == end
+            need, _, early, last = instance.step(0.1)
+            assert need and early
+        assert last == pytest.approx(impact, rel=1e-14)
+
+
+def test_an_event_must_be_gone_through(opened):  # noqa: F811
+    instance = start(opened, "BouncingBall")
+    instance.step(1.0)
+    with pytest.raises(FMICallException) as raised:
+        instance.step(1.0)
+    assert raised.value.status == ERROR and "expected fmi3EnterEventMode" in instance.messages[-1][2]
+
+
+def test_event_mode_without_an_event(opened):  # noqa: F811
+    """An importer may enter it at any communication point, as where it changes a parameter."""
+    instance, plain = start(opened, "BouncingBall", {"h": 0.3}), opened("BouncingBall").initialize({"h": 0.3})
+    for one in (instance, plain):
+        one.step(0.1)
+    instance.fmu.enterEventMode()
+    for one in (instance, plain):
+        one.set(g=20.0)
+    assert not go_through(instance)
+    to(instance, 0.8)
+    plain.step(0.7)
+    assert instance.get("h", "v") == pytest.approx(plain.get("h", "v"), abs=1e-12)
+
+
+def test_a_state_at_an_event_is_kept(opened):  # noqa: F811
+    instance = start(opened, "NewtonsCradle")
+    while not instance.step(0.1)[0]:
+        pass
+    state, time = instance.fmu.getFMUState(), instance.time
+    bytes_ = instance.fmu.serializeFMUState(state)
+
+    def go_on(one):
+        one.time = time
+        one.fmu.enterEventMode()
+        go_through(one)
+        to(one, time + 2)
+        return one.get("totalEnergy", "time").tobytes()
+
+    first = go_on(instance)
+    instance.fmu.setFMUState(state)
+    assert go_on(instance) == first
+    instance.fmu.freeFMUState(state)
+    other = start(opened, "NewtonsCradle")
+    copy = other.fmu.deserializeFMUState(bytes_)
+    other.fmu.setFMUState(copy)
+    assert go_on(other) == first
+    other.fmu.freeFMUState(copy)
+    plain = opened("NewtonsCradle").initialize()
+    with pytest.raises(FMICallException):
+        plain.fmu.deserializeFMUState(bytes_)
+    assert "no instance can have saved" in plain.messages[-1][2]
+
+
+def test_events_without_end_come_to_an_end(opened):  # noqa: F811
+    instance = start(opened, "Zeno")
+    end = 3 * np.sqrt(2 / 9.81)
+    with pytest.raises(FMICallException):
+        for _ in range(2000):
+            if instance.step(5.0)[0]:
+                instance.fmu.enterEventMode()
+                go_through(instance)
+    assert any("events gather there without end" in text for _, _, text in instance.messages)
+    assert instance.time == pytest.approx(end, rel=1e-6)
+
+
+def test_intermediate_update_and_event_mode(opened):  # noqa: F811
+    """At the end of a step that an event ends, the state before it is told."""
+    importer = Importer()
+    ball = observed(opened, "BouncingBall", importer, ["h", "v"], **EVENTS).initialize()
+    go_through(ball)
+    ball.step(1.0)
+    time, _, (height, velocity) = importer.calls[-1]
+    assert time == ball.time and height == pytest.approx(0, abs=1e-12) and velocity == pytest.approx(-np.sqrt(2 * 9.81), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["BouncingBall", "StickSlip", "HardStopPendulum"])
+def test_fmpy_goes_through_events(name):
+    words = dict(stop_time=2.0, output_interval=0.1, output=fmu.names_of(name, "output"))
+    plain = fmpy.simulate_fmu(str(fmi3.unpacked(name)), **words)
+    events = fmpy.simulate_fmu(str(fmi3.unpacked(name)), use_event_mode=True, early_return_allowed=True, **words)
+    assert len(events) > len(plain), "events are told at their times"
+    for variable in words["output"]:
+        last = [np.asarray(result[variable])[-1] for result in (events, plain)]
+        assert last[0] == pytest.approx(last[1], abs=1e-10)
+
+
+def test_no_event_mode_where_it_was_not_asked_for(opened):  # noqa: F811
+    instance = opened("BouncingBall").initialize()
+    with pytest.raises(FMICallException):
+        instance.fmu.enterEventMode()
+    assert "eventModeUsed" in instance.messages[-1][2]
