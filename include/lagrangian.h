@@ -158,16 +158,19 @@ struct EventFacts {
 };
 
 struct ContactLaws;
+struct FrictionLaws;
 
 struct SwitchTable {
   size_t mode_count; /* of the last parameters */
   size_t branch_count, contact_count, friction_count, event_count, condition_count, assignment_count;
+  bool feels_forces; /* a branch turns by the force of a constraint */
   const struct BranchFacts *branches;
   const struct ContactFacts *contacts;
   const struct FrictionFacts *frictions;
   const struct EventFacts *events;
   const struct AssignmentFacts *assignments;
-  const struct ContactLaws *contact_laws; /* settlement.h; NULL without contacts */
+  const struct ContactLaws *contact_laws;   /* settlement.h; NULL without contacts */
+  const struct FrictionLaws *friction_laws; /* settlement.h; NULL without frictions */
   const bool
       *rests_on; /* of each friction, for each contact: whether it follows from its force; NULL where none does */
   /*
@@ -177,8 +180,8 @@ struct SwitchTable {
   void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
   /*
    * value[]: the indicators of the branches, their time derivatives; of each contact the gap, its first and second time
-   * derivative and the restitution; of each friction the velocity, its time derivative and the stiction; the conditions of
-   * the events; what they assign.
+   * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
+   * slides; the conditions of the events; what they assign.
    */
   void (*values)(const struct Point *point, const double *acceleration, double *value);
 };

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from scipy.interpolate import CubicSpline
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 import fmu
 from fmu import DISCARD, ERROR, build_systems, lagc
@@ -66,6 +66,20 @@ STRETCHED = """
 </system>
 """
 
+# A slide in a slot, pressed to one side and to the other.
+PRESSED = """
+<system name="Pressed{method}">
+  <coordinate name="x" velocity="v"/>
+  <coordinate name="y" velocity="w" start="0.5"/>
+  <particle mass="1" x="x" y="y"/>
+  <force coordinate="x">4</force>
+  <force coordinate="y">9.81*cos(2*time)</force>
+  <constraint name="slot">y - 0.5</constraint>
+  <friction name="sides" coordinate="x" force="0.3*abs(slot.force)"/>
+  <solver method="{method}"/>
+</system>
+"""
+
 # What begins to push at t = 0.5.
 LATE = """
 <system name="Late{method}">
@@ -97,6 +111,7 @@ def built():
         table = "<table name='steps'>\n-9 1\n-1e-9 1\n1e-9 -1\n9 -1</table>" if push == "Curve" else ""
         texts[name] = PUSHED.format(name=name, push=text, method=method).replace("<particle", table + "<particle")
     for method in METHODS:
+        texts[f"Pressed{method}"] = PRESSED.format(method=method)
         texts[f"Late{method}"] = LATE.format(method=method, tolerance=1e-10)
     build_systems("pieces", texts)
 
@@ -194,6 +209,26 @@ def test_pieces_of_what_is_displaced(open_fmu):
         acceleration = -(np.sign(x) + 6 * (x - 2) + (-10 * (1 - x) if x < 1 else 0))
         assert instance.get("s.force", "rate", "der(v)") == pytest.approx([force, rate, acceleration], abs=1e-12)
         assert instance.get("decided") == (1 if force < -3 else 2)
+
+
+def speed_in_slot(end):
+    return quad(lambda t: 4 - 0.3 * G * abs(np.cos(2 * t)), 0, end, points=np.arange(1, 4) * np.pi / 4, limit=200)[0]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_friction_by_the_size_of_a_force(open_fmu, method):
+    """The force that abs turns is an unknown of the equations, and no function of the state."""
+    instance = open_fmu(f"Pressed{method}").initialize(tolerance=1e-9)
+    while instance.time < 2.9:
+        instance.step(0.17)
+        assert instance.get("v") == pytest.approx(speed_in_slot(instance.time), abs=1e-6)
+        assert instance.get("slot.force") == pytest.approx(G * np.cos(2 * instance.time), abs=1e-9)
+
+
+def test_friction_by_the_size_of_a_force_in_model_exchange():
+    archive = str(fmu.archive("Pressedtaylor"))
+    result = fmpy.simulate_fmu(archive, fmi_type="ModelExchange", stop_time=3, relative_tolerance=1e-9, output=["v"])
+    assert result["v"][-1] == pytest.approx(speed_in_slot(3), abs=1e-5)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -117,6 +117,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     bool is_inside = last->end > step->start && last->end < step->end;
     if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
     if (last->end >= step->end) return NULL;
+    if (step->count == lagrangian.max_steps && switcher != NULL) switcher->explain(instance, step, &progress);
     if (step->count == lagrangian.max_steps)
       return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
     if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);

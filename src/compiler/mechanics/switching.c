@@ -111,6 +111,7 @@ static void append_values(const struct Model *model, struct SwitchingExpressions
     append(list, friction->velocity);
     append(list, rate_of(model, friction->velocity, seeds));
     append(list, friction->stiction);
+    append(list, friction->sliding);
   }
   for (size_t i = 0; i < switches->event_count; i++)
     for (int k = 0; k < 2; k++) {

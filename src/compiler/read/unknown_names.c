@@ -10,7 +10,7 @@
 #include "read/similar.h"
 #include "read/tables.h"
 
-const char *const special_functions[] = {"sqrt", "der", "sum", "if", NULL};
+const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or", "not", NULL};
 
 enum Operation find_function(const char *name) {
   int operation = 0;

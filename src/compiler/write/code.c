@@ -47,6 +47,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_source(file, "event_passing.c");
   }
   if (program->model->switches.contact_count > 0) include_source(file, "contacts.c");
+  if (program->model->switches.friction_count > 0) include_source(file, "frictions.c");
   fputs("#endif\n", file);
 }
 

@@ -34,10 +34,20 @@ static void write_contacts(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < switches->contact_count; i++)
     write_held(file, program, switches->contacts[i].constraint, switches->contacts[i].mode);
   if (switches->contact_count > 0) fputs("};\n\n", file);
+  if (switches->friction_count > 0) fputs("extern const struct FrictionLaws friction_laws;\n\n", file);
   if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
   for (size_t i = 0; i < switches->friction_count; i++)
     write_held(file, program, switches->frictions[i].constraint, switches->frictions[i].mode);
   if (switches->friction_count > 0) fputs("};\n\n", file);
+}
+
+/* Whether a branch turns by the force of a constraint. */
+static bool turns_by_forces(const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->interface->switching;
+  bool turns = false;
+  for (size_t i = 0; i < switching->branch_count; i++)
+    turns |= graph_depends_on(program->model->graph, switching->branches[i]->indicator, ACCELERATION);
+  return turns;
 }
 
 /* Whether the friction follows from the force of the contact. */
@@ -112,9 +122,11 @@ void switching_write(FILE *file, const struct Program *program) {
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
           switches->event_count, switching->condition_count, switching->assignment_count);
   if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (any_rests(program)) fputs("    .rests_on = rests_on,\n", file);
-  if (switches->friction_count > 0) fputs("    .frictions = friction_facts,\n", file);
+  if (switches->friction_count > 0)
+    fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
   if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
   fputs("};\n\n", file);
 }

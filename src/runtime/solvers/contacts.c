@@ -14,7 +14,7 @@ enum { IMPACT_LIMIT = 1000 };
 
 /* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
 static const double shortest_flight = 1000.0;
-/* How far a contact may be penetrated at the start. */
+/* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
 static const char no_impact[] = "a contact cannot take an impact there";
@@ -163,6 +163,20 @@ static bool close_contacts(struct Settlement *settlement) {
   return closes;
 }
 
+/* Opens contacts that an event has lifted. Whether there were any. */
+static bool open_lifted(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool opens = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t gap = contact_place(settlement, i, CONTACT_GAP);
+    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
+    if (!is_closed || settlement->value[gap] <= largest_penetration) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    opens = true;
+  }
+  return opens;
+}
+
 /* The closed contact that pulls most, or whose force has just gone; contact_count for none. */
 static size_t find_pulling(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -186,8 +200,9 @@ static size_t find_pulling(const struct Settlement *settlement) {
 
 static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
-  size_t contact = find_impact(settlement);
   *again = true;
+  if (settlement->moved && open_lifted(settlement)) return NULL;
+  size_t contact = find_impact(settlement);
   if (contact < switches->contact_count && settlement->impacts < IMPACT_LIMIT)
     return take_impact(settlement, contact) ? NULL : no_impact;
   if (contact < switches->contact_count) { /* a push that goes to and fro dies away */
@@ -203,18 +218,19 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   return NULL;
 }
 
-static const char *check_start(const struct Settlement *settlement) {
+static const char *check_gaps(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
+  bool starts = settlement->occasion == AT_START;
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
     if (gap >= -largest_penetration) continue;
-    log_message(settlement->instance, STATUS_ERROR,
-                "the contact '%s' is penetrated at the start: its gap is %g; expected start values or parameters for "
-                "which it is not negative",
-                switches->contacts[i].name, gap);
+    log_message(settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+                "the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
+                switches->contacts[i].name, starts ? "the start" : "an event that sets coordinates", gap,
+                starts ? "start values or parameters" : "values of <set>");
     return "a contact is penetrated";
   }
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {.act = act_once, .check_start = check_start};
+const struct ContactLaws contact_laws = {.act = act_once, .check_gaps = check_gaps};

@@ -4,7 +4,7 @@
 
 #include "evaluate.h"
 #include "solver.h"
-#include "switching.h"
+#include "switching_parts.h"
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
@@ -105,6 +105,8 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   progress->last = time - step->start;
+  progress->count++;
+  progress->indicator = indicator;
   progress->searched = time;
   if (progress->gathered >= EVENT_LIMIT) return gathering;
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
@@ -121,4 +123,23 @@ const char *switching_pass_barrier(struct Instance *instance, struct Communicati
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator);
+}
+
+void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
+                       const struct EventProgress *progress) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t i = progress->indicator, held = i - switches->branch_count;
+  if (2 * progress->count < step->count) return;
+  double time = instance->situation->last_step.end;
+  if (i < switches->branch_count)
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %g: there were %ld events in the step, the last of %s, line %ld of system.xml, as where the motion "
+        "follows a switch by going to and fro",
+        time, progress->count, switches->branches[i].function, switches->branches[i].line);
+  else
+    log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of '%s'", time,
+                progress->count,
+                held < switches->contact_count ? switches->contacts[held].name
+                                               : switches->frictions[held - switches->contact_count].name);
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "solver.h"
-#include "switching.h"
+#include "switching_parts.h"
 
 enum { DEGREE = SEARCH_NODES - 1, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 

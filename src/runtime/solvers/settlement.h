@@ -1,12 +1,12 @@
-/* What finds the modes behind an event: switching.c and contacts.c share it. */
+/* What finds the modes behind an event: switching.c, contacts.c and frictions.c share it. */
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
-#include "switching.h"
+#include "switching_parts.h"
 
 /* Parts of value[], see struct SwitchTable. */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
-enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_VALUES };
+enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
 
 struct Settlement {
   struct Instance *instance;
@@ -24,7 +24,7 @@ struct Settlement {
   double *rounded, *derivative, *correction;
   const struct BranchFacts *switched; /* the branch that was first; NULL for none */
   double overshoot;                   /* in s: how long before its indicator was 0 */
-  bool changed, jumped;               /* jumped: velocities did */
+  bool changed, jumped, moved;        /* jumped: velocities, or coordinates did; moved: an event has set coordinates */
   int impacts;
 };
 
@@ -35,8 +35,16 @@ struct ContactLaws {
    * motion cannot go on.
    */
   const char *(*act)(struct Settlement *settlement, bool *again);
-  /* Logs a contact that is penetrated at the start; NULL where there is none, else the reason to refuse it. */
-  const char *(*check_start)(const struct Settlement *settlement);
+  /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
+  const char *(*check_gaps)(const struct Settlement *settlement);
+};
+
+/* What frictions do; FMUs without any do not hold it. */
+struct FrictionLaws {
+  /* One friction that begins to stick or to slide; *again where there was any. NULL, or the reason why there is no mode. */
+  const char *(*act)(struct Settlement *settlement, bool *again);
+  /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
+  const char *(*check)(const struct Settlement *settlement);
 };
 
 /* Numbers of workspace, and where they are. */

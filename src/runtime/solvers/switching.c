@@ -2,7 +2,7 @@
  * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; frictions that stick or slip;
  * branches; and the events of the system, each of which happens when its condition comes to hold.
  */
-#include "switching.h"
+#include "switching_parts.h"
 
 #include <float.h>
 #include <math.h>
@@ -13,24 +13,17 @@
 #include "settlement.h"
 #include "solver.h"
 
-/*
- * Of frictions the first that cannot stay as it is switches, by Murty's least-index method: it comes to an end, but the first
- * ones may switch often where many act on one another.
- */
-enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8, FRICTION_FLIP_LIMIT = 500 };
-
-/* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
-static const double shortest_slip = 1e-4;
+enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
 
 /* In units of the scales of the state: less of a change may be rounding. */
 static const double least_kink = 1e-6;
 
 static const char not_kept[] = "the constraints cannot be kept at an event";
 
-/* Whether some constraint of a contact or friction holds, so that indicators are forces. */
-static bool holds_any(const struct Instance *instance) {
+/* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */
+static bool feels_forces(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  bool holds = false;
+  bool holds = switches->feels_forces;
   for (size_t i = 0; i < switches->contact_count; i++) holds |= instance->parameter[switches->contacts[i].mode] > 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
     holds |= instance->parameter[switches->frictions[i].mode] == 0.0;
@@ -39,7 +32,7 @@ static bool holds_any(const struct Instance *instance) {
 
 bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator) {
   struct Point point = solver_point(instance, time, state);
-  if (holds_any(instance)) {
+  if (feels_forces(instance)) {
     instance->singular = lagrangian.accelerations(&point, instance->acceleration);
     if (instance->singular != 0) return false;
   }
@@ -50,40 +43,6 @@ bool switching_indicators(struct Instance *instance, double time, const double *
 double switching_sign(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   return indicator < switches->branch_count ? instance->parameter[switches->branches[indicator].mode] : 1.0;
-}
-
-/* --- Friction --- */
-
-/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
-static double friction_mode(const struct Settlement *settlement, size_t friction) {
-  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
-  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
-  double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
-  double rate = settlement->value[place + FRICTION_RATE],
-         noise = settlement_noise(settlement, place, place + FRICTION_RATE);
-  double flips = settlement->flips[indicator_of_friction(settlement, friction)];
-  bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
-  /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
-  bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
-  bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
-  double direction = velocity > 0.0 ? 1.0 : -1.0;
-  if (mode == 0.0) {
-    double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    double stiction = settlement->value[place + FRICTION_STICTION];
-    /* An importer comes to a zero or past it, and does not tell whose. */
-    bool is_reached = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
-                      (settlement->occasion == IN_EXCHANGE && fabs(force) >= stiction);
-    bool slips = fabs(force) > stiction || (is_reached && is_first && !settlement->jumped);
-    if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
-    return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
-  }
-  bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
-  if (is_moving && settlement->jumped) return direction;
-  if (is_moving && !turns) return mode;
-  if (is_first_of_all && is_first) return 0.0;
-  double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
-  if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
-  return 0.0;
 }
 
 /* --- The rounds --- */
@@ -152,16 +111,25 @@ static double largest_move(const struct Settlement *settlement) {
 /* Whether the constraints hold as before in the branches that were switched to. */
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
-  if (lagrangian.projection == NULL || settlement->switched == NULL || settlement->jumped) return NULL;
+  bool may_turn = settlement->switched != NULL && !settlement->jumped;
+  if (lagrangian.projection == NULL || !(may_turn || settlement->moved)) return NULL;
   if (evaluate_prepare(instance) != STATUS_DONE) return not_kept;
   bool starts = settlement->occasion == AT_START;
   double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
                         : lagrangian.projection->project(instance, settlement->time, settlement->state);
   if (moved <= largest_move(settlement)) return NULL;
-  log_message(instance, starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-              "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, and positions or velocities "
-              "would have to jump with it; expected a constraint without kinks, or a <contact>, which has impacts",
-              settlement->time, settlement->switched->function, settlement->switched->line);
+  if (settlement->moved)
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %g: an event sets coordinates so that the constraints do not hold; expected values of <set> for all "
+        "coordinates that they move, which fulfil them",
+        settlement->time);
+  else
+    log_message(
+        instance, starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, and positions or velocities "
+        "would have to jump with it; expected a constraint without kinks, or a <contact>, which has impacts",
+        settlement->time, settlement->switched->function, settlement->switched->line);
   return not_kept;
 }
 
@@ -180,28 +148,6 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
   return NULL;
 }
 
-static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
-  log_message(settlement->instance, STATUS_DISCARD,
-              "time %g: the friction '%s' neither sticks nor slides; expected a stiction that is not less than the "
-              "force while it slides",
-              settlement->time, settlement->switches->frictions[friction].name);
-  return without_end;
-}
-
-static const char *switch_frictions(struct Settlement *settlement, bool *switched) {
-  const struct SwitchTable *switches = settlement->switches;
-  *switched = false;
-  for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
-    double mode = friction_mode(settlement, i);
-    if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
-    if (++settlement->flips[indicator_of_friction(settlement, i)] > FRICTION_FLIP_LIMIT)
-      return refuse_friction(settlement, i);
-    settlement_set_mode(settlement, switches->frictions[i].mode, mode);
-    *switched = true;
-  }
-  return NULL;
-}
-
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
   const double *value = settlement->value + condition_place(settlement) + switches->condition_count;
@@ -211,6 +157,7 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
     else {
       settlement->state[facts->index] = value[i];
       settlement->jumped = settlement->changed = true;
+      settlement->moved |= facts->index < lagrangian.coordinate_count;
     }
   }
 }
@@ -240,7 +187,8 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (problem != NULL || *again) return problem;
   problem = switch_branches(settlement, again);
   if (problem != NULL || *again) return problem;
-  problem = switch_frictions(settlement, again);
+  if (settlement->switches->friction_laws != NULL)
+    problem = settlement->switches->friction_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
   *again = happen(settlement);
   return NULL;
@@ -261,7 +209,16 @@ static const char *begin_modes(struct Settlement *settlement) {
       settlement_set_mode(settlement, switches->branches[i].mode, sign_with_noise(settlement->value[i], noise));
     }
   }
-  return switches->contact_laws != NULL ? switches->contact_laws->check_start(settlement) : NULL;
+  return switches->contact_laws != NULL ? switches->contact_laws->check_gaps(settlement) : NULL;
+}
+
+/* What must hold of contacts and frictions behind an event. */
+static const char *check_laws(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  const char *problem = NULL;
+  if (switches->contact_laws != NULL && settlement->moved) problem = switches->contact_laws->check_gaps(settlement);
+  if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(settlement);
+  return problem;
 }
 
 static const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion,
@@ -282,6 +239,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
     problem = not_kept;
   if (problem == NULL) problem = check_constraints(&settlement);
+  if (problem == NULL) problem = check_laws(&settlement);
   /* In exchange the event mode itself takes up what an importer went too far. */
   bool has_to_keep = lagrangian.projection != NULL && occasion != AT_START && occasion != IN_EXCHANGE;
   if (problem == NULL && settlement.changed && has_to_keep) problem = solver_project(instance, time, state);
@@ -299,6 +257,7 @@ static void guess(struct Instance *instance) {
   for (size_t i = 0; i < switches->friction_count; i++) instance->parameter[switches->frictions[i].mode] = 1.0;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
+    if (switches->feels_forces && lagrangian.accelerations(&point, instance->acceleration) != 0) return;
     switches->indicators(&point, instance->acceleration, value);
     bool same = true;
     for (size_t i = 0; i < switches->branch_count; i++) {
@@ -335,5 +294,6 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .update = switching_update,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
+                                    .explain = switching_explain,
                                     .indicators = situation_indicators,
                                     .is_due = is_due};

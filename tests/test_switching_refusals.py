@@ -1,0 +1,72 @@
+"""What switching systems ask for that has no meaning is refused by name, in co-simulation and in model exchange."""
+
+import re
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+
+import fmu
+from fmu import build_systems, lagc
+
+BODY = """
+<system name="{name}">
+  <parameter name="f" start="-0.3"/>
+  <coordinate name="x" velocity="v" start="1"/>
+  <coordinate name="y" velocity="w" start="0.5"/>
+  <particle mass="1" x="x" y="y"/>
+  {elements}
+</system>
+"""
+WEIGHT = "<potential>9.81*{}</potential>"
+REFUSED = {
+    "PushingFriction": ('<friction name="F" coordinate="x" force="f"/>', "the force of the friction 'F' is -0.3"),
+    "WrongSide": ('<constraint name="C">y - 0.5</constraint><friction name="F" coordinate="x" force="0.3*C.force"/><force coordinate="x">4</force>'
+                  + WEIGHT.format("y"), "the force of the friction 'F' is -2.943"),
+    "TornApart": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set></event>',
+                  "an event sets coordinates so that the constraints do not hold"),
+    "Sunk": ('<contact name="g" gap="x"/><event when="time &gt; 1"><set coordinate="x">-1</set></event>', "the contact 'g' is penetrated at an event"),
+    "ToAndFro": ('<force coordinate="x">-sign(x + v*abs(v)/2)</force><solver maxSteps="5000"/>',
+                 r"there were \d+ events in the step, the last of (abs|sign), line \d+"),
+}  # fmt: skip
+FINE = {
+    "MovedTogether": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set>'
+                      '<set coordinate="y">1</set></event>', (2, 1)),
+    # A ball that rests at 0 from 0.45 s on is put up to 1 at 2 s, falls, and rests again at 2.45 s.
+    "PutUp": ('<contact name="g" gap="x"/><event when="time &gt; 2"><set coordinate="x">1</set></event>' + WEIGHT.format("x"), (0, 0.5)),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts = {name: BODY.format(name=name, elements=elements) for name, (elements, _) in (REFUSED | FINE).items()}
+    build_systems("refused", texts)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("name", REFUSED)
+def test_refusals(name, kind):
+    if (name, kind) == ("ToAndFro", "ModelExchange"):
+        pytest.skip("an importer has its own number of steps")
+    messages = []
+    logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])
+    with pytest.raises(FMICallException):
+        fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=3, output_interval=0.5, fmi_type=kind, logger=logger)
+    assert any(re.search(REFUSED[name][1], message) for message in messages), messages
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("name", FINE)
+def test_what_an_event_sets(name, kind):
+    result = fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=3, output_interval=0.1, fmi_type=kind, output=["x", "y"])
+    assert (result["x"][-1], result["y"][-1]) == pytest.approx(FINE[name][1], abs=1e-9)
+    if name == "PutUp":
+        flight = result[(result["time"] > 2.05) & (result["time"] < 2.4)]
+        assert flight["x"] == pytest.approx(1 - 9.81 * (flight["time"] - 2) ** 2 / 2, abs=1e-5)
+
+
+@pytest.mark.parametrize("word", ["and", "or", "not"])
+def test_words_of_conditions_are_no_names(tmp_path, word):
+    (tmp_path / "system.xml").write_text(BODY.format(name="A", elements=f'<define name="{word}">x</define>'))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and f"the name '{word}' belongs to the language itself" in result.stderr
