@@ -132,6 +132,7 @@ struct BranchFacts {
   size_t mode;          /* the sign of the indicator: -1, 0 or 1 */
   const char *function; /* that has the pieces, in messages */
   long line;            /* of system.xml; 0 where it is not known */
+  bool holds_energy;    /* the state decides by it on the kinetic or potential energy, which must not jump there */
 };
 
 struct ContactFacts {
@@ -163,7 +164,8 @@ struct FrictionLaws;
 struct SwitchTable {
   size_t mode_count; /* of the last parameters */
   size_t branch_count, contact_count, friction_count, event_count, condition_count, assignment_count;
-  bool feels_forces; /* a branch turns by the force of a constraint */
+  size_t energy_count; /* of energies and momenta, where branches hold them; else 0 */
+  bool feels_forces;   /* a branch turns by the force of a constraint */
   const struct BranchFacts *branches;
   const struct ContactFacts *contacts;
   const struct FrictionFacts *frictions;
@@ -181,7 +183,7 @@ struct SwitchTable {
   /*
    * value[]: the indicators of the branches, their time derivatives; of each contact the gap, its first and second time
    * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
-   * slides; the conditions of the events; what they assign.
+   * slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta.
    */
   void (*values)(const struct Point *point, const double *acceleration, double *value);
 };

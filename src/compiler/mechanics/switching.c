@@ -42,11 +42,31 @@ static struct List roots_of(const struct Model *model, const struct Equations *e
   return roots;
 }
 
+/* Whether the state decides by a branch on an energy; the cone holds the energies. */
+static bool holds_energy(const struct Model *model, const struct Switch *branch) {
+  const unsigned of_state = 1u << COORDINATE | 1u << VELOCITY;
+  return (branch->kinds & of_state) != 0 && cone_has(model->graph->cone, branch->mode);
+}
+
+/* The branches of energies: also those that only add to them, whose jumps no force tells. */
+static void find_energies(const struct Model *model, const struct Equations *equations,
+                          struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  const Node energies[] = {equations->kinetic, equations->potential};
+  switching->holds_energy = allocate(switches->count, sizeof(bool));
+  cone_collect(model->graph->cone, model->graph, energies, 2, NULL);
+  for (size_t i = 0; i < switches->count; i++) switching->holds_energy[i] = holds_energy(model, &switches->items[i]);
+}
+
 /* The branches whose modes stand in the roots, or in the indicators of such branches. */
 static void find_branches(const struct Model *model, struct List *roots, struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
   bool *is_used = allocate(switches->count, sizeof *is_used);
+  for (size_t i = 0; i < switches->count; i++) {
+    is_used[i] = switching->holds_energy[i];
+    if (is_used[i]) append(roots, switches->items[i].indicator);
+  }
   for (bool grown = switches->count > 0; grown;) {
     grown = false;
     cone_collect(cone, model->graph, roots->nodes, roots->count, NULL);
@@ -58,8 +78,11 @@ static void find_branches(const struct Model *model, struct List *roots, struct 
       if (is_used[i]) append(roots, switches->items[i].indicator);
   }
   switching->branches = allocate(switches->count, sizeof(const struct Switch *));
-  for (size_t i = 0; i < switches->count; i++)
-    if (is_used[i]) switching->branches[switching->branch_count++] = &switches->items[i];
+  for (size_t i = 0; i < switches->count; i++) {
+    if (!is_used[i]) continue;
+    switching->holds_energy[switching->branch_count] = switching->holds_energy[i];
+    switching->branches[switching->branch_count++] = &switches->items[i];
+  }
   free(is_used);
 }
 
@@ -92,7 +115,24 @@ static void append_indicators(const struct Model *model, const struct SwitchingE
     append(list, indicator_of_friction(model, &switches->frictions[i]));
 }
 
-static void append_values(const struct Model *model, struct SwitchingExpressions *switching, struct List *list) {
+/* The energies and the momenta, where branches hold them. */
+static void append_energies(const struct Model *model, const struct Equations *equations,
+                            struct SwitchingExpressions *switching, struct List *list) {
+  size_t n = model->coordinates.count, first = list->count;
+  bool any = false;
+  for (size_t i = 0; i < switching->branch_count; i++) any |= switching->holds_energy[i];
+  if (!any) return;
+  append(list, equations->kinetic);
+  append(list, equations->potential);
+  Node *momentum = allocate(n, sizeof *momentum);
+  gradient_of(model->graph, model->kinetic.node, VELOCITY, n, momentum);
+  for (size_t i = 0; i < n && graph_depends_on(model->graph, model->kinetic.node, MODE); i++) append(list, momentum[i]);
+  free(momentum);
+  switching->energy_count = list->count - first;
+}
+
+static void append_values(const struct Model *model, const struct Equations *equations,
+                          struct SwitchingExpressions *switching, struct List *list) {
   const struct Switches *switches = &model->switches;
   Node *seeds = time_seeds(model, true);
   for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
@@ -124,6 +164,7 @@ static void append_values(const struct Model *model, struct SwitchingExpressions
       append(list, switches->events[i].assignments[j].value);
       switching->assignment_count++;
     }
+  append_energies(model, equations, switching, list);
   free(seeds);
 }
 
@@ -131,9 +172,10 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
   struct List roots = roots_of(model, equations), indicators = {0}, values = {0};
+  find_energies(model, equations, switching);
   find_branches(model, &roots, switching);
   append_indicators(model, switching, &indicators);
-  append_values(model, switching, &values);
+  append_values(model, equations, switching, &values);
   free(roots.nodes);
   switching->indicators = indicators.nodes;
   switching->indicator_count = indicators.count;
@@ -147,6 +189,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
 void switching_free(struct SwitchingExpressions *switching) {
   if (switching == NULL) return;
   free(switching->branches);
+  free(switching->holds_energy);
   free(switching->indicators);
   free(switching->values);
   free(switching);

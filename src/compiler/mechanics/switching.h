@@ -6,7 +6,9 @@
 
 struct SwitchingExpressions {
   const struct Switch **branches; /* those that the motion rests on */
+  bool *holds_energy; /* of each branch: whether the state decides by it on an energy, which must not jump there */
   size_t branch_count, condition_count, assignment_count;
+  size_t energy_count; /* where a branch holds any: kinetic, potential, and momenta where it holds the first; else 0 */
   /*
    * Each changes its sign where a mode may change: of branches, then of contacts, the gap while they are open and the force
    * while they are closed, then of frictions, the velocity while they slide and what is left of the stiction while they
@@ -16,8 +18,9 @@ struct SwitchingExpressions {
   size_t indicator_count;
   /*
    * The indicators of the branches and their time derivatives; of each contact the gap, its first and second time
-   * derivative and the restitution; of each friction the velocity, its time derivative and the stiction; the conditions of
-   * the events, and what these assign.
+   * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
+   * slides; the conditions of the events, and what these assign; the energies, and the
+   * momenta.
    */
   Node *values;
   size_t value_count;

@@ -25,7 +25,7 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
   struct Switches *switches = scope->switches;
   for (size_t i = switches->count; i-- > 0;)
     if (switches->items[i].indicator == indicator) return switches->items[i].mode;
-  char *name = format_text("branch %zu", switches->count);
+  char *name = format_text("%s in line %ld", function, scope_line(scope, line));
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   free(name);
   append_switch(switches, (struct Switch){.mode = mode,

@@ -16,7 +16,7 @@ static void write_branches(FILE *file, const struct Program *program) {
     const struct Switch *branch = switching->branches[i];
     fprintf(file, "{%d, ", mode_index(program, branch->mode));
     write_c_string(file, branch->function);
-    fprintf(file, ", %ld}, ", branch->line);
+    fprintf(file, ", %ld, %s}, ", branch->line, switching->holds_energy[i] ? "true" : "false");
   }
   fputs("};\n\n", file);
 }
@@ -117,10 +117,11 @@ void switching_write(FILE *file, const struct Program *program) {
   fprintf(file,
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
-          "    .condition_count = %zu,\n    .assignment_count = %zu,\n    .indicators = indicators,\n"
+          "    .condition_count = %zu,\n    .assignment_count = %zu,\n    .energy_count = %zu,\n    .indicators = "
+          "indicators,\n"
           "    .values = switching_values,\n",
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
-          switches->event_count, switching->condition_count, switching->assignment_count);
+          switches->event_count, switching->condition_count, switching->assignment_count, switching->energy_count);
   if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
   if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);

@@ -12,7 +12,8 @@ static const double least_share = 0.1;
 
 static size_t decision_count(const struct SwitchTable *switches) {
   return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
-         FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count;
+         FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count +
+         switches->energy_count;
 }
 
 static size_t rows_of_matrix(void) {
@@ -27,7 +28,8 @@ size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
   return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
-         switches->contact_count + rows_of_matrix() + switches->mode_count + 3 * lagrangian.state_count + corrections;
+         switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
+         3 * lagrangian.state_count + corrections;
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
@@ -40,7 +42,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
-  settlement.acceleration = settlement.was_opened + switches->contact_count;
+  settlement.energy = settlement.was_opened + switches->contact_count;
+  settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
   settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
   settlement.rounded = settlement.kept_velocities + lagrangian.state_count;

@@ -22,9 +22,12 @@ struct Settlement {
   double *acceleration;       /* and forces of constraints */
   double *kept_modes, *kept_velocities;
   double *rounded, *derivative, *correction;
-  const struct BranchFacts *switched; /* the branch that was first; NULL for none */
-  double overshoot;                   /* in s: how long before its indicator was 0 */
-  bool changed, jumped, moved;        /* jumped: velocities, or coordinates did; moved: an event has set coordinates */
+  const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
+  double overshoot;                    /* in s: how long before its indicator was 0 */
+  const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */
+  double *energy;                      /* energies and momenta before it */
+  bool changed, jumped;                /* jumped: velocities, or coordinates did */
+  bool moved, set_mode;                /* an event has set coordinates; a mode */
   int impacts;
 };
 
@@ -73,6 +76,11 @@ static inline size_t friction_place(const struct Settlement *settlement, size_t 
 
 static inline size_t condition_place(const struct Settlement *settlement) {
   return friction_place(settlement, settlement->switches->friction_count, 0);
+}
+
+/* Of the kinetic energy, before the potential one and the momenta. */
+static inline size_t energy_place(const struct Settlement *settlement) {
+  return condition_place(settlement) + settlement->switches->condition_count + settlement->switches->assignment_count;
 }
 
 static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {

@@ -87,14 +87,28 @@ static const char *refuse_branch(const struct Settlement *settlement, size_t bra
  * A branch that switches must not move a constraint: positions and velocities would have to jump. What the solver has left
  * of the constraints is taken up before.
  */
-static const char *begin_to_switch(struct Settlement *settlement, size_t branch) {
+static const char *take_up_drift(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
-  double rate = settlement->value[switches->branch_count + branch];
-  settlement->switched = &switches->branches[branch];
-  settlement->overshoot = rate != 0.0 ? fabs(settlement->value[branch] / rate) : 0.0;
-  if (lagrangian.projection == NULL || settlement->occasion == AT_START || settlement->jumped) return NULL;
+  bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
+  if (lagrangian.projection == NULL || !can_matter || settlement->occasion == AT_START) return NULL;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return not_kept;
   double moved = lagrangian.projection->project(settlement->instance, settlement->time, settlement->state);
   return isfinite(moved) ? NULL : not_kept;
+}
+
+static void note_switch(struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  double rate = settlement->value[switches->branch_count + branch];
+  if (settlement->switched != NULL) return;
+  settlement->switched = &switches->branches[branch];
+  settlement->overshoot = rate != 0.0 ? fabs(settlement->value[branch] / rate) : 0.0;
+}
+
+static void note_energy(struct Settlement *settlement, const struct BranchFacts *facts) {
+  if (!facts->holds_energy || settlement->energetic != NULL) return;
+  settlement->energetic = facts;
+  memcpy(settlement->energy, settlement->value + energy_place(settlement),
+         settlement->switches->energy_count * sizeof(double));
 }
 
 /* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
@@ -108,25 +122,54 @@ static double largest_move(const struct Settlement *settlement) {
   return least_kink + 4.0 * settlement->overshoot * change;
 }
 
+/* The largest jump among so many energies or momenta, of those from first on, as a share of their size. */
+static double largest_jump(const struct Settlement *settlement, size_t first, size_t count) {
+  const double *before = settlement->energy + first, *behind = settlement->value + energy_place(settlement) + first;
+  const double *noise = settlement->noise + energy_place(settlement) + first;
+  double size = 0.0, jump = 0.0;
+  for (size_t i = 0; i < count; i++) size = fmax(size, fmax(fabs(before[i]), fabs(behind[i])));
+  for (size_t i = 0; i < count; i++)
+    if (fabs(behind[i] - before[i]) > 8.0 * noise[i]) jump = fmax(jump, fabs(behind[i] - before[i]) / size);
+  return jump;
+}
+
+/*
+ * Where an energy or a momentum jumps as the motion comes to a place, the velocities would have to jump with it, by a law
+ * that the system does not tell.
+ */
+static const char *check_energy(const struct Settlement *settlement) {
+  bool by_events = settlement->jumped || settlement->set_mode || settlement->occasion == AT_CHANGE;
+  if (settlement->energetic == NULL || by_events || settlement->occasion == AT_START) return NULL;
+  size_t count = settlement->switches->energy_count;
+  double jump = fmax(largest_jump(settlement, 0, 2), largest_jump(settlement, 2, count - 2));
+  if (!(jump > largest_move(settlement))) return NULL;
+  log_message(
+      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+      "time %g: %s, line %ld of system.xml, jumps there in an energy or a position, by a share of %.2g, for which no "
+      "velocity tells its part; expected energies without jumps, or an <event> that sets the velocities",
+      settlement->time, settlement->energetic->function, settlement->energetic->line, jump);
+  return "an energy jumps";
+}
+
 /* Whether the constraints hold as before in the branches that were switched to. */
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
-  bool may_turn = settlement->switched != NULL && !settlement->jumped;
+  bool may_turn = (settlement->switched != NULL || settlement->set_mode) && !settlement->jumped;
   if (lagrangian.projection == NULL || !(may_turn || settlement->moved)) return NULL;
   if (evaluate_prepare(instance) != STATUS_DONE) return not_kept;
   bool starts = settlement->occasion == AT_START;
   double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
                         : lagrangian.projection->project(instance, settlement->time, settlement->state);
   if (moved <= largest_move(settlement)) return NULL;
-  if (settlement->moved)
-    log_message(
-        instance, STATUS_DISCARD,
-        "time %g: an event sets coordinates so that the constraints do not hold; expected values of <set> for all "
-        "coordinates that they move, which fulfil them",
-        settlement->time);
+  enum Status status = starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
+  if (settlement->set_mode || settlement->moved)
+    log_message(instance, status,
+                "time %g: an event sets %s so that the constraints do not hold; expected values of <set> for all "
+                "coordinates and velocities that they move, which fulfil them",
+                settlement->time, settlement->moved ? "coordinates" : "modes");
   else
     log_message(
-        instance, starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+        instance, status,
         "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, and positions or velocities "
         "would have to jump with it; expected a constraint without kinks, or a <contact>, which has impacts",
         settlement->time, settlement->switched->function, settlement->switched->line);
@@ -140,8 +183,8 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
     double mode = branch_mode(settlement, i);
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
     if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
-    const char *problem = settlement->switched == NULL ? begin_to_switch(settlement, i) : NULL;
-    if (problem != NULL) return problem;
+    note_switch(settlement, i);
+    note_energy(settlement, &switches->branches[i]);
     settlement_set_mode(settlement, switches->branches[i].mode, mode);
     *switched = true;
   }
@@ -153,8 +196,10 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
   const double *value = settlement->value + condition_place(settlement) + switches->condition_count;
   for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
     const struct AssignmentFacts *facts = &switches->assignments[i];
-    if (facts->kind == VARIABLE_MODE) settlement_set_mode(settlement, facts->index, value[i]);
-    else {
+    if (facts->kind == VARIABLE_MODE) {
+      settlement_set_mode(settlement, facts->index, value[i]);
+      settlement->set_mode = true;
+    } else {
       settlement->state[facts->index] = value[i];
       settlement->jumped = settlement->changed = true;
       settlement->moved |= facts->index < lagrangian.coordinate_count;
@@ -228,7 +273,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   settlement.state = state;
   settlement.occasion = occasion;
   settlement.indicator = indicator;
-  const char *problem = occasion == AT_START ? begin_modes(&settlement) : NULL;
+  const char *problem = occasion == AT_START ? begin_modes(&settlement) : take_up_drift(&settlement);
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";
@@ -238,6 +283,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
     problem = not_kept;
+  if (problem == NULL) problem = check_energy(&settlement);
   if (problem == NULL) problem = check_constraints(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);
   /* In exchange the event mode itself takes up what an importer went too far. */
@@ -255,6 +301,9 @@ static void guess(struct Instance *instance) {
   double *value = settlement_of(instance).value;
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) instance->parameter[switches->frictions[i].mode] = 1.0;
+  /* Of a mass that a sign decides on, 0 leaves nothing. */
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
     if (switches->feels_forces && lagrangian.accelerations(&point, instance->acceleration) != 0) return;
