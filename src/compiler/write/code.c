@@ -43,6 +43,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->indicators != NULL) {
     include_source(file, "settlement.c");
     include_source(file, "switching.c");
+    include_source(file, "continuity.c");
     include_source(file, "event_search.c");
     include_source(file, "event_passing.c");
   }

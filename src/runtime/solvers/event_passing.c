@@ -17,8 +17,8 @@ static const char gathering[] =
 static const char no_modes[] = "the parameters leave no acceleration there";
 
 /* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
-static const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion,
-                          size_t indicator) {
+static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
+                            size_t indicator) {
   bool changed;
   const char *problem = switching.settle(instance, time, state, occasion, indicator, &changed);
   return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
@@ -26,14 +26,14 @@ static const char *settle(struct Instance *instance, double time, double *state,
 
 bool switching_start(struct Instance *instance, const char *function) {
   instance->is_starting = true;
-  const char *problem = settle(instance, instance->situation->time, instance->state, AT_START, 0);
+  const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
   instance->is_starting = false;
   if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
   return problem == NULL;
 }
 
 bool switching_resume(struct Instance *instance, double time) {
-  const char *problem = settle(instance, time, instance->state, AT_CHANGE, 0);
+  const char *problem = modes_at(instance, time, instance->state, AT_CHANGE, 0);
   if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
   return problem == NULL;
 }
@@ -71,7 +71,7 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
     step->length = time - step->start;
     return start_anew(instance, step);
   }
-  const char *problem = settle(instance, time, instance->event_state, AT_EVENT, indicator);
+  const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
   instance->situation->last_step = (struct Span){time, time};
   const char *obstacle = start_anew(instance, step);
   return problem != NULL ? problem : obstacle;

@@ -1,4 +1,4 @@
-/* What finds the modes behind an event: switching.c, contacts.c and frictions.c share it. */
+/* What finds the modes behind an event: switching.c, continuity.c, contacts.c and frictions.c share it. */
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
@@ -98,6 +98,17 @@ static inline bool is_hit(const struct Settlement *settlement, size_t indicator)
 static inline double mode_of(const struct Settlement *settlement, size_t mode) {
   return settlement->instance->parameter[mode];
 }
+
+/* Takes up what the solver has left of the constraints. NULL, or why the motion cannot go on. */
+const char *continuity_begin(struct Settlement *settlement);
+
+/* Before a branch switches: how things are until then. */
+void continuity_note(struct Settlement *settlement, size_t branch);
+
+/* Behind all: whether branches, or events that set modes or coordinates, have left things in their places. */
+const char *continuity_check(struct Settlement *settlement);
+
+extern const char constraints_not_kept[];
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
 

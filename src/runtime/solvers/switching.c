@@ -9,16 +9,10 @@
 #include <string.h>
 
 #include "evaluate.h"
-#include "projection.h"
 #include "settlement.h"
 #include "solver.h"
 
 enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
-
-/* In units of the scales of the state: less of a change may be rounding. */
-static const double least_kink = 1e-6;
-
-static const char not_kept[] = "the constraints cannot be kept at an event";
 
 /* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */
 static bool feels_forces(const struct Instance *instance) {
@@ -83,99 +77,6 @@ static const char *refuse_branch(const struct Settlement *settlement, size_t bra
   return without_end;
 }
 
-/*
- * A branch that switches must not move a constraint: positions and velocities would have to jump. What the solver has left
- * of the constraints is taken up before.
- */
-static const char *take_up_drift(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
-  if (lagrangian.projection == NULL || !can_matter || settlement->occasion == AT_START) return NULL;
-  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return not_kept;
-  double moved = lagrangian.projection->project(settlement->instance, settlement->time, settlement->state);
-  return isfinite(moved) ? NULL : not_kept;
-}
-
-static void note_switch(struct Settlement *settlement, size_t branch) {
-  const struct SwitchTable *switches = settlement->switches;
-  double rate = settlement->value[switches->branch_count + branch];
-  if (settlement->switched != NULL) return;
-  settlement->switched = &switches->branches[branch];
-  settlement->overshoot = rate != 0.0 ? fabs(settlement->value[branch] / rate) : 0.0;
-}
-
-static void note_energy(struct Settlement *settlement, const struct BranchFacts *facts) {
-  if (!facts->holds_energy || settlement->energetic != NULL) return;
-  settlement->energetic = facts;
-  memcpy(settlement->energy, settlement->value + energy_place(settlement),
-         settlement->switches->energy_count * sizeof(double));
-}
-
-/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
-static double largest_move(const struct Settlement *settlement) {
-  double change = 0.0;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
-    size_t velocity = lagrangian.coordinate_count + i;
-    double scale = fmax(fabs(settlement->state[velocity]), lagrangian.nominal[velocity]);
-    change = fmax(change, fabs(settlement->acceleration[i]) / scale);
-  }
-  return least_kink + 4.0 * settlement->overshoot * change;
-}
-
-/* The largest jump among so many energies or momenta, of those from first on, as a share of their size. */
-static double largest_jump(const struct Settlement *settlement, size_t first, size_t count) {
-  const double *before = settlement->energy + first, *behind = settlement->value + energy_place(settlement) + first;
-  const double *noise = settlement->noise + energy_place(settlement) + first;
-  double size = 0.0, jump = 0.0;
-  for (size_t i = 0; i < count; i++) size = fmax(size, fmax(fabs(before[i]), fabs(behind[i])));
-  for (size_t i = 0; i < count; i++)
-    if (fabs(behind[i] - before[i]) > 8.0 * noise[i]) jump = fmax(jump, fabs(behind[i] - before[i]) / size);
-  return jump;
-}
-
-/*
- * Where an energy or a momentum jumps as the motion comes to a place, the velocities would have to jump with it, by a law
- * that the system does not tell.
- */
-static const char *check_energy(const struct Settlement *settlement) {
-  bool by_events = settlement->jumped || settlement->set_mode || settlement->occasion == AT_CHANGE;
-  if (settlement->energetic == NULL || by_events || settlement->occasion == AT_START) return NULL;
-  size_t count = settlement->switches->energy_count;
-  double jump = fmax(largest_jump(settlement, 0, 2), largest_jump(settlement, 2, count - 2));
-  if (!(jump > largest_move(settlement))) return NULL;
-  log_message(
-      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-      "time %g: %s, line %ld of system.xml, jumps there in an energy or a position, by a share of %.2g, for which no "
-      "velocity tells its part; expected energies without jumps, or an <event> that sets the velocities",
-      settlement->time, settlement->energetic->function, settlement->energetic->line, jump);
-  return "an energy jumps";
-}
-
-/* Whether the constraints hold as before in the branches that were switched to. */
-static const char *check_constraints(struct Settlement *settlement) {
-  struct Instance *instance = settlement->instance;
-  bool may_turn = (settlement->switched != NULL || settlement->set_mode) && !settlement->jumped;
-  if (lagrangian.projection == NULL || !(may_turn || settlement->moved)) return NULL;
-  if (evaluate_prepare(instance) != STATUS_DONE) return not_kept;
-  bool starts = settlement->occasion == AT_START;
-  double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
-                        : lagrangian.projection->project(instance, settlement->time, settlement->state);
-  if (moved <= largest_move(settlement)) return NULL;
-  enum Status status = starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
-  if (settlement->set_mode || settlement->moved)
-    log_message(instance, status,
-                "time %g: an event sets %s so that the constraints do not hold; expected values of <set> for all "
-                "coordinates and velocities that they move, which fulfil them",
-                settlement->time, settlement->moved ? "coordinates" : "modes");
-  else
-    log_message(
-        instance, status,
-        "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, and positions or velocities "
-        "would have to jump with it; expected a constraint without kinks, or a <contact>, which has impacts",
-        settlement->time, settlement->switched->function, settlement->switched->line);
-  return not_kept;
-}
-
 static const char *switch_branches(struct Settlement *settlement, bool *switched) {
   const struct SwitchTable *switches = settlement->switches;
   *switched = false;
@@ -183,8 +84,7 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
     double mode = branch_mode(settlement, i);
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
     if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
-    note_switch(settlement, i);
-    note_energy(settlement, &switches->branches[i]);
+    continuity_note(settlement, i);
     settlement_set_mode(settlement, switches->branches[i].mode, mode);
     *switched = true;
   }
@@ -273,7 +173,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   settlement.state = state;
   settlement.occasion = occasion;
   settlement.indicator = indicator;
-  const char *problem = occasion == AT_START ? begin_modes(&settlement) : take_up_drift(&settlement);
+  const char *problem = occasion == AT_START ? begin_modes(&settlement) : continuity_begin(&settlement);
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";
@@ -282,9 +182,8 @@ static const char *settle(struct Instance *instance, double time, double *state,
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
-    problem = not_kept;
-  if (problem == NULL) problem = check_energy(&settlement);
-  if (problem == NULL) problem = check_constraints(&settlement);
+    problem = constraints_not_kept;
+  if (problem == NULL) problem = continuity_check(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);
   /* In exchange the event mode itself takes up what an importer went too far. */
   bool has_to_keep = lagrangian.projection != NULL && occasion != AT_START && occasion != IN_EXCHANGE;
