@@ -71,6 +71,7 @@ bool solver_rests(double time, double step) {
 
 /* Constraints and modes for a state and parameters that were set. False after logging why the step is discarded. */
 static bool settle_what_was_set(struct Instance *instance, double time) {
+  if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
   if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
   return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
 }

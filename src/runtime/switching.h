@@ -41,6 +41,11 @@ struct Switching {
   void (*guess)(struct Instance *instance);
   /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
   bool (*start)(struct Instance *instance, const char *function);
+  /*
+   * Opens contacts that a parameter, an input or a state has moved apart; false after logging why the step is discarded,
+   * as bodies that stand in one another.
+   */
+  bool (*release)(struct Instance *instance, double time);
   /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
   bool (*resume)(struct Instance *instance, double time);
   /*
@@ -56,7 +61,7 @@ struct Switching {
   /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
-  /* The indicators at the situation; false where there are no accelerations. */
+  /* The indicators at the situation as an importer is told them; false where there are no accelerations. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* Whether an indicator has a sign at the situation that its mode does not allow. */
   bool (*is_due)(struct Instance *instance);

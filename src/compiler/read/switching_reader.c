@@ -267,8 +267,7 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
     if (!has_attribute(node, targets[i].attribute)) continue;
     given++;
     char *name = reference_attribute(reader, node, targets[i].attribute);
-    char *full_name = name != NULL ? scope_full_name(reader->scope, name) : NULL;
-    const struct Quantity *quantity = full_name != NULL ? scope_find(reader->scope, full_name) : NULL;
+    const struct Quantity *quantity = name != NULL ? scope_find(reader->scope, name) : NULL;
     const struct Graph *graph = reader->model->graph;
     bool fits = quantity != NULL && graph->vertices[quantity->node].operation == SYMBOL &&
                 graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
@@ -276,7 +275,6 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
     else
       report_error(reader->diagnostics, xmlGetLineNo(node), "<set %s=\"%s\">: there is no %s of this name",
                    targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
-    free(full_name);
     free(name);
   }
   if (given != 1)
@@ -341,7 +339,7 @@ void read_event(struct Reader *reader, xmlNodePtr node) {
   read_condition(reader, node, when, &event);
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
-  if (event.assignment_count == 0)
+  if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
   event.text = when;
   switches->events = reallocate(switches->events, switches->event_count + 1, sizeof *switches->events);

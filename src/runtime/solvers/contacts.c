@@ -10,7 +10,7 @@
 
 #include "settlement.h"
 
-enum { IMPACT_LIMIT = 1000 };
+enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
 /* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
 static const double shortest_flight = 1000.0;
@@ -145,7 +145,7 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
   /* An importer may come below the ground, and finds no further zero there. */
   bool is_below = settlement->occasion == IN_EXCHANGE && value[CONTACT_GAP] < 0.0;
-  if (is_below && rate * rate / (2.0 * fall) <= -value[CONTACT_GAP]) return true;
+  if (is_below && rate * rate / (2.0 * fall) <= -10.0 * value[CONTACT_GAP]) return true;
   return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
          rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
 }
@@ -163,18 +163,67 @@ static bool close_contacts(struct Settlement *settlement) {
   return closes;
 }
 
-/* Opens contacts that an event has lifted. Whether there were any. */
+/* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */
+static double largest_drift(const struct Settlement *settlement) {
+  double scale = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++)
+    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
+  return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * scale;
+}
+
+/* Opens contacts that were lifted. Whether there were any. */
 static bool open_lifted(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t gap = contact_place(settlement, i, CONTACT_GAP);
     bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
-    if (!is_closed || settlement->value[gap] <= largest_penetration) continue;
+    if (!is_closed || settlement->value[gap] <= largest_drift(settlement)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
     opens = true;
   }
   return opens;
+}
+
+static bool release(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  open_lifted(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
+    if (is_closed || gap >= -largest_drift(settlement)) continue;
+    log_message(
+        settlement->instance, STATUS_DISCARD,
+        "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
+        "expected values for which it is not negative",
+        settlement->time, switches->contacts[i].name, gap);
+    return false;
+  }
+  return true;
+}
+
+/*
+ * An importer comes to a contact late, and an indicator that stays below 0 would not be seen again. Moves apart what is open
+ * and stands in one another by so little, all at once; *lifts where there is any. False where that cannot be.
+ */
+static bool lift(struct Settlement *settlement, bool *lifts) {
+  const struct SwitchTable *switches = settlement->switches;
+  *lifts = false;
+  if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t gap = contact_place(settlement, i, CONTACT_GAP);
+    bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
+    settlement->was_lifted[i] = is_open && settlement->value[gap] < -settlement->noise[gap] &&
+                                settlement->value[gap] >= -largest_drift(settlement);
+    *lifts |= settlement->was_lifted[i] != 0.0;
+  }
+  for (size_t i = 0; i < switches->contact_count && *lifts; i++)
+    if (settlement->was_lifted[i] != 0.0) settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+  bool done = !*lifts || settlement_move(settlement);
+  for (size_t i = 0; i < switches->contact_count && *lifts; i++)
+    if (settlement->was_lifted[i] != 0.0) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+  settlement->lifts++;
+  return done;
 }
 
 /* The closed contact that pulls most, or whose force has just gone; contact_count for none. */
@@ -201,7 +250,7 @@ static size_t find_pulling(const struct Settlement *settlement) {
 static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = true;
-  if (settlement->moved && open_lifted(settlement)) return NULL;
+  if ((settlement->moved || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
   size_t contact = find_impact(settlement);
   if (contact < switches->contact_count && settlement->impacts < IMPACT_LIMIT)
     return take_impact(settlement, contact) ? NULL : no_impact;
@@ -210,6 +259,9 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
     return settlement_push(settlement, 1.0) ? NULL : no_impact;
   }
   if (close_contacts(settlement)) return settlement_push(settlement, 1.0) ? NULL : no_impact;
+  bool lifts;
+  if (!lift(settlement, &lifts)) return no_impact;
+  if (lifts) return NULL;
   size_t pulling = find_pulling(settlement);
   *again = pulling < switches->contact_count;
   if (!*again) return NULL;
@@ -233,4 +285,4 @@ static const char *check_gaps(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {.act = act_once, .check_gaps = check_gaps};
+const struct ContactLaws contact_laws = {.act = act_once, .release = release, .check_gaps = check_gaps};

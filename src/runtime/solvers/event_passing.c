@@ -4,6 +4,7 @@
 
 #include "evaluate.h"
 #include "solver.h"
+#include "settlement.h"
 #include "switching_parts.h"
 
 /* So many events within rounding have no end. */
@@ -30,6 +31,16 @@ bool switching_start(struct Instance *instance, const char *function) {
   instance->is_starting = false;
   if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
   return problem == NULL;
+}
+
+bool switching_release(struct Instance *instance, double time) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL) return true;
+  struct Settlement settlement = settlement_of(instance);
+  settlement.time = time;
+  settlement.state = instance->state;
+  settlement.occasion = AT_CHANGE;
+  return !settlement_evaluate(&settlement) || laws->release(&settlement); /* what has no values is told by others */
 }
 
 bool switching_resume(struct Instance *instance, double time) {

@@ -109,6 +109,9 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 /* f: values at the nodes, positive while the mode stays. */
 static enum Verdict judge_signs(const double *f, double noise) {
   double c[DEGREE + 1], d[DEGREE + 1], largest = 0.0;
+  int missing = 0;
+  for (int k = 0; k <= DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
+  if (missing > DEGREE) return STAYS; /* a branch inside of a piece that is closed */
   for (int k = 0; k <= DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;

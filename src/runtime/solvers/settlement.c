@@ -28,7 +28,7 @@ size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
   return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
-         switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
+         2 * switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
          3 * lagrangian.state_count + corrections;
 }
 
@@ -42,7 +42,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
-  settlement.energy = settlement.was_opened + switches->contact_count;
+  settlement.was_lifted = settlement.was_opened + switches->contact_count;
+  settlement.energy = settlement.was_lifted + switches->contact_count;
   settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
   settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
@@ -117,6 +118,19 @@ bool settlement_push(struct Settlement *settlement, double factor) {
   instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += factor * settlement->correction[i];
+  settlement->changed = true;
+  return true;
+}
+
+bool settlement_move(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  memset(settlement->rounded, 0, lagrangian.state_count * sizeof *settlement->rounded);
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  struct Seed seed = {.state = settlement->rounded};
+  instance->singular = lagrangian.correct_positions(&point, &seed, settlement->correction);
+  if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) settlement->state[i] += settlement->correction[i];
   settlement->changed = true;
   return true;
 }

@@ -19,6 +19,7 @@ struct Settlement {
   double *largest;            /* of each velocity in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *was_lifted;         /* of each contact */
   double *acceleration;       /* and forces of constraints */
   double *kept_modes, *kept_velocities;
   double *rounded, *derivative, *correction;
@@ -28,7 +29,7 @@ struct Settlement {
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, set_mode;                /* an event has set coordinates; a mode */
-  int impacts;
+  int impacts, lifts;
 };
 
 /* What contacts do; FMUs without any do not hold it. */
@@ -38,6 +39,8 @@ struct ContactLaws {
    * motion cannot go on.
    */
   const char *(*act)(struct Settlement *settlement, bool *again);
+  /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
+  bool (*release)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
 };
@@ -65,6 +68,9 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
  * friction adds to that. False where there is none.
  */
 bool settlement_push(struct Settlement *settlement, double factor);
+
+/* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
+bool settlement_move(struct Settlement *settlement);
 
 static inline size_t contact_place(const struct Settlement *settlement, size_t contact, size_t part) {
   return 2 * settlement->switches->branch_count + CONTACT_VALUES * contact + part;

@@ -60,8 +60,10 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
   bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
-  if (!passes) return mode;
-  return mode == 0.0 ? settlement->instance->departure : -mode;
+  if (passes) return mode == 0.0 ? settlement->instance->departure : -mode;
+  /* What was set to rest at 0 is there, wherever it comes from. */
+  bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
+  return was_set ? 0.0 : mode;
 }
 
 static const char without_end[] = "a mode changes to and fro there without end";
@@ -107,21 +109,58 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
   }
 }
 
-/* Events whose condition has come to hold, all with the values before them. */
-static bool happen(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static void copy_conditions(struct Settlement *settlement) {
+  memcpy(settlement->condition, settlement->value + condition_place(settlement),
+         settlement->switches->condition_count * sizeof *settlement->condition);
+}
+
+static bool comes_to_hold(const struct Settlement *settlement, const struct EventFacts *event) {
   const double *condition = settlement->value + condition_place(settlement);
-  bool any = false;
-  for (size_t i = 0; i < switches->event_count; i++) {
-    const struct EventFacts *event = &switches->events[i];
-    bool happens = false;
-    for (size_t k = event->first_condition; k < event->first_condition + event->condition_count; k++)
-      happens |= condition[k] > 0.0 && !(settlement->condition[k] > 0.0);
-    if (happens) assign(settlement, event);
-    any |= happens;
+  bool happens = false;
+  for (size_t k = event->first_condition; k < event->first_condition + event->condition_count; k++)
+    happens |= condition[k] > 0.0 && !(settlement->condition[k] > 0.0);
+  return happens;
+}
+
+/* Whether two events set the same. */
+static bool are_rivals(const struct SwitchTable *switches, const struct EventFacts *one,
+                       const struct EventFacts *other) {
+  for (size_t i = one->first_assignment; i < one->first_assignment + one->assignment_count; i++)
+    for (size_t j = other->first_assignment; j < other->first_assignment + other->assignment_count; j++) {
+      const struct AssignmentFacts *first = &switches->assignments[i], *second = &switches->assignments[j];
+      if (first->kind == second->kind && first->index == second->index) return true;
+    }
+  return false;
+}
+
+/* Logs two events that happen at once and set the same. Whether there are any. */
+static bool find_rivals(const struct Settlement *settlement, size_t event) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t k = 0; k < event; k++) {
+    if (!comes_to_hold(settlement, &switches->events[k])) continue;
+    if (!are_rivals(switches, &switches->events[k], &switches->events[event])) continue;
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the events of when=\"%s\" and when=\"%s\" happen at once and set the same; expected one event, or "
+        "conditions that keep them apart",
+        settlement->time, switches->events[k].when, switches->events[event].when);
+    return true;
   }
-  memcpy(settlement->condition, condition, switches->condition_count * sizeof *condition);
-  return any;
+  return false;
+}
+
+/* Events whose condition has come to hold, all with the values before them; *again where there are any. */
+static const char *happen(struct Settlement *settlement, bool *again) {
+  const struct SwitchTable *switches = settlement->switches;
+  *again = false;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    if (!comes_to_hold(settlement, &switches->events[i])) continue;
+    if (find_rivals(settlement, i)) return "two events contradict each other";
+    assign(settlement, &switches->events[i]);
+    *again = true;
+  }
+  copy_conditions(settlement);
+  return NULL;
 }
 
 /* One round; *again where it changed something. */
@@ -135,13 +174,7 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
-  *again = happen(settlement);
-  return NULL;
-}
-
-static void copy_conditions(struct Settlement *settlement) {
-  memcpy(settlement->condition, settlement->value + condition_place(settlement),
-         settlement->switches->condition_count * sizeof *settlement->condition);
+  return happen(settlement, again);
 }
 
 /* Modes as the signs of the start values say. */
@@ -217,20 +250,27 @@ static void guess(struct Instance *instance) {
   }
 }
 
-static bool situation_indicators(struct Instance *instance, double *value) {
+/*
+ * What an importer is told keeps its sign until the indicator is a little beyond 0, so that it is not 0 behind an event
+ * (FMI 2.0, section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 leaves it on either side.
+ */
+static bool told_indicators(struct Instance *instance, double *value) {
+  static const double shift = 1e-11;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  return switching_indicators(instance, instance->situation->time, instance->state, value);
+  if (!switching_indicators(instance, instance->situation->time, instance->state, value)) return false;
+  for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
+    double sign = switching_sign(instance, i);
+    value[i] = sign == 0.0 ? shift - fabs(value[i]) : value[i] + sign * shift;
+  }
+  return true;
 }
 
 static bool is_due(struct Instance *instance) {
-  size_t count = indicator_count(lagrangian.switches);
   double *value = instance->switching_work;
-  if (!situation_indicators(instance, value)) return false;
+  if (!told_indicators(instance, value)) return false;
   bool due = false;
-  for (size_t i = 0; i < count; i++) {
-    double sign = switching_sign(instance, i);
-    due |= sign * value[i] < 0.0 || (sign == 0.0 && value[i] != 0.0);
-  }
+  for (size_t i = 0; i < indicator_count(lagrangian.switches); i++)
+    due |= (switching_sign(instance, i) < 0.0 ? -value[i] : value[i]) < 0.0;
   return due;
 }
 
@@ -238,10 +278,11 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .settle = settle,
                                     .guess = guess,
                                     .start = switching_start,
+                                    .release = switching_release,
                                     .resume = switching_resume,
                                     .update = switching_update,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
-                                    .indicators = situation_indicators,
+                                    .indicators = told_indicators,
                                     .is_due = is_due};

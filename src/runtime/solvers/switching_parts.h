@@ -24,6 +24,7 @@ bool switching_jump(struct Instance *instance, double *time, double *state, size
 
 /* The functions of the same names in struct Switching. */
 bool switching_start(struct Instance *instance, const char *function);
+bool switching_release(struct Instance *instance, double time);
 bool switching_resume(struct Instance *instance, double time);
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
                        const struct EventProgress *progress);
