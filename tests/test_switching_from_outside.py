@@ -36,7 +36,7 @@ OTHERS = {
     "Floor": ON_FLOOR.format('<parameter name="u" start="0"/>', 0),
     "Lift": ON_FLOOR.format('<input name="u" derivatives="2"/>', 0),
     "Raised": ON_FLOOR.format('<parameter name="u" start="0"/>', 1),
-    "Twice": '<coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic><event when="time &gt;= 1"><set velocity="v">v + 1</set></event>'
+    "SetTwice": '<coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic><event when="time &gt;= 1"><set velocity="v">v + 1</set></event>'
     '<event when="time - 1" direction="rising"><set velocity="v">v + 2</set></event>',
     "Shaken": THROWN + '<contact name="table" gap="h - 0.3*sin(3*time)" restitution="0.4"/>',
     "Rising": THROWN + '<contact name="table" gap="h - 0.1*time^2" restitution="0.4"/>',
@@ -94,7 +94,7 @@ def test_a_floor_does_not_come_through_a_body(open_fmu):
 
 
 def test_two_events_cannot_set_the_same_at_once(open_fmu):
-    instance = open_fmu("Twice").initialize()
+    instance = open_fmu("SetTwice").initialize()
     with instance.fails(DISCARD, "happen at once and set the same"):
         instance.step(2.0)
 
