@@ -312,7 +312,7 @@ FAULTS = [
     ("src/compiler/read/surface.c", "cardinals.slope[0] = way_before(scope, x, knots[0]);", "", pytest("test_tables_of_two", "values_and_derivatives")),
     ("src/runtime/solvers/event_search.c", "if (*indicator < lagrangian.switches->branch_count) return true;", "", pytest("test_auto", "flights")),
     ("src/runtime/solvers/switching.c", "return was_set ? 0.0 : mode;", "return mode;", pytest("test_switching_from_outside", "is_set_to")),
-    ("src/runtime/solvers/switching.c", "value[i] + sign * shift;", "value[i];", pytest("test_switching_from_outside", "leaves_zero")),
+    ("src/runtime/solvers/switching.c", "value[i] + sign * shift;", "value[i];", pytest("test_switching_from_outside", "projection_moves or falls_through")),
     ("src/runtime/solvers/switching.c", "bool holds = switches->feels_forces;", "bool holds = false;", pytest("test_pieces", "size_of_a_force")),
     ("src/runtime/solvers/continuity.c", "if (moved <= allowed_share(settlement)) return NULL;", "if (isfinite(moved)) return NULL;",
      pytest("test_pieces", "kink_in_a_constraint")),
