@@ -3,6 +3,7 @@
 import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi2 import FMU2Model, fmi2Real
 from scipy.integrate import solve_ivp
 
 import fmu
@@ -113,6 +114,21 @@ def test_nothing_falls_through_a_contact_in_model_exchange(open_fmu, name, floor
     instance = open_fmu(name).initialize()
     instance.step(3.0)
     assert result["h"][-1] == pytest.approx(instance.get("h"), abs=1e-3)
+
+
+def test_an_indicator_is_not_zero_behind_an_event(open_fmu):
+    """An importer that comes to an impact late finds the body at the contact, and the indicator above 0."""
+    instance = open_fmu("Rising", kind=FMU2Model).initialize()
+    model = instance.fmu
+    model.newDiscreteStates()
+    model.enterContinuousTimeMode()
+    model.setContinuousStates((fmi2Real * 2)(-1e-11, -1.0), 2)
+    model.enterEventMode()
+    model.newDiscreteStates()
+    state, indicator = (fmi2Real * 2)(), (fmi2Real * 1)()
+    model.getContinuousStates(state, 2)
+    model.getEventIndicators(indicator, 1)
+    assert list(state) == pytest.approx([0, 0.4], abs=1e-15) and indicator[0] > 5e-12
 
 
 def test_an_importer_sees_what_leaves_zero():

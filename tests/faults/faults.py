@@ -319,7 +319,7 @@ FAULTS = [
     ("src/runtime/solvers/continuity.c", "if (!(jump > allowed_share(settlement))) return NULL;", "if (isfinite(jump)) return NULL;",
      pytest("test_switching_refusals", "refusals")),
     ("src/runtime/solvers/contacts.c", "settlement->was_lifted[i] = is_open &&", "settlement->was_lifted[i] = false && is_open &&",
-     pytest("test_switching_from_outside", "falls_through")),
+     pytest("test_switching_from_outside", "not_zero_behind")),
     ("src/compiler/read/parser.c", "unsigned surplus = kinds_that_decide(parser->scope, quantity->node)",
      "unsigned surplus = parser->graph->vertices[quantity->node].kinds", pytest("test_pieces", "what_decides")),
     ("src/compiler/read/reader.c", "  undisplace_switches(reader);\n", "", pytest("test_pieces", "displaced")),
