@@ -323,6 +323,4 @@ FAULTS = [
     ("src/compiler/read/parser.c", "unsigned surplus = kinds_that_decide(parser->scope, quantity->node)",
      "unsigned surplus = parser->graph->vertices[quantity->node].kinds", pytest("test_pieces", "what_decides")),
     ("src/compiler/read/reader.c", "  undisplace_switches(reader);\n", "", pytest("test_pieces", "displaced")),
-    ("src/runtime/fmi3/fmi3_co_simulation.c", "*eventHandlingNeeded = is_at_event;", "*eventHandlingNeeded = fmi3False;",
-     pytest("test_fmi3_events", "both_sides")),
 ]
