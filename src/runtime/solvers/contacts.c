@@ -111,6 +111,19 @@ static bool push(struct Settlement *settlement, size_t contact, double restituti
   return push_sticking(settlement, contact, restitution, rate);
 }
 
+static double *modes_of(const struct Settlement *settlement) {
+  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
+}
+
+static void keep_modes(struct Settlement *settlement) {
+  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
+}
+
+static void restore_modes(struct Settlement *settlement) {
+  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
+  settlement->instance->prepared_is_stale = true;
+}
+
 static bool take_impact(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
@@ -120,13 +133,12 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
                 switches->contacts[contact].name, restitution);
     return false;
   }
-  double *modes = settlement->instance->parameter + lagrangian.parameter_count - switches->mode_count;
-  memcpy(settlement->kept_modes, modes, switches->mode_count * sizeof *modes);
+  keep_modes(settlement);
   set_frictions(settlement, contact);
   open_all(settlement);
   settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
   bool done = push(settlement, contact, restitution);
-  memcpy(modes, settlement->kept_modes, switches->mode_count * sizeof *modes);
+  restore_modes(settlement);
   open_all(settlement);
   settlement->jumped = true;
   settlement->was_opened[contact] = 0.0;
@@ -210,19 +222,19 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   const struct SwitchTable *switches = settlement->switches;
   *lifts = false;
   if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
+  keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t gap = contact_place(settlement, i, CONTACT_GAP);
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    double noise = settlement->noise[contact_place(settlement, i, CONTACT_GAP)];
     bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
-    settlement->was_lifted[i] = is_open && settlement->value[gap] < -settlement->noise[gap] &&
-                                settlement->value[gap] >= -largest_drift(settlement);
-    *lifts |= settlement->was_lifted[i] != 0.0;
+    if (!is_open || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    *lifts = true;
   }
-  for (size_t i = 0; i < switches->contact_count && *lifts; i++)
-    if (settlement->was_lifted[i] != 0.0) settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
-  bool done = !*lifts || settlement_move(settlement);
-  for (size_t i = 0; i < switches->contact_count && *lifts; i++)
-    if (settlement->was_lifted[i] != 0.0) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+  if (!*lifts) return true;
   settlement->lifts++;
+  bool done = settlement_move(settlement);
+  restore_modes(settlement);
   return done;
 }
 

@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "evaluate.h"
-#include "solver.h"
 #include "settlement.h"
+#include "solver.h"
 #include "switching_parts.h"
 
 /* So many events within rounding have no end. */
@@ -36,10 +36,7 @@ bool switching_start(struct Instance *instance, const char *function) {
 bool switching_release(struct Instance *instance, double time) {
   const struct ContactLaws *laws = lagrangian.switches->contact_laws;
   if (laws == NULL) return true;
-  struct Settlement settlement = settlement_of(instance);
-  settlement.time = time;
-  settlement.state = instance->state;
-  settlement.occasion = AT_CHANGE;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
   return !settlement_evaluate(&settlement) || laws->release(&settlement); /* what has no values is told by others */
 }
 

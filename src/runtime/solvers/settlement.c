@@ -28,7 +28,7 @@ size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
   return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
-         2 * switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
+         switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
          3 * lagrangian.state_count + corrections;
 }
 
@@ -42,8 +42,7 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
-  settlement.was_lifted = settlement.was_opened + switches->contact_count;
-  settlement.energy = settlement.was_lifted + switches->contact_count;
+  settlement.energy = settlement.was_opened + switches->contact_count;
   settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
   settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
@@ -52,6 +51,14 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.correction = settlement.derivative + lagrangian.state_count;
   memset(settlement.largest, 0, values * sizeof(double));
   memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
+  return settlement;
+}
+
+struct Settlement settlement_at(struct Instance *instance, double time, double *state, enum Occasion occasion) {
+  struct Settlement settlement = settlement_of(instance);
+  settlement.time = time;
+  settlement.state = state;
+  settlement.occasion = occasion;
   return settlement;
 }
 

@@ -19,7 +19,6 @@ struct Settlement {
   double *largest;            /* of each velocity in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
-  double *was_lifted;         /* of each contact */
   double *acceleration;       /* and forces of constraints */
   double *kept_modes, *kept_velocities;
   double *rounded, *derivative, *correction;
@@ -56,6 +55,9 @@ struct FrictionLaws {
 /* Numbers of workspace, and where they are. */
 size_t settlement_work_count(void);
 struct Settlement settlement_of(struct Instance *instance);
+
+/* At a time and a state, for an occasion. */
+struct Settlement settlement_at(struct Instance *instance, double time, double *state, enum Occasion occasion);
 
 /* Brings all values up to date with the modes and the state; false where there are no accelerations. */
 bool settlement_evaluate(struct Settlement *settlement);

@@ -201,10 +201,7 @@ static const char *check_laws(const struct Settlement *settlement) {
 
 static const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion,
                           size_t indicator, bool *changed) {
-  struct Settlement settlement = settlement_of(instance);
-  settlement.time = time;
-  settlement.state = state;
-  settlement.occasion = occasion;
+  struct Settlement settlement = settlement_at(instance, time, state, occasion);
   settlement.indicator = indicator;
   const char *problem = occasion == AT_START ? begin_modes(&settlement) : continuity_begin(&settlement);
   bool again = true;
