@@ -181,6 +181,15 @@ struct SwitchTable {
    */
   void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
   /*
+   * Shortens limit->step to where the elementary functions in what the indicators look at hide nothing, as far before the
+   * point as behind it. input and x hold Taylor coefficients about the point up to limit->order, and so does w[] in
+   * watched_acceleration_count rows from watched_acceleration_row on, of the accelerations and forces; w[watched_rows] is
+   * workspace. NULL where nothing can hide.
+   */
+  void (*watched_limit)(const struct Point *point, const double *acceleration, const Series *input, const Series *x,
+                        Series *w, struct SeriesLimit *limit);
+  size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
+  /*
    * value[]: the indicators of the branches, their time derivatives; of each contact the gap, its first and second time
    * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
    * slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta.

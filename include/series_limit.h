@@ -20,6 +20,7 @@ struct SeriesLimit {
   double step;          /* what the functions below shorten */
   const char *function; /* the one that shortened it last; NULL for none */
   bool crosses;         /* roots, powers, kinks and jumps, which stay finite, do not shorten it */
+  bool surrounds;       /* what lies before the point counts as well; powers shorten it then too */
 };
 
 /* exp(u), also as the power of a constant */

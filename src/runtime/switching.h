@@ -24,6 +24,7 @@ struct EventProgress {
   double last;      /* event, from the start of the step on; 0 for none */
   double distance;  /* between the last two; 0 for none */
   long count;       /* of all in the step */
+  int unsure;       /* windows in the step in which something may hide */
   size_t indicator; /* whose zero the last one was */
 };
 

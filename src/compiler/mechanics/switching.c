@@ -115,6 +115,16 @@ static void append_indicators(const struct Model *model, const struct SwitchingE
     append(list, indicator_of_friction(model, &switches->frictions[i]));
 }
 
+static void append_watched(const struct Model *model, const struct SwitchingExpressions *switching, struct List *list) {
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switches->contact_count; i++) append(list, switches->contacts[i].gap);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    append(list, switches->frictions[i].velocity);
+    append(list, switches->frictions[i].stiction);
+  }
+}
+
 /* The energies and the momenta, where branches hold them. */
 static void append_energies(const struct Model *model, const struct Equations *equations,
                             struct SwitchingExpressions *switching, struct List *list) {
@@ -171,14 +181,17 @@ static void append_values(const struct Model *model, const struct Equations *equ
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
-  struct List roots = roots_of(model, equations), indicators = {0}, values = {0};
+  struct List roots = roots_of(model, equations), indicators = {0}, watched = {0}, values = {0};
   find_energies(model, equations, switching);
   find_branches(model, &roots, switching);
   append_indicators(model, switching, &indicators);
+  append_watched(model, switching, &watched);
   append_values(model, equations, switching, &values);
   free(roots.nodes);
   switching->indicators = indicators.nodes;
   switching->indicator_count = indicators.count;
+  switching->watched = watched.nodes;
+  switching->watched_count = watched.count;
   switching->values = values.nodes;
   switching->value_count = values.count;
   if (switching->indicator_count > 0) return switching;
@@ -191,6 +204,7 @@ void switching_free(struct SwitchingExpressions *switching) {
   free(switching->branches);
   free(switching->holds_energy);
   free(switching->indicators);
+  free(switching->watched);
   free(switching->values);
   free(switching);
 }

@@ -16,6 +16,9 @@ struct SwitchingExpressions {
    */
   Node *indicators;
   size_t indicator_count;
+  /* What the indicators look at, whatever the modes: those of branches, gaps, velocities and stictions of frictions. */
+  Node *watched;
+  size_t watched_count;
   /*
    * The indicators of the branches and their time derivatives; of each contact the gap, its first and second time
    * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it

@@ -175,6 +175,18 @@ static void create_output_series(struct Expressions *expressions) {
   expressions->output_series = series_plan_of_outputs(model->graph, expressions->result, count);
 }
 
+/* A function that is folded has no series where it turns, and hides nothing. */
+static void create_watched_series(struct Expressions *expressions) {
+  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  struct Graph *graph = expressions->model->graph;
+  if (switching == NULL) return;
+  struct NodeList watched = {0};
+  for (size_t i = 0; i < switching->watched_count; i++)
+    if (kink_without_series_of(graph, &switching->watched[i], 1) == NULL) append_node(&watched, switching->watched[i]);
+  expressions->watched_series = series_plan_of_outputs(graph, watched.nodes, watched.count);
+  free(watched.nodes);
+}
+
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
@@ -186,6 +198,7 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
+  create_watched_series(expressions);
   if (graph_limit(model->graph) != NULL)
     report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
   if (diagnostics->errors == errors) return expressions;
@@ -223,8 +236,9 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, switching->indicators, switching->indicator_count);
     append_nodes(&targets, switching->values, switching->value_count);
   }
-  const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series};
-  for (int i = 0; i < 2; i++)
+  const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series,
+                                            expressions->watched_series};
+  for (int i = 0; i < 3; i++)
     if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets.nodes, plans[i]->targets.count);
   return targets;
 }
@@ -234,6 +248,7 @@ void expressions_free(struct Expressions *expressions) {
   linear_system_free(expressions->linear);
   series_plan_free(expressions->series);
   series_plan_free(expressions->output_series);
+  series_plan_free(expressions->watched_series);
   jacobian_free(expressions->jacobian);
   free(expressions->along);
   free(expressions->initial);

@@ -46,6 +46,7 @@ struct Expressions {
   struct LinearSystem *linear;          /* NULL unless the solver is exact */
   struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
   struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
+  struct SeriesPlan *watched_series;    /* of what events look at; NULL where nothing switches */
   Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
   Node *constraints_along;              /* of the elements of the constraints' J */
   struct Corrections corrections;       /* NULL without constraints */

@@ -256,6 +256,7 @@ static void create_series(struct Program *program, struct Values *values) {
     program->series = NULL;
   }
   if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, values);
+  if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, values);
 }
 
 static size_t count_of(const struct Routine *routine) {
@@ -271,8 +272,8 @@ size_t instruction_count(const struct Program *program) {
                  count_of(program->indicators) + count_of(program->switching_values);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
-  const struct SeriesProgram *const series[] = {program->series, program->output_series};
-  for (int i = 0; i < 2; i++)
+  const struct SeriesProgram *const series[] = {program->series, program->output_series, program->watched_series};
+  for (int i = 0; i < 3; i++)
     if (series[i] != NULL) count += count_of(series[i]->start) + count_of(series[i]->order);
   return count;
 }
@@ -349,6 +350,7 @@ void program_free(struct Program *program) {
   free(program->result_along);
   series_program_free(program->series);
   series_program_free(program->output_series);
+  series_program_free(program->watched_series);
   prepared_free(program->prepared);
   free(program->blocks.items);
   free(program);

@@ -242,7 +242,8 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
                       .factor = allocate(builder->factor_count, sizeof(Place))};
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (builder->has_row[builder->nodes.nodes[i]]) rows.row[builder->nodes.nodes[i]] = count++;
-  rows.acceleration_row = count;
+  rows.acceleration_row = program->acceleration_row = count;
+  program->acceleration_count = accelerations;
   program->mass_row = count + accelerations;
   rows.further_row = program->mass_row + (mass_count + SERIES_LENGTH - 1) / SERIES_LENGTH;
   program->row_count = rows.further_row + builder->further_rows;
@@ -359,6 +360,32 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   routine_free(builder->order);
   builder_free(builder);
   return program;
+}
+
+struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values) {
+  const struct SeriesPlan *plan = expressions->watched_series;
+  struct SeriesProgram *program = allocate(1, sizeof *program);
+  struct SeriesBuilder *builder = builder_create(plan, values);
+  size_t forces = uses_accelerations(plan, values->graph) ? row_count(expressions->equations) : 0;
+  program->limit = limits_of(builder);
+  /* What no limit asks for has no row, and is left out. */
+  for (size_t i = 0; i < builder->nodes.count; i++)
+    if (builder->has_row[builder->nodes.nodes[i]]) append_next(builder, builder->nodes.nodes[i]);
+  struct Rows rows = rows_create(builder, forces, 0, program);
+  complete(program, &rows);
+
+  program->start = values_begin(values);
+  compute_first(builder, values, NULL, 0);
+  copy_first(&rows, values);
+  for (size_t i = 0; i < forces; i++)
+    routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
+                   place_in(SPACE_ACCELERATION, i), 0, 0);
+  rows_free(&rows);
+  routine_free(builder->order);
+  builder_free(builder);
+  if (program->limit.count > 0) return program;
+  series_program_free(program);
+  return NULL;
 }
 
 void series_program_free(struct SeriesProgram *program) {

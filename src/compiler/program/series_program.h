@@ -15,6 +15,8 @@ struct SeriesProgram {
   struct LimitChecks limit;
   size_t row_count;
   size_t mass_row;    /* where the factors of large blocks begin */
+  size_t acceleration_row; /* where those of accelerations begin, as many as acceleration_count */
+  size_t acceleration_count;
   size_t recurrences; /* in an order */
 };
 
@@ -24,6 +26,12 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
 
 /* For the outputs, which are the first results; the accelerations are the derivatives of the velocities. */
 struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct Values *values);
+
+/*
+ * For the limits of what events look at, as far as they need series; the rows of the accelerations and forces are given. NULL
+ * where nothing limits them.
+ */
+struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values);
 
 void series_program_free(struct SeriesProgram *program);
 

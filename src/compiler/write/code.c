@@ -44,6 +44,8 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_source(file, "settlement.c");
     include_source(file, "switching.c");
     include_source(file, "continuity.c");
+    include_source(file, "chebyshev.c");
+    include_source(file, "event_window.c");
     include_source(file, "event_search.c");
     include_source(file, "event_passing.c");
   }

@@ -125,6 +125,14 @@ const struct FunctionText limit_text = {
     NULL,
     RETURNS_NOTHING,
     IN_WORKSPACE};
+const struct FunctionText watched_limit_text = {
+    "Shortens a window of time to where what events look at hides nothing",
+    "watched_limit",
+    "const struct Point *point, const double *a, const Series *restrict input, const Series *restrict x, Series "
+    "*restrict w, struct SeriesLimit *limit",
+    NULL,
+    RETURNS_NOTHING,
+    IN_ARGUMENT};
 
 void write_head(FILE *file, const struct FunctionText *text, const char *suffix, size_t operations) {
   static const char *const types[] = {[RETURNS_NOTHING] = "void", [RETURNS_STATUS] = "int", [RETURNS_VALUE] = "double"};

@@ -144,15 +144,21 @@ static void write_check(FILE *file, const struct Program *program, const struct 
   fputs(");\n", file);
 }
 
-static void write_limit(FILE *file, const struct Program *program) {
-  const struct LimitChecks *checks = &program->series->limit;
-  struct Routine spaces = {0}; /* none but for its spaces */
+/* The spaces that checks read. */
+static uint32_t spaces_of(const struct LimitChecks *checks) {
+  uint32_t spaces = 0;
   for (size_t i = 0; i < checks->count; i++) {
     const struct LimitCheck *check = &checks->items[i];
-    spaces.spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
-    if (limit_facts(check->rule)->has_exponent) spaces.spaces |= 1u << space_of(check->exponent);
-    if (check->is_gated) spaces.spaces |= 1u << space_of(check->opener);
+    spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
+    if (limit_facts(check->rule)->has_exponent) spaces |= 1u << space_of(check->exponent);
+    if (check->is_gated) spaces |= 1u << space_of(check->opener);
   }
+  return spaces;
+}
+
+static void write_limit(FILE *file, const struct Program *program) {
+  const struct LimitChecks *checks = &program->series->limit;
+  const struct Routine spaces = {.spaces = spaces_of(checks)}; /* none but for its spaces */
   write_head(file, &limit_text, "", checks->count);
   declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));
   statements_declare_point(file, program, &spaces);
@@ -179,4 +185,19 @@ void statements_output_series(FILE *file, const struct Program *program) {
   fputs("  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n", file);
   write_statements(file, program, series->order, NULL);
   fputs("  }\n}\n\n", file);
+}
+
+void statements_watched_limit(FILE *file, const struct Program *program) {
+  const struct SeriesProgram *series = program->watched_series;
+  struct Routine all = *series->start; /* with the spaces of all, for the declarations */
+  all.spaces |= series->order->spaces | spaces_of(&series->limit);
+  write_head(file, &watched_limit_text, "", series->start->operation_count);
+  declare_time(file, routine_uses(&all, SPACE_TIME_ROW));
+  statements_declare_point(file, program, &all);
+  write_statements(file, program, series->start, NULL);
+  fputs("  for (int k = 1; k <= limit->order; k++) {\n", file);
+  write_statements(file, program, series->order, NULL);
+  fputs("  }\n", file);
+  for (size_t i = 0; i < series->limit.count; i++) write_check(file, program, &series->limit.items[i]);
+  fputs("}\n\n", file);
 }

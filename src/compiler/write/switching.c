@@ -110,6 +110,7 @@ void switching_write(FILE *file, const struct Program *program) {
   fputs("extern const struct Switching switching;\n\n", file);
   statements_function(file, program, &indicators_text, "", program->indicators);
   statements_function(file, program, &switching_values_text, "", program->switching_values);
+  if (program->watched_series != NULL) statements_watched_limit(file, program);
   write_branches(file, program);
   write_contacts(file, program);
   write_rests(file, program);
@@ -123,6 +124,12 @@ void switching_write(FILE *file, const struct Program *program) {
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
           switches->event_count, switching->condition_count, switching->assignment_count, switching->energy_count);
   if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (program->watched_series != NULL)
+    fprintf(file,
+            "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n"
+            "    .watched_limit = watched_limit,\n",
+            program->watched_series->row_count, program->watched_series->acceleration_row,
+            program->watched_series->acceleration_count);
   if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (any_rests(program)) fputs("    .rests_on = rests_on,\n", file);

@@ -9,6 +9,8 @@
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
+/* So many windows in a communication step that may hide something have no end. */
+enum { UNSURE_LIMIT = 1000 };
 
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
@@ -87,17 +89,19 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 
 /*
  * Looks for the next event up to an end, in windows that begin somewhat longer than the last two events lay apart: the
- * solver's step may reach far beyond the next one. False where there is none.
+ * solver's step may reach far beyond the next one. False where there is none. The time is NAN where that cannot be told.
  */
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
+  *time = NAN;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
+    if (!switching_narrow(instance, progress->searched, &near) && ++progress->unsure > UNSURE_LIMIT) return true;
     if (switching_find(instance, progress->searched, near, time, indicator)) return true;
+    window = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->gathered = 0;
-    window *= 2.0;
   }
   return false;
 }

@@ -1,5 +1,6 @@
 /*
- * Where an indicator leaves its sign. In a window of time it is held against its Chebyshev polynomial of degree 8: where
+ * Where an indicator leaves its sign. In a window of time that hides nothing (event_window.c) it is held
+ * against its Chebyshev polynomial of degree 8: where
  * the coefficients say that it cannot come to 0, or falls throughout, that is known; else each half of the window is looked
  * at, with new values. So two zeros that lie close, or one at the very start, are found as well, whatever the solver.
  */
@@ -10,17 +11,10 @@
 #include "solver.h"
 #include "switching_parts.h"
 
-enum { DEGREE = SEARCH_NODES - 1, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
+enum { DEGREE = CHEBYSHEV_DEGREE, SEARCH_NODES = CHEBYSHEV_NODES, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 
 /* What the last coefficients may have of all, for a polynomial that is the function. */
 static const double resolved = 1e-4;
-
-/* cos(pi k / 8) */
-static const double cosines[2 * DEGREE] = {
-    1.0,  0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,
-    0.0,  -0.38268343236508977173, -0.70710678118654752440, -0.92387953251128675613,
-    -1.0, -0.92387953251128675613, -0.70710678118654752440, -0.38268343236508977173,
-    0.0,  0.38268343236508977173,  0.70710678118654752440,  0.92387953251128675613};
 
 struct Search {
   struct Instance *instance;
@@ -33,6 +27,12 @@ struct Search {
   double departure;        /* the sign of what left 0 last */
   double floor;            /* what an event has left of an indicator below 0, by rounding */
 };
+
+size_t switching_search_count(void) {
+  size_t samples = 2 * lagrangian.state_count + (SEARCH_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t window = switching_window_count();
+  return samples > window ? samples : window;
+}
 
 static struct Search search_of(struct Instance *instance) {
   size_t count = indicator_count(lagrangian.switches);
@@ -74,21 +74,6 @@ static void measure_noise(struct Search *search, double time) {
   }
 }
 
-static double node_time(double from, double to, int node) {
-  if (node == 0) return to;
-  if (node == DEGREE) return from;
-  return from + 0.5 * (1.0 + cosines[node]) * (to - from);
-}
-
-/* The coefficients of the polynomial through f at the nodes. */
-static void transform(const double *f, double *c) {
-  for (int j = 0; j <= DEGREE; j++) {
-    double sum = 0.5 * (f[0] + (j % 2 == 0 ? f[DEGREE] : -f[DEGREE]));
-    for (int k = 1; k < DEGREE; k++) sum += f[k] * cosines[j * k % (2 * DEGREE)];
-    c[j] = sum * (j == 0 || j == DEGREE ? 1.0 : 2.0) / DEGREE;
-  }
-}
-
 /* The coefficients of its derivative, up to a factor. */
 static void differentiate(const double *c, double *d) {
   d[DEGREE] = 0.0;
@@ -115,7 +100,7 @@ static enum Verdict judge_signs(const double *f, double noise) {
   for (int k = 0; k <= DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
-  transform(f, c);
+  chebyshev_coefficients(f, c);
   double reach = range_of_polynomial(c);
   if (reach <= noise) return STAYS; /* it does not fall, whatever it is */
   double tail = fabs(c[DEGREE]) + fabs(c[DEGREE - 1]);
@@ -171,7 +156,7 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
   double f[SEARCH_NODES];
   if (++search->windows > WINDOW_LIMIT) return INFINITY;
   for (int k = 0; k < SEARCH_NODES; k++)
-    f[k] = sign * value_at(search, indicator, node_time(from, to, k)) - search->floor;
+    f[k] = sign * value_at(search, indicator, chebyshev_time(from, to, k)) - search->floor;
   double noise = search->noise[indicator];
   enum Verdict verdict = judge_signs(f, noise);
   if (verdict == STAYS) return INFINITY;
@@ -195,7 +180,7 @@ static double first_departure(struct Search *search, size_t indicator, double fr
     double value = search->samples[(size_t)node * count + indicator];
     if (!(fabs(value) > search->noise[indicator])) continue;
     search->departure = value > 0.0 ? 1.0 : -1.0;
-    return node_time(from, to, node == DEGREE ? DEGREE : node + 1);
+    return chebyshev_time(from, to, node == DEGREE ? DEGREE : node + 1);
   }
   return INFINITY;
 }
@@ -257,7 +242,7 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
-  for (int k = 0; k < SEARCH_NODES; k++) sample(&search, node_time(from, to, k), search.samples + (size_t)k * count);
+  for (int k = 0; k < SEARCH_NODES; k++) sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double f[SEARCH_NODES], sign = switching_sign(instance, i);

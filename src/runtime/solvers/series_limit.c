@@ -47,7 +47,14 @@ static bool power_fits(const double *u, int order, double step, double bound) {
   return excursion(u, order, step) <= bound || is_monotone(u, order, step);
 }
 
+/* The same before and behind the origin: u must go through it. */
+static bool power_fits_around(const double *u, int order, double step, double bound) {
+  return excursion(u, order, step) <= bound || (u[1] != 0.0 && is_monotone(u, order, step));
+}
+
+/* Around a point, an operand without a value there belongs to a piece that is not there. */
 static void shorten(struct SeriesLimit *limit, const double *u, Fits *fits, double bound, const char *function) {
+  if (limit->surrounds && isnan(u[0])) return;
   if (fits(u, limit->order, limit->step, bound)) return;
   double step = limit->step, long_step = step;
   for (int i = 0; i < TRIALS && !fits(u, limit->order, step, bound); i++) {
@@ -99,7 +106,8 @@ void series_limit_root(struct SeriesLimit *limit, const double *u, double share)
 }
 
 void series_limit_whole_power(struct SeriesLimit *limit, const double *u, double share) {
-  if (!limit->crosses) shorten(limit, u, power_fits, share * fabs(u[0]), "a power");
+  if (limit->surrounds) shorten(limit, u, power_fits_around, share * fabs(u[0]), "a power");
+  else if (!limit->crosses) shorten(limit, u, power_fits, share * fabs(u[0]), "a power");
 }
 
 void series_limit_power(struct SeriesLimit *limit, const double *u, double exponent) {

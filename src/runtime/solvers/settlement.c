@@ -20,14 +20,10 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraint_count;
 }
 
-static size_t search_work_count(void) {
-  return 2 * lagrangian.state_count + (SEARCH_NODES + 3) * indicator_count(lagrangian.switches);
-}
-
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
+  return switching_search_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
          switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
          3 * lagrangian.state_count + corrections;
 }
@@ -36,7 +32,7 @@ struct Settlement settlement_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = decision_count(switches), indicators = indicator_count(switches);
   struct Settlement settlement = {.instance = instance, .switches = switches};
-  settlement.value = instance->switching_work + search_work_count();
+  settlement.value = instance->switching_work + switching_search_count();
   settlement.noise = settlement.value + values;
   settlement.largest = settlement.noise + values;
   settlement.condition = settlement.largest + values;

@@ -2,6 +2,7 @@
 #ifndef SWITCHING_PARTS_H
 #define SWITCHING_PARTS_H
 
+#include "chebyshev.h"
 #include "switching.h"
 
 /* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
@@ -9,6 +10,16 @@ bool switching_indicators(struct Instance *instance, double time, const double *
 
 /* A state that differs from another by what rounding may do to it, in one way or otherwise. */
 void switching_round(const double *state, bool otherwise, double *rounded);
+
+/* Numbers of workspace that a search needs, those of switching_narrow() among them. */
+size_t switching_search_count(void);
+size_t switching_window_count(void);
+
+/*
+ * Brings the end of a window of time in the solver's last step nearer to its begin until nothing that the indicators look at
+ * can hide between samples. False where the window is as short as time can tell and may still hide something.
+ */
+bool switching_narrow(struct Instance *instance, double from, double *to);
 
 /*
  * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
@@ -35,8 +46,6 @@ const char *switching_pass_barrier(struct Instance *instance, struct Communicati
 
 /* 1, -1 or 0: the sign that an indicator has while its mode stays; 0 of a branch that rests at 0. */
 double switching_sign(const struct Instance *instance, size_t indicator);
-
-enum { SEARCH_NODES = 9 };
 
 /* How far below 0 an event may leave an indicator, in units of what rounding makes of it. */
 enum { FLOOR_IN_NOISE = 64 };
