@@ -94,9 +94,9 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
-  *time = NAN;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
+    *time = NAN;
     if (!switching_narrow(instance, progress->searched, &near) && ++progress->unsure > UNSURE_LIMIT) return true;
     if (switching_find(instance, progress->searched, near, time, indicator)) return true;
     window = 2.0 * (near - progress->searched);

@@ -52,9 +52,13 @@ static bool power_fits_around(const double *u, int order, double step, double bo
   return excursion(u, order, step) <= bound || (u[1] != 0.0 && is_monotone(u, order, step));
 }
 
-/* Around a point, an operand without a value there belongs to a piece that is not there. */
+/* Whether an operand has a value that matters: one without belongs to a piece that is not there, one so large to none. */
+static bool matters(double u) {
+  return fabs(u) < 1e200;
+}
+
 static void shorten(struct SeriesLimit *limit, const double *u, Fits *fits, double bound, const char *function) {
-  if (limit->surrounds && isnan(u[0])) return;
+  if (limit->surrounds && !matters(u[0])) return;
   if (fits(u, limit->order, limit->step, bound)) return;
   double step = limit->step, long_step = step;
   for (int i = 0; i < TRIALS && !fits(u, limit->order, step, bound); i++) {
