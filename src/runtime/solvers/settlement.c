@@ -104,7 +104,8 @@ bool settlement_evaluate(struct Settlement *settlement) {
 }
 
 double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate) {
-  return settlement->noise[place] + 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->value[rate]);
+  double change = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->value[rate]);
+  return settlement->noise[place] + (isfinite(change) ? change : 0.0);
 }
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value) {
