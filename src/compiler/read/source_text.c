@@ -8,7 +8,7 @@
 #include "memory.h"
 
 /* An XML parser compares all attributes of an element with each other, and a schema's messages count what comes before. */
-enum { LENGTH_LIMIT = 10000000, ELEMENT_LIMIT = 20000, ATTRIBUTE_LIMIT = 200 };
+enum { LENGTH_LIMIT = 10000000, ELEMENT_LIMIT = 40000, ATTRIBUTE_LIMIT = 200 };
 
 /* Where reading stands, and what it has counted. */
 struct Scan {
