@@ -47,7 +47,7 @@ static int compare(const void *first, const void *second) {
 }
 
 /* A visit comes with the algebra that the sweep is for. */
-enum { VISIT_WORK = 4 };
+enum { VISIT_WORK = 8 };
 
 /* Puts the members in order: by going through all nodes between the first and the last, where most of them are members. */
 static void sort(struct Cone *cone) {

@@ -19,7 +19,7 @@
 #include "read/switching_reader.h"
 #include "read/xml.h"
 
-enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 300 };
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
 
 /* An index beyond could not be counted on in doubles. */
 static const double index_limit = 1e9;
