@@ -70,7 +70,9 @@ void write_plain_lines(void) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 enum { HAS_SANITIZER = 1 };
 #elif defined(__has_feature)
-enum { HAS_SANITIZER = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer) };
+enum {
+  HAS_SANITIZER = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+};
 #else
 enum { HAS_SANITIZER = 0 };
 #endif

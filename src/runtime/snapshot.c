@@ -61,7 +61,6 @@ static bool can_wait(const struct Instance *instance, const struct Situation *fi
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
-
 /* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
 static bool may_lack_state(int32_t mode) {
   return lagrangian.initial_state != NULL &&

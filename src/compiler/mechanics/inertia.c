@@ -28,8 +28,8 @@ static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j
 }
 
 /* The block of these elements; members: its rows, ascending. */
-static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members, struct Position *positions,
-                         const Node *nodes, size_t position_count) {
+static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
+                         struct Position *positions, const Node *nodes, size_t position_count) {
   struct InertiaBlock *block = &inertia->blocks[number];
   struct Position *local = allocate(position_count, sizeof *local);
   for (size_t k = 0; k < position_count; k++)
@@ -98,7 +98,8 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
 }
 
 /* The same matrix with the borders J and J^T. */
-static struct Inertia *border(const struct Graph *graph, size_t count, struct Elements *elements, const struct Constraints *constraints) {
+static struct Inertia *border(const struct Graph *graph, size_t count, struct Elements *elements,
+                              const struct Constraints *constraints) {
   const struct Elements *jacobian = &constraints->jacobian;
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);

@@ -192,10 +192,11 @@ static void order_links(struct Connection *connection) {
 /* Sums and products of numbers in the file may be beyond all numbers. */
 static void check_numbers(struct Connection *connection, const struct Link *link) {
   if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
-  report_error(connection->diagnostics, link->line,
-               "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is no finite number; "
-               "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
-               link->name, link->carrier->name);
+  report_error(
+      connection->diagnostics, link->line,
+      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is no finite number; "
+      "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
+      link->name, link->carrier->name);
 }
 
 /* Each link with the one that carries it; bodies that are fixed to each other become one. */
@@ -243,10 +244,11 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
     leader = mimicked_by(connection, leader);
   }
   if (!isfinite(joint->ratio) || !isfinite(joint->shift))
-    report_error(connection->diagnostics, joint->line,
-                 "the joint '%s' follows '%s' by %g of its position and %g, which is more than a number can be; expected "
-                 "smaller multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
-                 joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift, joint->name);
+    report_error(
+        connection->diagnostics, joint->line,
+        "the joint '%s' follows '%s' by %g of its position and %g, which is more than a number can be; expected "
+        "smaller multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
+        joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift, joint->name);
   joint->leader = leader;
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }

@@ -250,7 +250,8 @@ static void write_work(FILE *file, const struct Program *program) {
                                        operations_or_none(program->correct_velocities));
   if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
   if (program->indicators != NULL)
-    step += SEARCHES * (LOOK + operations_of(program->indicators) + 2.0 * ORDER * (double)program->interface->state_count);
+    step +=
+        SEARCHES * (LOOK + operations_of(program->indicators) + 2.0 * ORDER * (double)program->interface->state_count);
   fprintf(file, "    .work = {%.0f, %.0f, %.0f},\n", evaluation, step,
           EVENT + 4.0 * evaluation + operations_or_none(program->switching_values));
 }

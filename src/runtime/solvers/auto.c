@@ -29,8 +29,8 @@ enum {
 /* How many times the work of a vain trial the series do before the next one: at first, at most. */
 enum { SHORT_PATIENCE = 2, LONG_PATIENCE = 256 };
 static const double LARGEST_WORK = 1e15; /* operations that no window or trial comes to: days of work */
-static const double GROWTH = 1.25;      /* of progress from window to window that keeps a trial alive */
-static const double FIRST_GROWTH = 8.0; /* of the first step of Radau IIA over the last one of the series */
+static const double GROWTH = 1.25;       /* of progress from window to window that keeps a trial alive */
+static const double FIRST_GROWTH = 8.0;  /* of the first step of Radau IIA over the last one of the series */
 
 /* What the situation holds after what the method at work keeps. */
 struct Choice {
