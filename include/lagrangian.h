@@ -110,6 +110,11 @@ struct OperationCounts {
   double factor, solve;       /* multiplications in factors of a real matrix by lu, and in a triangle for a solution */
 };
 
+/* Operations, counted likewise: of an evaluation by the solver, of a step beside these, and of an event. */
+struct StepWork {
+  double evaluation, step, event;
+};
+
 /*
  * The factors L U of a matrix with a row and a column for each coordinate, of symmetric pattern. place: of each
  * coordinate in the order of elimination. By these places, row i of L has the columns column[start[i]] to
@@ -222,7 +227,8 @@ struct Lagrangian {
   const char *const *inertia_depends_on;
   double tolerance; /* relative, where the environment gives none */
   double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
-  long max_steps;   /* that a solver takes by itself in one communication step */
+  long max_steps;   /* that a solver takes by itself in one communication step; 0 where none was given */
+  struct StepWork work;
   bool depends_on_time;
   const struct Solver *solver;      /* NULL for a system without coordinates */
   struct Sparsity jacobian_pattern; /* where there is a jacobian() */

@@ -98,6 +98,31 @@ def test_message(line, text, at, message, tmp_path):
     assert not (tmp_path / "out" / "system.c").exists()
 
 
+def test_mimics_whose_products_overflow(tmp_path):
+    """The message names the joint at which the chain of multipliers ends beyond all numbers."""
+    joints = "".join(
+        f'<link name="part{i}"/><joint name="gear{i}" type="continuous"><parent link="stand"/><child link="part{i}"/>'
+        f'<mimic joint="{f"gear{i - 1}" if i else "elbow"}" multiplier="1e120" offset="1"/></joint>\n'
+        for i in range(3)
+    )
+    result = compile_robot(RIGHT.replace("</robot>", joints + "</robot>"), tmp_path)
+    assert result.returncode == 1 and len(result.stderr.splitlines()) == 1
+    assert "robot.urdf:17: the joint 'gear2' follows 'elbow' by inf of its position" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "link", ['<inertial><origin xyz="1e200 0 0"/><mass value="1"/>', '<inertial><mass value="1.7e308"/>'], ids=["far", "heavy"])  # fmt: skip
+def test_fixed_links_whose_sums_overflow(link, tmp_path):
+    parts = "".join(
+        f'<link name="{name}">{link}{INERTIA.format(1, 0, 1, 1)}</inertial></link>'
+        f'<joint name="to{name}" type="fixed"><parent link="lower"/><child link="{name}"/></joint>\n'
+        for name in ("weight", "other")
+    )
+    result = compile_robot(RIGHT.replace("</robot>", parts + "</robot>"), tmp_path)
+    assert result.returncode == 1 and len(result.stderr.splitlines()) == 1
+    assert re.search("robot.urdf:1[56]: the link '(weight|other)' is so far out, or so heavy", result.stderr), result.stderr
+
+
 def test_circle_of_mimics(tmp_path):
     lines = RIGHT.splitlines()
     lines[9] += '<mimic joint="elbow"/>'

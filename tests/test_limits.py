@@ -1,6 +1,7 @@
 """No file keeps lagc busy for long: what would is refused, with a message that says which limit it meets."""
 
 import re
+import resource
 
 import pytest
 
@@ -43,11 +44,38 @@ REFUSED = {
 }  # fmt: skip
 
 
+REFUSED |= {
+    "outputs in a chain": (
+        '<output name="o[0]">x</output>' + loops(("1", "9999"), content='<output name="o[i]">sin(o[i-1])</output>'),
+        "the generated code needs more than 100000000 steps"),
+    "constraints of which each meets all": (
+        loops(("1", "9999"), content='<constraint name="c[i]">x - i*sin(time)</constraint>'), "than 512 MB|100000000 steps"),
+    "branches in a loop": (
+        '<table name="t">' + "".join(f"{k} {k * k % 17}\n" for k in range(500)) + "</table>"
+        + loops(("1", "9999"), content='<force coordinate="x">t(i*x)</force>'), STEPS),
+    "frames in frames": (
+        '<frame name="f0"/>' + "".join(f'<frame name="f{k + 1}" in="f{k}"/>' for k in range(100000)), "more than 40000 elements"),
+    "attributes": ("<potential " + " ".join(f'a{k}="1"' for k in range(100000)) + ">x</potential>", "more than 200 attributes"),
+    "numbers in a table": ('<table name="t" arguments="2">' + "1 " * 2000000 + "</table>", "2000000 times 0 values"),
+    "a long file": ("<potential>" + " " * 10000000 + "x</potential>", "longer than 10000000 bytes"),
+}  # fmt: skip
+
+
+MOST_SECONDS = 8  # several times as many as it should take, for busy machines
+
+
+def seconds_of_children():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 @pytest.mark.parametrize("text, message", REFUSED.values(), ids=REFUSED)
 def test_refused(text, message, tmp_path):
+    before = seconds_of_children()
     result = compile_with(text, tmp_path)
     assert result.returncode == 1 and len(result.stderr.splitlines()) == 1
     assert re.search(message, result.stderr), result.stderr
+    assert seconds_of_children() - before < MOST_SECONDS
     assert not (tmp_path / "out" / "system.c").exists()
 
 
@@ -67,7 +95,31 @@ def test_entities(entities, tmp_path):
     assert len(result.stderr.splitlines()) == 1
 
 
+def test_files_that_include_each_other_twice(tmp_path):
+    """2^40 systems in 40 short files."""
+    for k in range(40):
+        includes = "".join(f'<include file="tree{k + 1}.xml" as="{name}"/>' for name in "ab")
+        (tmp_path / f"tree{k}.xml").write_text(f'<system name="Tree">{includes}</system>')
+    (tmp_path / "tree40.xml").write_text('<system name="Tree"><parameter name="q" start="1"/></system>')
+    before = seconds_of_children()
+    result = compile_with('<include file="tree0.xml" as="a"/>', tmp_path)
+    assert result.returncode == 1 and "the system is too large: more than " in result.stderr
+    assert seconds_of_children() - before < MOST_SECONDS
+
+
+def test_errors_without_end(tmp_path):
+    """Of 38,000 wrong elements a hundred are told, in a time that does not grow as their square; long texts are cut."""
+    before = seconds_of_children()
+    result = compile_with('<contact name="c" restitution="1">x</contact>' * 38000, tmp_path)
+    lines = result.stderr.splitlines()
+    assert result.returncode == 1 and len(lines) == 101 and "there are more mistakes" in lines[-1]
+    result = compile_with("<potential>" + ".".join("q" * 5000) + "</potential>", tmp_path)
+    assert result.returncode == 1 and "q ... " in result.stderr and len(result.stderr) < 1500
+    assert seconds_of_children() - before < MOST_SECONDS
+
+
 FINE = {
+    "negations in a row": '<force coordinate="x">if(' + "not " * 200000 + "x &gt; 0, 1, 2)</force>",
     "a quotient whose division leaves the numbers": '<particle mass="m" y="1/(x+1e200)" x="x"/>',
     "a division that ends below the numbers": '<particle mass="m" y="(1e-200*x + 1e-180)/(1e200*x + 1e190)" x="x"/>',
     "coefficients that overflow when multiplied": "<potential>(1e200*x + a)*(1e-200*x + b)/((1e160*x + 1)*(x + 1e-160))</potential>",

@@ -90,7 +90,9 @@ def test_much_work_is_told_of_on_the_way(open_fmu):
     instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
     instance.step(40.0)
     told = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
-    assert len(told) == 1 and told[0][0] == 1 and re.search(r"has taken 50000 steps from time 0 .* gives up after 10000000", told[0][1])
+    assert len(told) == 1 and told[0][0] == 1
+    limit = re.search(r"has taken 50000 steps from time 0 .* gives up after (\d+), which maxSteps .* can set: ", told[0][1])
+    assert 5e6 < int(limit[1]) < 1e8  # 0.1 to 2 microseconds a step for 10 s
     assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 
 

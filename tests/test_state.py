@@ -256,6 +256,7 @@ def test_forging_nothing_is_no_forgery(open_fmu):
 
 FORGERIES = [("=i", MODE, mode) for mode in (-1, 2, 3, 8, 2**31 - 1)]
 FORGERIES += [("=i", WAITING, number) for number in (-1, 1, 2**31 - 1)] + [("=i", WAITING + 4, number) for number in (-1, 1000)]
+FORGERIES += [("=i", place, value) for place in range(HEADER + 8, WAITING, 4) for value in (-1, 3)]
 FORGERIES += [("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
 FORGERIES += [("=d", TIME + 8 * i, value) for i in range(len(NUMBERS)) for value in (np.nan, np.inf)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("tolerance"), value) for value in (0.0, -1e-6, 1.0)]
@@ -303,6 +304,43 @@ def test_forged_series_are_refused(open_fmu):
     forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in reaches]
     for forgery in forgeries + [("=d", place, np.nan) for place in numbers]:
         refuses(instance, data, *forgery)
+
+
+def test_forged_choices_are_refused(open_fmu):
+    """What the solver that chooses between methods counts, at the end of the state: nine integers and eight numbers."""
+    instance = open_fmu("ElasticPendulum").initialize()
+    instance.step(0.1)
+    data = serialized(instance)
+    choice = len(data) - 8 * 17
+    method, steps, restarts, windows, patience, next_patience, stay, is_trial, crosses = range(choice, choice + 72, 8)
+    for place in (steps, restarts, windows, patience, next_patience, stay, is_trial, crosses):
+        for value in (-1, 2**63 - 1):
+            refuses(instance, data, "=q", place, value)
+    forgeries = [(steps, 7), (is_trial, 2), (crosses, 2), (method, 2), (next_patience, 10**6)]
+    for forgery in forgeries:
+        refuses(instance, data, "=q", *forgery)
+    work, trial_work, promised_step = choice + 80, choice + 96, choice + 104
+    for place in (work, trial_work, promised_step):
+        for value in (np.nan, np.inf, -1.0):
+            refuses(instance, data, "=d", place, value)
+    for place in (work, trial_work):
+        refuses(instance, data, "=d", place, 1e300)  # as operations, whole numbers could not hold them
+    large = forged(data, "=q", windows, 2**62)
+    instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(large))
+    instance.step(10.0)
+
+
+def test_forged_modes_are_refused(open_fmu):
+    """A sign, or whether a contact is closed, which is read as an integer."""
+    for name in ("StickSlip", "BouncingBall"):
+        instance = open_fmu(name).initialize()
+        instance.step(0.1)
+        data = serialized(instance)
+        before = fmu.names_of(name, "input") + fmu.names_of(name, "parameter")
+        first_mode = VALUES + 8 * (len(fmu.states_of(name)) + len(before))
+        assert struct.unpack_from("=d", data, first_mode)[0] in (-1.0, 0.0, 1.0)
+        for value in (0.5, 2.0, 1e300):
+            refuses(instance, data, "=d", first_mode, value)
 
 
 def test_forged_rounding_is_refused(open_fmu):

@@ -132,13 +132,19 @@ static int run(const struct Arguments *arguments) {
   return diagnostics.errors > 0 ? 1 : 0;
 }
 
+/* Bytes that systems within the other limits hardly need. */
+enum { MEMORY_LIMIT = 512 << 20 };
+
 static _Noreturn void end_without_memory(void) {
-  fputs("lagc: out of memory\n", stderr);
+  fputs("lagc: out of memory: the system needs more than there is, or than 512 MB; expected fewer or shorter "
+        "repetitions, tables, frames, constraints or outputs\n",
+        stderr);
   exit(1);
 }
 
 int main(int count, char **words) {
   on_memory_failure(end_without_memory);
+  limit_memory(MEMORY_LIMIT);
   write_plain_lines();
 #ifdef SIGXFSZ
   signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */

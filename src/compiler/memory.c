@@ -1,6 +1,5 @@
 #include "memory.h"
 
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,15 +54,20 @@ char *copy_text(const char *text) {
   return copy;
 }
 
-char *format_text(const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
+char *format_arguments(const char *format, va_list arguments) {
   va_list again;
   va_copy(again, arguments);
   int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
   char *text = allocate((size_t)(length < 0 ? 0 : length) + 1, 1);
   vsnprintf(text, (size_t)(length < 0 ? 0 : length) + 1, format, again);
   va_end(again);
+  return text;
+}
+
+char *format_text(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  char *text = format_arguments(format, arguments);
+  va_end(arguments);
   return text;
 }

@@ -2,6 +2,7 @@
 #ifndef MEMORY_H
 #define MEMORY_H
 
+#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -29,5 +30,8 @@ char *copy_text(const char *text);
 
 /* printf into a new string, to be freed with free(). */
 char *format_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* The same with the arguments that a caller was given. */
+char *format_arguments(const char *format, va_list arguments) __attribute__((format(printf, 1, 0)));
 
 #endif

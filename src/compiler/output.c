@@ -128,6 +128,11 @@ static bool write_buffers(const struct Program *program, const struct Summary *s
 
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
                   struct Diagnostics *diagnostics) {
+  const char *limit = graph_limit(program->model->graph);
+  if (limit != NULL) {
+    report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", limit);
+    return;
+  }
   xmlBufferPtr anonymous = xmlBufferCreate(), buffers[FILE_COUNT];
   const char *texts[FILE_COUNT];
   char guid[GUID_LENGTH];
@@ -141,7 +146,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   const struct Method *method = program->interface->method;
   if (method != NULL && method->uses_library) texts[BUILD_DESCRIPTION] = NULL;
   texts[CODE] = file;
-  const char *limit = graph_limit(program->model->graph);
+  limit = graph_limit(program->model->graph);
   if (limit != NULL)
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
   else if (written) write_all(directory, texts, diagnostics);

@@ -55,11 +55,27 @@ static bool is_absolute(const char *path) {
   return *path == '/' || *path == '\\' || (isalpha((unsigned char)*path) && path[1] == ':');
 }
 
+void limit_memory(size_t bytes) {
+  (void)bytes;
+}
+
 void write_plain_lines(void) {
   _setmode(_fileno(stdout), _O_BINARY);
 }
 
 #else
+
+#include <sys/resource.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { HAS_SANITIZER = 1 };
+#elif defined(__has_feature)
+enum {
+  HAS_SANITIZER = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+};
+#else
+enum { HAS_SANITIZER = 0 };
+#endif
 
 FILE *open_text_stream(char **text, size_t *length) {
   return open_memstream(text, length);
@@ -88,6 +104,13 @@ static const char *last_separator(const char *path) {
 
 static bool is_absolute(const char *path) {
   return *path == '/';
+}
+
+void limit_memory(size_t bytes) {
+  struct rlimit limit;
+  if (HAS_SANITIZER || getrlimit(RLIMIT_AS, &limit) != 0) return;
+  if (limit.rlim_cur > bytes) limit.rlim_cur = bytes;
+  setrlimit(RLIMIT_AS, &limit);
 }
 
 void write_plain_lines(void) {

@@ -24,6 +24,9 @@ char *first_separator(char *path);
 /* A path that a file names, relative to that file; to be freed with free(). */
 char *path_beside_file(const char *present, const char *named);
 
+/* From so many bytes on allocations fail, where the system can do that and no sanitizer needs more. */
+void limit_memory(size_t bytes);
+
 /* Makes \n the end of a line on the standard output too. */
 void write_plain_lines(void);
 

@@ -29,6 +29,12 @@ static struct Header header_of(const void *situation) {
   return header;
 }
 
+bool snapshot_are_counts(const int64_t *counts, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (counts[i] < 0 || counts[i] > INT64_MAX / 2) return false;
+  return true;
+}
+
 bool snapshot_is_finite(const void *numbers, size_t count) {
   const char *bytes = numbers;
   for (size_t i = 0; i < count; i++) {
@@ -55,12 +61,6 @@ static bool can_wait(const struct Instance *instance, const struct Situation *fi
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
-static bool are_counts(const int64_t *statistics) {
-  for (size_t i = 0; i < STATISTIC_COUNT; i++)
-    if (statistics[i] < 0 || statistics[i] > INT64_MAX / 2) return false;
-  return true;
-}
-
 /* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
 static bool may_lack_state(int32_t mode) {
   return lagrangian.initial_state != NULL &&
@@ -78,15 +78,42 @@ static bool are_flags(const void *numbers, size_t count) {
   return true;
 }
 
+/* Whether the integers are what each of them can be. */
+static bool are_choices(const struct Situation *fixed) {
+  const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
+  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+    if (flags[i] != 0 && flags[i] != 1) return false;
+  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_BY_EVENT;
+}
+
+/* Whether the element of the parameters is a whole number in this range. */
+static bool is_whole(const char *parameters, size_t index, double lowest, double highest) {
+  double value;
+  memcpy(&value, parameters + index * sizeof value, sizeof value);
+  return value == floor(value) && value >= lowest && value <= highest;
+}
+
 /* Whether the parameters are of their types. */
 static bool have_types(const char *parameters) {
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (variable->kind != VARIABLE_PARAMETER || variable->type == TYPE_REAL) continue;
-    double value;
-    memcpy(&value, parameters + variable->index * sizeof value, sizeof value);
-    if (value != floor(value) || fabs(value) > INT32_MAX + 1.0) return false;
+    bool is_flag = variable->type == TYPE_BOOLEAN;
+    if (!is_whole(parameters, variable->index, is_flag ? 0.0 : INT32_MIN, is_flag ? 1.0 : INT32_MAX)) return false;
   }
+  return true;
+}
+
+/* Whether the modes that events alone set are among those that they set. */
+static bool are_modes(const char *parameters) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches == NULL) return true;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (!is_whole(parameters, switches->branches[i].mode, -1.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (!is_whole(parameters, switches->contacts[i].mode, 0.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (!is_whole(parameters, switches->frictions[i].mode, -1.0, 1.0)) return false;
   return true;
 }
 
@@ -100,12 +127,14 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
-  return has_mode(instance, fixed->mode) && can_wait(instance, fixed) && are_counts(fixed->statistics) &&
+  return has_mode(instance, fixed->mode) && are_choices(fixed) && can_wait(instance, fixed) &&
+         snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
          snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
+         are_modes(situation + parameters) &&
          (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
           lagrangian.solver->could_save(fixed, situation + saved));
 }

@@ -15,6 +15,9 @@ const char *snapshot_fault(const struct Instance *instance, const void *block, s
 /* Whether bytes, at any address, are so many finite numbers; for solvers that check what they kept. */
 bool snapshot_is_finite(const void *numbers, size_t count);
 
+/* Whether all are counts that can go on counting; likewise. */
+bool snapshot_are_counts(const int64_t *counts, size_t count);
+
 /* The block must have no fault. */
 void snapshot_restore(struct Instance *instance, const void *block);
 

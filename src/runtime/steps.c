@@ -20,8 +20,12 @@ enum StepResult {
 /* Steps too short to change the time are a singularity, which a solver could pass through. */
 enum { RESTING_STEP_LIMIT = 20 };
 
-/* So many steps in one communication step take a good part of a second. */
+/* So many steps in one communication step, or operations (see auto.c), take a good part of a second. */
 enum { SLOW_STEPS = 50000 };
+static const double SLOW_WORK = 2e9;
+
+/* Operations in one communication step, where the system gives no number of steps: some 10 s. */
+static const double WORK_LIMIT = 3e10;
 
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
 
@@ -97,13 +101,33 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
 }
 
 /* A user should hear of much work long before it is too much. */
-static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step) {
+static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step, double work) {
   log_message(
       instance, STATUS_WARNING,
       "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
-      "maxSteps of <solver> in system.xml sets",
+      "maxSteps of <solver> in system.xml %s",
       lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
-      lagrangian.max_steps);
+      lagrangian.max_steps > 0 ? lagrangian.max_steps : (long)((double)step->count * WORK_LIMIT / work),
+      lagrangian.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
+}
+
+/* Operations in the communication step; before: the statistics as it began. */
+static double work_since(const struct Instance *instance, const struct CommunicationStep *step, const int64_t *before) {
+  const int64_t *present = instance->situation->statistics;
+  return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.work.evaluation +
+         (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.work.event +
+         (double)step->count * lagrangian.work.step;
+}
+
+/* NULL, or why the solver gives up. */
+static const char *excess(const struct CommunicationStep *step, double work) {
+  if (lagrangian.max_steps == 0)
+    return work < WORK_LIMIT ? NULL
+                             : "it has taken as many steps within one communication step as take some 10 s; expected a "
+                               "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
+  return step->count < lagrangian.max_steps
+             ? NULL
+             : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
 }
 
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
@@ -111,6 +135,9 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
   const struct Span *last = &instance->situation->last_step;
   const struct Switching *switcher = lagrangian.switching;
   struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
+  int64_t before[STATISTIC_COUNT];
+  memcpy(before, instance->situation->statistics, sizeof before);
+  bool is_told = false;
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
@@ -118,10 +145,13 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     bool is_inside = last->end > step->start && last->end < step->end;
     if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
     if (last->end >= step->end) return NULL;
-    if (step->count == lagrangian.max_steps && switcher != NULL) switcher->explain(instance, step, &progress);
-    if (step->count == lagrangian.max_steps)
-      return "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
-    if (step->count == SLOW_STEPS) warn_of_slowness(instance, step);
+    double work = work_since(instance, step, before);
+    problem = excess(step, work);
+    if (problem != NULL && switcher != NULL) switcher->explain(instance, step, &progress);
+    if (problem != NULL) return problem;
+    bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
+    if (is_slow && !is_told) warn_of_slowness(instance, step, work);
+    is_told |= is_slow;
     problem = lagrangian.solver->advance(instance, step);
     if (problem != NULL && switcher != NULL) problem = switcher->pass_barrier(instance, step, problem, &progress);
     if (problem != NULL) return problem;

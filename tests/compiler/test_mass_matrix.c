@@ -87,7 +87,9 @@ static void solve_by_gauss(size_t n, double m[SPARSE][SPARSE], double *x) {
 /* Compares the sparse factorization with the elimination of the full matrix; returns the elements of L. */
 static size_t check_sparse(size_t n, const struct Position *positions, size_t count, unsigned seed) {
   double full[SPARSE][SPARSE] = {{0}}, m[POSITIONS] = {0}, x[SPARSE], expected[SPARSE];
-  struct Elimination elimination = eliminate(n, n, positions, count);
+  struct Graph *graph = graph_create();
+  struct Elimination elimination = eliminate(graph, n, n, positions, count);
+  graph_free(graph);
   size_t place[SPARSE], *start = elimination.start, *column = elimination.column;
   for (size_t i = 0; i < n; i++) place[elimination.order[i]] = i;
   for (size_t k = 0; k < count; k++) {
@@ -142,7 +144,9 @@ static void test_order_of_elimination(void **state) {
   assert_int_equal(check_sparse(SPARSE, chain, count, 1), count);
   assert_int_equal(check_sparse(SPARSE, star, count, 2), count);
   assert_int_equal(check_sparse(SPARSE, tree, count, 3), count);
-  struct Elimination elimination = eliminate(SPARSE, SPARSE, full, all);
+  struct Graph *graph = graph_create();
+  struct Elimination elimination = eliminate(graph, SPARSE, SPARSE, full, all);
+  graph_free(graph);
   for (size_t i = 0; i < SPARSE; i++) assert_int_equal(elimination.order[i], i);
   free(elimination.order);
   free(elimination.start);

@@ -91,6 +91,7 @@ const char *graph_limit(const struct Graph *graph) {
 }
 
 static Node intern(struct Graph *graph, struct Vertex vertex) {
+  graph_work(graph, 2); /* with the algebra that asks for it */
   size_t place = hash(&vertex) & (graph->bucket_count - 1);
   for (; graph->buckets[place] != 0; place = (place + 1) & (graph->bucket_count - 1)) {
     Node node = graph->buckets[place] - 1;

@@ -5,6 +5,9 @@
 #include "algebra/cone.h"
 #include "memory.h"
 
+/* Steps for a symbol that something depends on, which is put in order and written. */
+enum { LIST_WORK = 10 };
+
 struct SymbolList {
   size_t *numbers;
   size_t count;
@@ -94,11 +97,13 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
 /* What an acceleration depends on, for what depends on it in this way. */
 static void follow_acceleration(struct Dependencies *dependencies, size_t coordinate, enum Dependency kind) {
   const struct Equations *equations = dependencies->equations;
+  if (graph_limit(dependencies->graph) != NULL) return;
   if (!is_looped(equations, coordinate)) {
     descend(dependencies, equations->acceleration[coordinate], kind);
     return;
   }
   const struct SymbolList *list = symbols_of(dependencies, equations->inertia->block_of[coordinate]);
+  graph_work(dependencies->graph, LIST_WORK * list->count);
   for (size_t i = 0; i < list->count; i++) note(dependencies, list->numbers[i], DEPENDENT);
 }
 

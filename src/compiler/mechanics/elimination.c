@@ -5,6 +5,9 @@
 
 #include "memory.h"
 
+/* Steps for each item that two sets have when they are joined, which takes memory too. */
+enum { JOIN_WORK = 4 };
+
 /* The neighbours of a row, ascending. */
 struct Set {
   size_t *items;
@@ -86,11 +89,13 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
 }
 
 /* Eliminates all rows; the sets are then the columns of L below the diagonal. */
-static void eliminate_rows(size_t count, size_t late, struct Set *sets, size_t *order, size_t *place) {
+static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct Set *sets, size_t *order,
+                           size_t *place) {
   struct Queue queue = {0};
   bool *is_eliminated = allocate(count, sizeof *is_eliminated);
   for (size_t row = 0; row < count; row++) push(&queue, (struct Waiting){sets[row].count, row});
-  for (size_t next = 0; next < count;) {
+  size_t next = 0;
+  while (next < count && graph_limit(graph) == NULL) {
     struct Waiting waiting = pop(&queue);
     const struct Set *set = &sets[waiting.row];
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
@@ -100,9 +105,15 @@ static void eliminate_rows(size_t count, size_t late, struct Set *sets, size_t *
     order[next++] = waiting.row;
     for (size_t i = 0; i < set->count; i++) {
       size_t row = set->items[i];
+      graph_work(graph, JOIN_WORK * (sets[row].count + set->count));
       join(&sets[row], row, set, waiting.row);
       push(&queue, (struct Waiting){sets[row].count, row});
     }
+  }
+  for (size_t row = 0; row < count; row++) {
+    if (is_eliminated[row]) continue;
+    place[row] = next;
+    order[next++] = row;
   }
   free(is_eliminated);
   free(queue.items);
@@ -119,12 +130,13 @@ static struct Elimination full_elimination(size_t count) {
   return result;
 }
 
-struct Elimination eliminate(size_t count, size_t late, const struct Position *positions, size_t position_count) {
+struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
+                             size_t position_count) {
   if (position_count == count * (count + 1) / 2) return full_elimination(count);
   struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
   struct Set *sets = neighbours_of(count, positions, position_count);
   size_t *place = allocate(count, sizeof *place), *end = allocate(count, sizeof *end);
-  eliminate_rows(count, late, sets, result.order, place);
+  eliminate_rows(graph, count, late, sets, result.order, place);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < sets[i].count; k++) result.start[place[sets[i].items[k]] + 1]++;
   for (size_t i = 0; i < count; i++) {

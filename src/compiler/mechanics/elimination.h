@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "algebra/graph.h"
+
 /*
  * The rows of the lower triangle of L: row i has its elements at start[i] .. start[i + 1] - 1, their columns ascending
  * and the diagonal last. Rows and columns are places in order.
@@ -22,8 +24,10 @@ struct Position {
  * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
  * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree
  * fills nothing in, and a full matrix stays as it is. A row from late on is not taken before its neighbours below late;
- * late is count for none. The caller frees the three arrays.
+ * late is count for none. Its work is counted in the graph; beyond the limit the result is no elimination. The caller frees
+ * the three arrays.
  */
-struct Elimination eliminate(size_t count, size_t late, const struct Position *positions, size_t position_count);
+struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
+                             size_t position_count);
 
 #endif

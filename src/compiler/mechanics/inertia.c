@@ -28,14 +28,14 @@ static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j
 }
 
 /* The block of these elements; members: its rows, ascending. */
-static void create_block(struct Inertia *inertia, size_t number, size_t *members, struct Position *positions,
-                         const Node *nodes, size_t position_count) {
+static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
+                         struct Position *positions, const Node *nodes, size_t position_count) {
   struct InertiaBlock *block = &inertia->blocks[number];
   struct Position *local = allocate(position_count, sizeof *local);
   for (size_t k = 0; k < position_count; k++)
     local[k] = (struct Position){inertia->place_of[positions[k].row], inertia->place_of[positions[k].column]};
   size_t late = block->count - block->constraint_count;
-  struct Elimination elimination = eliminate(block->count, late, local, position_count);
+  struct Elimination elimination = eliminate(graph, block->count, late, local, position_count);
   block->start = elimination.start;
   block->column = elimination.column;
   block->coordinates = elimination.order;
@@ -50,7 +50,8 @@ static void create_block(struct Inertia *inertia, size_t number, size_t *members
 }
 
 /* count: all rows, the last of which are those of constraints. */
-static struct Inertia *create_blocks(size_t count, size_t constraint_count, struct Elements *elements) {
+static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
+                                     struct Elements *elements) {
   struct Components components = find_components(count, elements);
   size_t *start = sort_by_components(elements, &components);
   struct Inertia *inertia = allocate(1, sizeof *inertia);
@@ -66,7 +67,7 @@ static struct Inertia *create_blocks(size_t count, size_t constraint_count, stru
   for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
   for (size_t b = 0; b < components.count; b++) {
-    create_block(inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
+    create_block(graph, inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
                  start[b + 1] - start[b]);
     free(members[b]);
   }
@@ -97,11 +98,12 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
 }
 
 /* The same matrix with the borders J and J^T. */
-static struct Inertia *border(size_t count, struct Elements *elements, const struct Constraints *constraints) {
+static struct Inertia *border(const struct Graph *graph, size_t count, struct Elements *elements,
+                              const struct Constraints *constraints) {
   const struct Elements *jacobian = &constraints->jacobian;
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
-  struct Inertia *inertia = create_blocks(count + constraints->count, constraints->count, elements);
+  struct Inertia *inertia = create_blocks(graph, count + constraints->count, constraints->count, elements);
   add_oblique(inertia, &constraints->oblique);
   return inertia;
 }
@@ -110,11 +112,11 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
                                struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   struct Elements elements = elements_of(model, momentum);
-  struct Inertia *inertia = create_blocks(count, 0, &elements);
+  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
   if (!is_right || constraints->count > 0) {
     inertia_free(inertia);
-    inertia = is_right ? border(count, &elements, constraints) : NULL;
+    inertia = is_right ? border(model->graph, count, &elements, constraints) : NULL;
   }
   elements_free(&elements);
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;

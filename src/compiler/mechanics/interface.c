@@ -371,7 +371,7 @@ size_t interface_find(const struct Interface *interface, enum VariableKind kind,
 }
 
 long interface_max_steps(const struct Model *model) {
-  return isnan(model->max_steps) ? 10000000 : (long)model->max_steps;
+  return isnan(model->max_steps) ? 0 : (long)model->max_steps;
 }
 
 double interface_tolerance(const struct Model *model) {

@@ -152,7 +152,8 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
         "coordinates; expected the method 'taylor', or a smaller system",
         expressions->interface->method->name, JACOBIAN_LIMIT);
   else if (expressions->interface->method->factors)
-    expressions->jacobian->factors = lu_pattern_create(expressions->jacobian, expressions->equations->count);
+    expressions->jacobian->factors =
+        lu_pattern_create(model->graph, expressions->jacobian, expressions->equations->count);
 }
 
 /* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */

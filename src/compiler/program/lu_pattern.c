@@ -33,10 +33,11 @@ static bool is_sparse(const struct Elimination *pattern, size_t coordinates) {
   return coordinates >= 16 && pattern->start[coordinates] <= coordinates * coordinates / 6;
 }
 
-struct Elimination *lu_pattern_create(const struct JacobianExpressions *jacobian, size_t coordinates) {
+struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
+                                      size_t coordinates) {
   struct Position *positions = allocate(jacobian->count + coordinates, sizeof *positions);
   struct Elimination *pattern = allocate(1, sizeof *pattern);
-  *pattern = eliminate(coordinates, coordinates, positions, find_positions(jacobian, coordinates, positions));
+  *pattern = eliminate(graph, coordinates, coordinates, positions, find_positions(jacobian, coordinates, positions));
   free(positions);
   if (is_sparse(pattern, coordinates)) return pattern;
   lu_pattern_free(pattern);

@@ -6,7 +6,8 @@
 #include "program/expressions.h"
 
 /* For so many coordinates; NULL where full matrices are cheaper. Free with lu_pattern_free(). */
-struct Elimination *lu_pattern_create(const struct JacobianExpressions *jacobian, size_t coordinates);
+struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
+                                      size_t coordinates);
 void lu_pattern_free(struct Elimination *pattern);
 
 #endif

@@ -113,9 +113,14 @@ static bool is_missing(const struct Values *values, Node node) {
   return !is_fetched(values->needs, node) && !values->has_local[node];
 }
 
+/* Steps for a node that a routine needs, which becomes an instruction and a line of code. */
+enum { COMPUTE_WORK = 10 };
+
 void values_compute(struct Values *values, const Node *targets, size_t count, bool preparing) {
   struct Needs *needs = values->needs;
+  if (graph_limit(values->graph) != NULL) return; /* nothing is written then */
   needs_collect(needs, targets, count, preparing);
+  graph_work(values->graph, COMPUTE_WORK * needs->cone->count);
   const struct Cone *cone = needs->cone;
   bool *needed = allocate(cone->count, sizeof *needed);
   for (size_t i = 0; i < count; i++) needed[cone_place(cone, targets[i])] = true;

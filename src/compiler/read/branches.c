@@ -8,6 +8,9 @@
 #include "mechanics/switches.h"
 #include "memory.h"
 
+/* Indicators that are compared in a step of work. */
+enum { COMPARISONS = 8 };
+
 unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;
   unsigned kinds = graph->vertices[node].kinds;
@@ -23,6 +26,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
 /* The mode of the switch with this indicator; a new one where there is none. */
 static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line) {
   struct Switches *switches = scope->switches;
+  graph_work(scope->graph, switches->count / COMPARISONS);
   for (size_t i = switches->count; i-- > 0;)
     if (switches->items[i].indicator == indicator) return switches->items[i].mode;
   char *name = format_text("%s in line %ld", function, scope_line(scope, line));

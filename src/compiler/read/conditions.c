@@ -73,15 +73,25 @@ static bool is_group(const struct Parser *parser) {
   return compares && strchr("+-*/^<>", *next == '\0' ? ' ' : *next) == NULL;
 }
 
-static Node parse_factor(struct Parser *parser) {
-  if (accept_word(parser, "not")) return negation(parser->graph, parse_factor(parser));
-  skip_space(parser);
+static Node parse_group(struct Parser *parser) {
   if (*parser->next != '(' || !is_group(parser)) return parse_relation(parser);
   parser->next++;
   if (++parser->nesting > 100) FAIL(parser, "%s: more than 100 nested conditions", parser->place.what);
   Node condition = parser->failed ? ZERO : parse_condition(parser);
   parser->nesting--;
   expect_character(parser, ')', "to close a condition");
+  return condition;
+}
+
+/* Of not not ... the last two make 1 or 0 of the condition; those before change nothing but which of them it is. */
+static Node parse_factor(struct Parser *parser) {
+  long negations = 0;
+  for (; accept_word(parser, "not"); negations++) {
+  }
+  skip_space(parser);
+  Node condition = parse_group(parser);
+  for (long i = negations > 2 ? 2 - negations % 2 : negations; i > 0; i--)
+    condition = negation(parser->graph, condition);
   return condition;
 }
 

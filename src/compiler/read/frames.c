@@ -80,6 +80,8 @@ static char *whole_name(bool is_frame, const char *name) {
 }
 
 static void collect(struct Reader *reader, xmlNodePtr node, char *name, const char *attribute) {
+  enum { DEFINITION_WORK = 400 };
+  graph_work(reader->model->graph, DEFINITION_WORK);
   definitions_add(reader->definitions, name, &(struct NamedExpression){node, attribute, reader->source, NULL});
 }
 

@@ -16,7 +16,7 @@
 #include "read/tables.h"
 #include "read/unknown_names.h"
 
-enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 20 };
+enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 50 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [PARAMETER] = "parameters",

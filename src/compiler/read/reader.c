@@ -19,7 +19,7 @@
 #include "read/switching_reader.h"
 #include "read/xml.h"
 
-enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 100 };
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
 
 /* An index beyond could not be counted on in doubles. */
 static const double index_limit = 1e9;
@@ -112,6 +112,7 @@ static void read_include(struct Reader *reader, xmlNodePtr node, enum Pass pass)
 static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
+    graph_work(reader->model->graph, ELEMENT_WORK);
     if (is_element(node, "for")) read_repetition(reader, node, pass);
     else if (is_element(node, "include")) read_include(reader, node, pass);
     else read_element(reader, node, pass);

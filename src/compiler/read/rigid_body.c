@@ -1,6 +1,7 @@
 #include "read/rigid_body.h"
 
 #include <math.h>
+#include <stddef.h>
 
 const struct Placement no_displacement = {.rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
 
@@ -111,6 +112,25 @@ struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBo
 
 static double trace(const struct Matrix3 *matrix) {
   return matrix->at[0][0] + matrix->at[1][1] + matrix->at[2][2];
+}
+
+/* How far the numbers are from finite ones: NaN, else 0. */
+static double defect(const double *numbers, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) sum += numbers[i] - numbers[i];
+  return sum;
+}
+
+static double defect_of(const struct Matrix3 *matrix) {
+  return defect(matrix->at[0], 3) + defect(matrix->at[1], 3) + defect(matrix->at[2], 3);
+}
+
+bool placement_is_finite(const struct Placement *placement) {
+  return defect_of(&placement->rotation) + defect(placement->translation, 3) == 0;
+}
+
+bool body_is_finite(const struct RigidBody *body) {
+  return defect(&body->mass, 1) + defect(body->center, 3) + defect_of(&body->tensor) == 0;
 }
 
 bool body_has_inertia(const struct RigidBody *body) {

@@ -40,6 +40,10 @@ struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBo
 /* Whether it resists any motion: has a mass or a moment of inertia. */
 bool body_has_inertia(const struct RigidBody *body);
 
+/* Whether all numbers of them are finite. */
+bool placement_is_finite(const struct Placement *placement);
+bool body_is_finite(const struct RigidBody *body);
+
 /*
  * Whether no principal moment of inertia is negative, or larger than the other two together, as they are for any mass that is spread in
  * space; a hundredth of their sum is granted for the digits of files.

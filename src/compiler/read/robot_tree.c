@@ -1,6 +1,7 @@
 #include "read/robot_tree.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -188,9 +189,21 @@ static void order_links(struct Connection *connection) {
   free(reached);
 }
 
+/* Sums and products of numbers in the file may be beyond all numbers. */
+static void check_numbers(struct Connection *connection, const struct Link *link) {
+  if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
+  report_error(
+      connection->diagnostics, link->line,
+      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is no finite number; "
+      "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
+      link->name, link->carrier->name);
+}
+
 /* Each link with the one that carries it; bodies that are fixed to each other become one. */
-static void join_fixed_links(struct Robot *robot) {
-  for (struct Link *link = robot->root; link != NULL; link = link->next) {
+static void join_fixed_links(struct Connection *connection) {
+  const struct Robot *robot = connection->robot;
+  int errors = connection->diagnostics->errors;
+  for (struct Link *link = robot->root; link != NULL && connection->diagnostics->errors == errors; link = link->next) {
     link->carrier = link;
     link->place = no_displacement;
     if (link->joint != NULL && !joint_moves(link->joint)) {
@@ -200,6 +213,7 @@ static void join_fixed_links(struct Robot *robot) {
     }
     struct RigidBody body = body_seen_from(&link->place, &link->body);
     link->carrier->carried = body_joined(&link->carrier->carried, &body);
+    check_numbers(connection, link);
   }
 }
 
@@ -229,6 +243,12 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
     joint->ratio *= leader->multiplier;
     leader = mimicked_by(connection, leader);
   }
+  if (!isfinite(joint->ratio) || !isfinite(joint->shift))
+    report_error(
+        connection->diagnostics, joint->line,
+        "the joint '%s' follows '%s' by %g of its position and %g, which is more than a number can be; expected "
+        "smaller multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
+        joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift, joint->name);
   joint->leader = leader;
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
@@ -274,7 +294,7 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
   if (diagnostics->errors == errors) order_links(&connection);
   for (size_t i = 0; i < robot->joint_count && diagnostics->errors == errors; i++)
     find_leader(&connection, robot->joints[i]);
-  if (diagnostics->errors == errors) join_fixed_links(robot);
+  if (diagnostics->errors == errors) join_fixed_links(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
   register_free(&connection.links);
   register_free(&connection.joints);

@@ -21,7 +21,25 @@ struct Choices {
 struct Check {
   xmlDocPtr schema;
   struct Diagnostics *diagnostics;
+  xmlNodePtr last; /* the element behind which nothing is checked; NULL for none */
 };
+
+/* libxml2 counts for each error all elements before: what follows the last one that is told is hidden from it. */
+static void hide_rest(struct Check *check, xmlNodePtr element) {
+  check->last = element;
+  for (xmlNodePtr node = element; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
+    node->_private = node->next;
+    node->next = NULL;
+  }
+}
+
+static void show_rest(struct Check *check) {
+  for (xmlNodePtr node = check->last; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
+    node->next = node->_private;
+    node->_private = NULL;
+  }
+  check->last = NULL;
+}
 
 static bool is_named(const xmlNode *node, const char *name) {
   return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
@@ -227,8 +245,9 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
 }
 
 static void report_schema_error(void *context, xmlErrorPtr error) {
-  const struct Check *check = context;
+  struct Check *check = context;
   xmlNodePtr element = error->node;
+  if (check->last != NULL) return;
   if (element == NULL || error->message == NULL) {
     report_error(check->diagnostics, error->line, "the file does not match the schema of system.xml");
     return;
@@ -246,6 +265,7 @@ static void report_schema_error(void *context, xmlErrorPtr error) {
   case XML_SCHEMAV_CVC_ELT_1: report_root(check, element); break;
   default: report_value(check, error, element);
   }
+  if (check->diagnostics->errors > ERROR_LIMIT && element->type == XML_ELEMENT_NODE) hide_rest(check, element);
 }
 
 void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
@@ -257,7 +277,9 @@ void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
   if (validation != NULL) {
     int errors = diagnostics->errors;
     xmlSchemaSetValidStructuredErrors(validation, (xmlStructuredErrorFunc)report_schema_error, &check);
-    if (xmlSchemaValidateDoc(validation, document) != 0 && diagnostics->errors == errors)
+    bool is_right = xmlSchemaValidateDoc(validation, document) == 0;
+    show_rest(&check);
+    if (!is_right && diagnostics->errors == errors)
       report_error(diagnostics, 0, "the file does not match the schema of system.xml");
   } else {
     report_error(diagnostics, 0, "the schema of system.xml cannot be used; expected libxml2 with schema support");

@@ -8,6 +8,7 @@
 #include "memory.h"
 #include "read/robot_system.h"
 #include "read/schema.h"
+#include "read/source_text.h"
 
 /* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. Free with free(). */
 static char *meaning_of(const xmlError *error) {
@@ -65,7 +66,6 @@ static char *meaning_of(const xmlError *error) {
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *told = diagnostics;
-  if (error->code == XML_IO_LOAD_ERROR) return;                     /* xml_load() tells of a file that cannot be read */
   if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
   char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
   if (meaning != NULL) message = meaning;
@@ -89,13 +89,14 @@ static void refuse_document_type(void *context, const xmlChar *name, const xmlCh
   xmlStopParser(parser);
 }
 
-static xmlDocPtr parse(const char *path, struct Diagnostics *diagnostics) {
+static xmlDocPtr parse(const char *path, const char *text, size_t length, struct Diagnostics *diagnostics) {
   xmlParserCtxtPtr parser = xmlNewParserCtxt();
   if (parser == NULL) return NULL;
   parser->_private = diagnostics;
   parser->sax->internalSubset = refuse_document_type;
   int errors = diagnostics->errors;
-  xmlDocPtr document = xmlCtxtReadFile(parser, path, NULL, XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
+  enum { OPTIONS = XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA };
+  xmlDocPtr document = xmlCtxtReadMemory(parser, text, (int)length, path, NULL, OPTIONS);
   xmlFreeParserCtxt(parser);
   if (diagnostics->errors == errors) return document;
   xmlFreeDoc(document);
@@ -103,8 +104,11 @@ static xmlDocPtr parse(const char *path, struct Diagnostics *diagnostics) {
 }
 
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
+  size_t length;
+  char *text = source_text(path, &length, diagnostics);
   xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
-  xmlDocPtr document = parse(path, diagnostics);
+  xmlDocPtr document = text != NULL ? parse(path, text, length, diagnostics) : NULL;
+  free(text);
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
   xmlSetStructuredErrorFunc(NULL, NULL);

@@ -213,7 +213,48 @@ static void write_operations(FILE *file, const struct Program *program) {
           squares, elements);
 }
 
-/* NULL for a system without coordinates. */
+static double operations_or_none(const struct Routine *routine) {
+  return routine != NULL ? operations_of(routine) : 0.0;
+}
+
+/* For orders and iterations as they are at middling tolerances. */
+enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
+
+/* Of an evaluation of the equations by a method of Runge and Kutta or an implicit one, with its share in linear algebra. */
+static double work_of_evaluation(const struct Program *program) {
+  double work = 250.0 + operations_of(program->derivatives);
+  if (program->jacobian == NULL) return work;
+  double elements, squares, systems = 4.0 * STAGES - 2.0;
+  count_factors(program, &elements, &squares);
+  return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
+         (operations_of(program->jacobian) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
+}
+
+static double work_of_series(const struct Program *program) {
+  double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
+  return 380.0 + 4.0 * operations_of(program->derivatives) +
+         ORDER * (0.5 * operations_of(program->series->order) + 1.5 * states + 0.45 * ORDER * recurrences);
+}
+
+/*
+ * What counts against the limit of work in a communication step: each evaluation; each step, which takes what the series take
+ * beyond one, is brought back to the constraints and is searched for events; each event. The constants were fitted like those
+ * of auto.c, to the times of the systems in fmu/.
+ */
+static void write_work(FILE *file, const struct Program *program) {
+  enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };
+  bool has_series = program->interface->method->series == ALL_TERMS && program->series != NULL;
+  double share = program->correct_velocities != NULL ? 2.0 : 1.0;
+  double evaluation = share * work_of_evaluation(program);
+  double step = 250.0 + CORRECTIONS * (operations_or_none(program->correct_positions) +
+                                       operations_or_none(program->correct_velocities));
+  if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
+  if (program->indicators != NULL)
+    step +=
+        SEARCHES * (LOOK + operations_of(program->indicators) + 2.0 * ORDER * (double)program->interface->state_count);
+  fprintf(file, "    .work = {%.0f, %.0f, %.0f},\n", evaluation, step,
+          EVENT + 4.0 * evaluation + operations_or_none(program->switching_values));
+}
 
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count, bool has_arrays) {
   const struct Interface *interface = program->interface;
@@ -239,6 +280,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
   if (lu != NULL && program->expressions->jacobian->factors != NULL)
     fputs("    .lu_pattern = {lu_place, lu_start, lu_column},\n", file);
   write_functions(file, program);
+  if (solver != NULL) write_work(file, program);
   if (interface->method != NULL && interface->method->hands_over) write_operations(file, program);
   fputs("};\n", file);
 }

@@ -28,8 +28,9 @@ enum {
 };
 /* How many times the work of a vain trial the series do before the next one: at first, at most. */
 enum { SHORT_PATIENCE = 2, LONG_PATIENCE = 256 };
-static const double GROWTH = 1.25;      /* of progress from window to window that keeps a trial alive */
-static const double FIRST_GROWTH = 8.0; /* of the first step of Radau IIA over the last one of the series */
+static const double LARGEST_WORK = 1e15; /* operations that no window or trial comes to: days of work */
+static const double GROWTH = 1.25;       /* of progress from window to window that keeps a trial alive */
+static const double FIRST_GROWTH = 8.0;  /* of the first step of Radau IIA over the last one of the series */
 
 /* What the situation holds after what the method at work keeps. */
 struct Choice {
@@ -67,13 +68,15 @@ static size_t auto_saved_size(void) {
 static bool auto_could_save(const struct Situation *situation, const void *saved) {
   struct Choice choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
-  return choice.method >= 0 && choice.method < AUTO_METHODS && choice.steps >= 0 && choice.restarts >= 0 &&
-         choice.windows >= 0 && choice.patience >= 0 && choice.next_patience >= 0 &&
-         choice.next_patience <= 2 * LONG_PATIENCE && choice.stay >= 0 && choice.stay <= 4 * LONG_STAY &&
-         isfinite(choice.begin) && choice.work >= 0.0 && choice.last_speed >= 0.0 && choice.trial_work >= 0.0 &&
-         isfinite(choice.trial_work) && choice.promised_step >= 0.0 && isfinite(choice.work) &&
-         choice.taylor_speed >= 0.0 && choice.taylor_rate >= 0.0 && choice.rate >= 0.0 &&
-         solvers[choice.method]->could_save(situation, saved);
+  const int64_t counts[] = {choice.steps, choice.restarts,      choice.windows, choice.patience,
+                            choice.stay,  choice.next_patience, choice.crosses, choice.is_trial};
+  return choice.method >= 0 && choice.method < AUTO_METHODS &&
+         snapshot_are_counts(counts, sizeof counts / sizeof *counts) && choice.steps <= window[choice.method] &&
+         choice.next_patience <= 2 * LONG_PATIENCE && choice.stay <= 4 * LONG_STAY && choice.is_trial <= 1 &&
+         choice.crosses <= 1 && isfinite(choice.begin) && choice.work >= 0.0 && choice.work <= LARGEST_WORK &&
+         choice.last_speed >= 0.0 && choice.trial_work >= 0.0 && choice.trial_work <= LARGEST_WORK &&
+         choice.promised_step >= 0.0 && isfinite(choice.promised_step) && choice.taylor_speed >= 0.0 &&
+         choice.taylor_rate >= 0.0 && choice.rate >= 0.0 && solvers[choice.method]->could_save(situation, saved);
 }
 
 /* Each method finds its own memory in the instance while it works. */
