@@ -18,8 +18,8 @@ static const double smallest_share = 1e-12;
 /* Solutions keep most of their digits where the weakest constraint has more than this share. */
 static const double weak_share = 1e-3;
 
-/* What is left of a projection, squared, when the rest is rounding. */
-static const double rest_of_forces = 1e-31;
+/* What a step takes from the forces, squared, as a share of what it leaves, when it is rounding. */
+static const double rounding_of_forces = 1e-32;
 
 static double positive(double value) {
   return value > 0.0 ? value : 0.0;
@@ -102,6 +102,23 @@ static double spread_direction(size_t n, const size_t *start, const size_t *colu
   return square;
 }
 
+/*
+ * Takes from the forces what they have along N direction, which is the rest. Returns the square of what was taken as a
+ * share of what is left: whatever rounding has made of the direction, the forces do not grow.
+ */
+static double take_along(size_t n, const int *coordinate, double length, const double *rest, double *forces) {
+  double product = 0.0, left = 0.0;
+  for (size_t i = 0; i < n; i++)
+    if (coordinate[i] < 0) product += rest[i] * forces[i];
+  double share = product / length;
+  for (size_t i = 0; i < n; i++) {
+    if (coordinate[i] >= 0) continue;
+    forces[i] -= share * rest[i];
+    left += forces[i] * forces[i];
+  }
+  return share * product / left;
+}
+
 /* The conjugate gradient method for least squares |F - N y|: in exact numbers it takes a step a column at most. */
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                          double *x) {
@@ -109,12 +126,11 @@ void saddle_least_forces(size_t n, const size_t *start, const size_t *column, co
   size_t steps = 0;
   for (size_t i = 0; i < n; i++) steps += is_redundant(start, m, i) ? 3 : 0;
   if (steps == 0) return;
-  double square = project_forces(n, start, column, coordinate, m, x, rest), first = square;
+  double square = project_forces(n, start, column, coordinate, m, x, rest);
   memcpy(direction, rest, n * sizeof *direction);
-  for (; steps > 0 && square > rest_of_forces * first; steps--) {
-    double length = spread_direction(n, start, column, coordinate, m, direction, rest), share = square / length;
-    for (size_t i = 0; i < n; i++)
-      if (coordinate[i] < 0) x[i] -= share * rest[i];
+  for (; steps > 0 && square > 0.0; steps--) {
+    double length = spread_direction(n, start, column, coordinate, m, direction, rest);
+    if (!(length > 0.0) || !(take_along(n, coordinate, length, rest, x) > rounding_of_forces)) return;
     double before = square;
     square = project_forces(n, start, column, coordinate, m, x, rest);
     for (size_t i = 0; i < n; i++) direction[i] = rest[i] + square / before * direction[i];
