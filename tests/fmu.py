@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 from contextlib import contextmanager
-from ctypes import byref
+from ctypes import POINTER, byref, c_double
 from pathlib import Path
 
 import fmpy
@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
 LAGC = ROOT / "build" / "bin" / "lagc"
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
+POINTER_TO_DOUBLE = POINTER(c_double)
 
 
 def all_names():

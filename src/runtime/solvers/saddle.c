@@ -29,8 +29,8 @@ static double positive(double value) {
 }
 
 /* rest -= K x */
-static void subtract_product(size_t n, const size_t *start, const size_t *column, const double *matrix,
-                             const double *x, double *rest) {
+static void subtract_product(size_t n, const size_t *start, const size_t *column, const double *matrix, const double *x,
+                             double *rest) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = start[i]; k < start[i + 1]; k++) {
       size_t j = column[k];
