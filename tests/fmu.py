@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 from contextlib import contextmanager
-from ctypes import POINTER, byref, c_double
+from ctypes import byref, c_double
 from pathlib import Path
 
 import fmpy
@@ -26,7 +26,6 @@ ROOT = Path(__file__).resolve().parent.parent
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
 LAGC = ROOT / "build" / "bin" / "lagc"
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
-POINTER_TO_DOUBLE = POINTER(c_double)
 
 
 def all_names():
@@ -222,6 +221,16 @@ class Instance:
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
         self.time = start_time
+        return self
+
+    def put(self, values, time=0.0):
+        """Model exchange in continuous-time mode at these values, whose states need not fulfil the constraints."""
+        values, states = dict(values), [unknown.variable.derivative.name for unknown in self.description.derivatives]
+        self.reset().initialize(start_time=time)
+        self.set({name: value for name, value in values.items() if name not in states})
+        self.fmu.enterContinuousTimeMode()
+        state = (c_double * len(states))(*(values.get(name, self.get(name)) for name in states))
+        self.fmu.setContinuousStates(state, len(states))
         return self
 
     def reset(self):

@@ -93,12 +93,10 @@ def assert_near(forces, jacobian, load, tolerance, share=1e-15):
 def test_hold_passes_from_one_to_another(open_fmu):
     """However near to the angle at which the first two constraints are the same."""
     near = 10.0 ** np.linspace(-17, 0, 400)
-    instance = open_fmu("Turning", kind=FMU2Model).initialize()
-    instance.fmu.enterContinuousTimeMode()
+    instance, names = open_fmu("Turning", kind=FMU2Model), ("p", "x", "y", "w", "vx", "vy")
     w = 0.7
     for p in [0.0, *near, *-near, *np.linspace(-3, 3, 200)]:
-        state = np.array([p, np.cos(p), 2 + np.sin(3 * p), w, -np.sin(p) * w, 3 * np.cos(3 * p) * w])
-        instance.fmu.setContinuousStates(state.ctypes.data_as(fmu.POINTER_TO_DOUBLE), 6)
+        instance.put(zip(names, [p, np.cos(p), 2 + np.sin(3 * p), w, -np.sin(p) * w, 3 * np.cos(3 * p) * w]))
         ax, ay = -np.cos(p) * w**2 - 0.3 * np.sin(p), -9 * np.sin(3 * p) * w**2 + 0.9 * np.cos(3 * p)
         jacobian = np.array([[1, 0], [np.cos(p), np.sin(p)], [0, 1]])
         # A constraint that differs from others by less than 1e-6 counts as one that follows.
