@@ -273,6 +273,12 @@ class Instance:
         self.fmu.fmi2FreeFMUstate(self.fmu.component, byref(state))
 
 
+def complaints_about(source, compiler):
+    """What a compiler of plain C11 says of an FMU's source with all its warnings; nothing where it takes it."""
+    words = [compiler, "-std=c11", "-pedantic-errors", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-fsyntax-only", source]
+    return subprocess.run(words, capture_output=True, text=True).stderr
+
+
 def lagc(*words, cwd=None):
     return subprocess.run([LAGC, *map(str, words)], capture_output=True, text=True, cwd=cwd, timeout=120)
 
