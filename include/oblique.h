@@ -13,7 +13,7 @@
 
 #include "arithmetic.h"
 
-#define OBLIQUE_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 3 * (n))
+#define OBLIQUE_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
 /* The same as those of saddle.h. */
 size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);

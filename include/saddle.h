@@ -3,16 +3,16 @@
  * each constraint comes after its coordinates: then no pivoting is needed, and the pivots of the constraints, those of
  * -J M^-1 J^T, are negative. For blocks of the mass matrix with constraints.
  *
- * m holds the e elements of K's pattern, SADDLE_MASS(e) numbers in all: the factors, K itself, and the share that is left of
- * the weakest constraint's row. Right sides are arrays of SADDLE_SIDE(n) numbers.
+ * m holds the e elements of K's pattern, SADDLE_MASS(e, n) numbers in all: the factors, K itself, the share that is left of
+ * the weakest constraint's row, and workspace. Right sides are arrays of SADDLE_SIDE(n) numbers.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
 
 #include <stddef.h>
 
-#define SADDLE_MASS(elements) (2 * (elements) + 1)
-#define SADDLE_SIDE(n) (3 * (n))
+#define SADDLE_MASS(elements, n) (2 * (elements) + 1 + 2 * (n))
+#define SADDLE_SIDE(n) (4 * (n))
 
 /*
  * Replaces K by L (below the diagonal) and D (on it); coordinate: positive numbers of the rows of M, negative ones of

@@ -58,6 +58,10 @@ function(one_file system name file)
  * For a shared library, leave it undefined.
  */
 #define FMU_IN_ONE_FILE
+#ifdef __GNUC__ /* a system needs few of the functions and arguments */
+#pragma GCC diagnostic ignored \"-Wunused-function\"
+#pragma GCC diagnostic ignored \"-Wunused-parameter\"
+#endif
 ${names}
 #if defined(${fmi}_FUNCTION_PREFIX) && !defined(${fmi}_OVERRIDE_FUNCTION_PREFIX)
 #define ${fmi}_PASTE(prefix, name) prefix##name

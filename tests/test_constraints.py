@@ -203,15 +203,12 @@ def test_accelerations_and_forces(name, define, open_fmu):
     """At random states, which need not fulfil the constraints; the forces with their signs."""
     definition, constraints = define()
     random = np.random.default_rng(3)
-    instance = open_fmu(name)
+    instance = open_fmu(name, kind=FMU2Model)
     symbols = [symbol.name for symbol in definition.arguments]
     states = fmu.states_of(name)
     for _ in range(50):
         values = random.uniform(0.3, 1.5, len(symbols))
-        instance.reset()
-        instance.fmu.setupExperiment(startTime=values[0])
-        instance.set(dict(zip(symbols[1:], values[1:])))
-        instance.fmu.enterInitializationMode()
+        instance.put(zip(symbols[1:], values[1:]), values[0])
         velocities = states[len(states) // 2 :]
         ours = instance.get(*[f"der({v})" for v in velocities], *[f"{c}.force" for c in constraints])
         np.testing.assert_allclose(ours, definition.solve(values), rtol=1e-9, atol=1e-9)
@@ -314,18 +311,14 @@ def test_every_method(method, open_fmu):
 
 def test_directional_derivatives(open_fmu):
     """Of accelerations, forces and an output of both, against central differences."""
-    instance = open_fmu("Slider")
-    instance.fmu.setupExperiment()
-    instance.fmu.enterInitializationMode()
+    instance = open_fmu("Slider", kind=FMU2Model)
     known = ["x", "y", "s", "vx", "vy", "vs", "g", "R"]
     unknown = ["der(vx)", "der(vs)", "pressure"]
     for name in known:
-        value, values = instance.get(name), []
+        value, values = instance.put({}).get(name), []
         ours = instance.fmu.getDirectionalDerivative(instance.vr(*unknown), instance.vr(name), [1.0])
         for sign in (1, -1):
-            instance.set({name: value + sign * 1e-6})
-            values.append(np.array(instance.get(*unknown)))
-        instance.set({name: value})
+            values.append(np.array(instance.put({name: value + sign * 1e-6}).get(*unknown)))
         np.testing.assert_allclose(ours, (values[0] - values[1]) / 2e-6, rtol=1e-6, atol=1e-6)
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+import fmu
 from closed_forms import pendulum_angle
 from fmu import ROOT, Instance, build_systems, lagc
 
@@ -202,6 +203,13 @@ def examples():
 
 def test_every_example_is_checked():
     assert set(MOTIONS) == set(EXAMPLES)
+
+
+def test_examples_are_plain_c11():
+    """Each for one compiler and, as they come, the other."""
+    for i, name in enumerate(EXAMPLES):
+        source = fmu.unpacked(name) / "sources" / f"{name}.c"
+        assert fmu.complaints_about(source, ["gcc", "clang"][i % 2]) == "", name
 
 
 @pytest.mark.parametrize("name", MOTIONS)

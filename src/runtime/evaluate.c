@@ -37,7 +37,7 @@ enum Status discard_for_singularity(struct Instance *instance) {
 }
 
 enum Status evaluate_prepare(struct Instance *instance) {
-  if (lagrangian.switching != NULL && is_before_start(instance) && !instance->is_starting) {
+  if (lagrangian.switching != NULL && is_before_start(instance) && !instance->modes_stay) {
     lagrangian.switching->guess(instance);
     instance->prepared_is_stale = true;
   }

@@ -5,6 +5,7 @@
 #include "initial_state.h"
 #include "projection.h"
 #include "solver.h"
+#include "start.h"
 #include "switching.h"
 
 static size_t set_count(void) {
@@ -43,7 +44,7 @@ void instance_reset(struct Instance *instance) {
   initial_state_follow(instance);
   instance->situation->changed = CHANGED_VALUES;
   instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->told_early_reading = false;
+  instance->told_early_reading = instance->told_impossible_start = false;
   instance->told_singularity = 0;
 }
 
@@ -58,7 +59,7 @@ static size_t switching_work_count(void) {
 
 static size_t evaluation_count(void) {
   return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + switching_work_count() +
-         2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+         start_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
          lagrangian.parameter_count + 1;
 }
 
@@ -74,7 +75,8 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->point_work = instance->prepared + lagrangian.prepared_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
-  instance->acceleration = instance->switching_work + switching_work_count();
+  instance->start_work = instance->switching_work + switching_work_count();
+  instance->acceleration = instance->start_work + start_work_count();
   if (lagrangian.switching != NULL)
     instance->event_state = instance->switching_work + lagrangian.switching->work_count();
   instance->work = instance->acceleration + 2 * acceleration_count();

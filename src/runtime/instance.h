@@ -71,20 +71,24 @@ struct Instance {
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
   bool prepared_is_stale;
-  bool is_starting;          /* the modes of the start are being found */
-  bool solver_is_stale;      /* the situation was replaced: what the solver keeps outside of it no longer counts */
-  bool told_early_reading;   /* that a variable was read before it should be, since the last reset */
-  uint64_t told_singularity; /* the checksum of the situation whose lack of accelerations was logged last */
-  int singular;              /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
-  const char *limited_by;    /* the elementary function that shortened the solver's last step; NULL for none */
-  double *work;              /* 3 state_count + 2 input_count + parameter_count, for evaluations */
-  double *point_work;        /* lagrangian.work_count, for generated functions */
-  double *projection_work;   /* projection_work_count() */
-  double *switching_work;    /* switching->work_count() */
-  double departure;          /* the sign with which a branch that rested at 0 leaves it, as found last */
-  bool uses_event_mode;      /* of a co-simulation: the importer goes through events between steps */
-  bool stops_at_events;      /* and an event ends the step */
-  bool was_at_zero;          /* what changed its sign last had not left 0 by more than rounding before */
+  bool modes_stay;            /* before the start too: those of the start are being found, or shown */
+  bool solver_is_stale;       /* the situation was replaced: what the solver keeps outside of it no longer counts */
+  bool told_early_reading;    /* that a variable was read before it should be, since the last reset */
+  bool start_exists;          /* of the values that it was looked for last, see start.h */
+  bool shows_start;           /* the values are those of the start, not those that were set */
+  bool told_impossible_start; /* that there is none, since the last reset */
+  uint64_t told_singularity;  /* the checksum of the situation whose lack of accelerations was logged last */
+  int singular;               /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  const char *limited_by;     /* the elementary function that shortened the solver's last step; NULL for none */
+  double *work;               /* 3 state_count + 2 input_count + parameter_count, for evaluations */
+  double *point_work;         /* lagrangian.work_count, for generated functions */
+  double *projection_work;    /* projection_work_count() */
+  double *switching_work;     /* switching->work_count() */
+  double *start_work;         /* start_work_count() */
+  double departure;           /* the sign with which a branch that rested at 0 leaves it, as found last */
+  bool uses_event_mode;       /* of a co-simulation: the importer goes through events between steps */
+  bool stops_at_events;       /* and an event ends the step */
+  bool was_at_zero;           /* what changed its sign last had not left 0 by more than rounding before */
   double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;

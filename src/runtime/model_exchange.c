@@ -6,6 +6,7 @@
 #include "check.h"
 #include "evaluate.h"
 #include "projection.h"
+#include "start.h"
 #include "switching.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
@@ -32,7 +33,9 @@ enum Status exchange_set_states(struct Instance *instance, const double *state, 
 
 enum Status exchange_get_states(struct Instance *instance, double *state, size_t count, const char *function) {
   if (!check_states(instance, state, count, function)) return STATUS_ERROR;
+  start_show(instance, function);
   if (count > 0) memcpy(state, instance->state, count * sizeof *state);
+  start_hide(instance);
   return STATUS_DONE;
 }
 
@@ -40,8 +43,10 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
                                      const char *function) {
   if (!check_states(instance, derivative, count, function)) return STATUS_ERROR;
   if (count == 0) return STATUS_DONE;
+  start_show(instance, function);
   enum Status status = evaluate_situation(instance, instance->work);
   if (status == STATUS_DONE) memcpy(derivative, instance->work, count * sizeof *derivative);
+  start_hide(instance);
   return status;
 }
 
@@ -59,7 +64,11 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
                      expected);
   if (count == 0) return STATUS_DONE;
   if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
-  return lagrangian.switching->indicators(instance, indicator) ? STATUS_DONE : discard_for_singularity(instance);
+  start_show(instance, function);
+  bool has_values = lagrangian.switching->indicators(instance, indicator);
+  enum Status status = has_values ? STATUS_DONE : discard_for_singularity(instance);
+  start_hide(instance);
+  return status;
 }
 
 static bool has_drifted(struct Instance *instance) {

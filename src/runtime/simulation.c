@@ -2,10 +2,7 @@
 
 #include <math.h>
 
-#include "evaluate.h"
-#include "initial_state.h"
-#include "projection.h"
-#include "switching.h"
+#include "start.h"
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
@@ -24,28 +21,8 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
   return STATUS_DONE;
 }
 
-static bool is_prepared(struct Instance *instance) {
-  instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
-  if (instance->singular == 0) instance->prepared_is_stale = false;
-  return instance->singular == 0;
-}
-
-static bool has_accelerations(struct Instance *instance) {
-  struct Point point = evaluate_point(instance);
-  return lagrangian.derivatives == NULL || evaluate_derivatives(instance, &point, instance->work);
-}
-
 enum Status simulation_start(struct Instance *instance, const char *function) {
-  if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
-  if (lagrangian.switching != NULL) lagrangian.switching->guess(instance);
-  bool is_ready = is_prepared(instance);
-  if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, function))
-    return STATUS_ERROR;
-  if (is_ready && lagrangian.switching != NULL && !lagrangian.switching->start(instance, function)) return STATUS_ERROR;
-  if (!is_ready || !has_accelerations(instance)) {
-    log_singularity(instance, STATUS_ERROR, instance->situation->time);
-    return log_error(instance, "%s: the system has no acceleration at its start values", function);
-  }
+  if (start_find(instance, function) != STATUS_DONE) return STATUS_ERROR;
   instance->situation->mode = instance->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP_COMPLETE;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);
   return STATUS_DONE;

@@ -7,13 +7,28 @@
 #include "check.h"
 #include "evaluate.h"
 #include "initial_state.h"
+#include "start.h"
 
 static enum Status worse(enum Status first, enum Status second) {
   return first > second ? first : second;
 }
 
-enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
-                       const char *function) {
+/* Whether a variable has another value at the start than the one that was set. */
+static bool follows_start(unsigned reference) {
+  if (reference >= lagrangian.variable_count) return false;
+  enum VariableKind kind = lagrangian.variables[reference].kind;
+  return kind != VARIABLE_TIME && kind != VARIABLE_INPUT && kind != VARIABLE_PARAMETER && kind != VARIABLE_STATISTIC;
+}
+
+/* Lets the variables be read, up to start_hide(). */
+static void show_for(struct Instance *instance, const unsigned *reference, size_t count, const char *function) {
+  bool any = false;
+  for (size_t i = 0; i < count; i++) any |= follows_start(reference[i]);
+  if (any) start_show(instance, function);
+}
+
+static enum Status get_values(struct Instance *instance, const unsigned *reference, size_t count, double *value,
+                              const char *function) {
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_REAL, function);
@@ -23,8 +38,16 @@ enum Status values_get(struct Instance *instance, const unsigned *reference, siz
   return status;
 }
 
-enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
-                             enum VariableType type, const char *function) {
+enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
+                       const char *function) {
+  show_for(instance, reference, count, function);
+  enum Status status = get_values(instance, reference, count, value, function);
+  start_hide(instance);
+  return status;
+}
+
+static enum Status get_whole_values(struct Instance *instance, const unsigned *reference, size_t count, int *value,
+                                    enum VariableType type, const char *function) {
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
@@ -37,6 +60,14 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
     value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
   }
   return STATUS_DONE;
+}
+
+enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
+                             enum VariableType type, const char *function) {
+  show_for(instance, reference, count, function);
+  enum Status status = get_whole_values(instance, reference, count, value, type, function);
+  start_hide(instance);
+  return status;
 }
 
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,

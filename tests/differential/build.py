@@ -4,6 +4,7 @@ import functools
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import fmpy
 
@@ -70,9 +71,16 @@ def compile_system(system, folder):
 def pack(system, folder, library):
     """As users get it: packed, and unpacked by FMPy."""
     archive = folder / f"{system.name}.fmu"
-    words = ["cmake", "-D", f"FOLDER={folder / 'fmu'}", "-D", f"LIBRARY={library}", "-D", f"FMU={archive}", "-D", f"SOURCE={ROOT}", "-D", f"NAMES={BUILD / 'global_names'}",
-             "-D", f"ICON={BUILD / 'bin' / 'icon'}", "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
+    target = folder / "fmu"
+    drawn = run([BUILD / "bin" / "icon", library, target / "modelDescription.xml", target / "model.png"], "icon")
+    words = ["cmake", "-D", f"FOLDER={target}", "-D", f"LIBRARIES={library}", "-D", f"FMU={archive}", "-D", "VERSION=2",
+             "-D", f"SYSTEM={folder / 'system.xml'}", "-D", f"SOURCE={ROOT}", "-D", f"NAMES={BUILD / 'global_names'}",
+             "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
     result = run(words, "pack.cmake")
-    if result.returncode != 0:
-        raise Wrong(f"pack.cmake: {result.stderr[:1000]}")
-    return fmpy.extract(str(archive), str(folder / "unpacked"))
+    if drawn.returncode != 0 or result.returncode != 0:
+        raise Wrong(f"icon or pack.cmake: {drawn.stderr[:500]}{result.stderr[:1000]}")
+    unpacked = fmpy.extract(str(archive), str(folder / "unpacked"))
+    source = Path(unpacked) / "sources" / f"{system.name}.c"
+    if source.exists() and fmu.complaints_about(source, system.plan.compiler):
+        raise Wrong(f"one file that {system.plan.compiler} refuses: {fmu.complaints_about(source, system.plan.compiler)[:1000]}")
+    return unpacked

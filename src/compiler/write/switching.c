@@ -69,7 +69,7 @@ static bool any_rests(const struct Program *program) {
 static void write_rests(FILE *file, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   if (!any_rests(program)) return;
-  fputs("static const bool rests_on[] = {", file);
+  fputs("static const bool rests[] = {", file);
   for (size_t i = 0; i < switches->friction_count; i++)
     for (size_t j = 0; j < switches->contact_count; j++) fputs(rests_on(program, i, j) ? "true, " : "false, ", file);
   fputs("};\n\n", file);
@@ -132,7 +132,7 @@ void switching_write(FILE *file, const struct Program *program) {
             program->watched_series->acceleration_count);
   if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
-  if (any_rests(program)) fputs("    .rests_on = rests_on,\n", file);
+  if (any_rests(program)) fputs("    .rests_on = rests,\n", file);
   if (switches->friction_count > 0)
     fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
   if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);

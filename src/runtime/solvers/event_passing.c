@@ -28,9 +28,9 @@ static const char *modes_at(struct Instance *instance, double time, double *stat
 }
 
 bool switching_start(struct Instance *instance, const char *function) {
-  instance->is_starting = true;
+  instance->modes_stay = true;
   const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
-  instance->is_starting = false;
+  instance->modes_stay = false;
   if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
   return problem == NULL;
 }

@@ -26,7 +26,7 @@ struct Exact {
   int *exponent;
 };
 
-static size_t size_of(size_t order) {
+static size_t extended_size(size_t order) {
   return lagrangian.state_count + 1 + order * lagrangian.input_count;
 }
 
@@ -63,7 +63,7 @@ static void divide_block(struct Exact *exact, size_t size) {
 }
 
 static bool create(struct Instance *instance) {
-  size_t states = lagrangian.state_count, size = size_of(1 + INPUT_ORDER);
+  size_t states = lagrangian.state_count, size = extended_size(1 + INPUT_ORDER);
   size_t doubles = lagrangian.parameter_count + size + states * (size + states + lagrangian.input_count + 4);
   struct Exact *exact = instance->memory.allocate(1, sizeof *exact);
   if (exact != NULL) {
@@ -92,7 +92,7 @@ static void multiply(size_t n, const long double *a, const long double *b, long 
 
 /* Z h, its columns in the order x, 1, u, u', ... */
 static void fill_generator(struct Instance *instance, struct Exact *exact, double step) {
-  size_t states = lagrangian.state_count, inputs = lagrangian.input_count, n = size_of(exact->order);
+  size_t states = lagrangian.state_count, inputs = lagrangian.input_count, n = extended_size(exact->order);
   size_t columns = states + inputs + 1;
   lagrangian.linear(instance->parameter, instance->prepared, exact->linear);
   for (size_t i = 0; i < n * n; i++) exact->generator[i] = 0.0L;
@@ -145,7 +145,7 @@ static void balance(size_t n, long double *a, int *exponent) {
   }
 }
 
-static long double norm(size_t n, const long double *a) {
+static long double row_norm(size_t n, const long double *a) {
   long double largest = 0.0L;
   for (size_t i = 0; i < n; i++) {
     long double row = 0.0L;
@@ -156,7 +156,7 @@ static long double norm(size_t n, const long double *a) {
 }
 
 /* sum = exp(generator) - I by Taylor's series, for a norm below 1; it ends where no element changes. */
-static void expand(struct Exact *exact, size_t n) {
+static void sum_exponential(struct Exact *exact, size_t n) {
   memcpy(exact->sum, exact->generator, n * n * sizeof *exact->sum);
   memcpy(exact->term, exact->generator, n * n * sizeof *exact->term);
   bool changed = true;
@@ -194,11 +194,11 @@ static void square(struct Exact *exact, size_t n, double *identity) {
 /* Makes the norm of the generator smaller than 1/2; returns by how many halvings, or -1 where it is not finite. */
 static int reduce(struct Exact *exact, size_t n) {
   memset(exact->exponent, 0, n * sizeof *exact->exponent);
-  long double size = norm(n, exact->generator);
+  long double size = row_norm(n, exact->generator);
   if (size <= 0.5L) return 0;
   if (!isfinite(size)) return -1;
   balance(n, exact->generator, exact->exponent);
-  size = norm(n, exact->generator);
+  size = row_norm(n, exact->generator);
   int halvings = size > 0.5L ? ilogbl(size) + 2 : 0;
   long double factor = ldexpl(1.0L, -halvings);
   for (size_t i = 0; i < n * n; i++) exact->generator[i] *= factor;
@@ -210,7 +210,7 @@ static bool exponentiate(struct Exact *exact, size_t n) {
   size_t states = lagrangian.state_count;
   int halvings = reduce(exact, n);
   if (halvings < 0) return false;
-  expand(exact, n);
+  sum_exponential(exact, n);
   double *identity = exact->extended; /* of all variables */
   for (size_t i = 0; i < n; i++) identity[i] = 1.0;
   for (int i = 0; i < halvings; i++) square(exact, n, identity);
@@ -233,7 +233,7 @@ static bool prepare_matrix(struct Instance *instance, struct Exact *exact, doubl
     return true;
   exact->order = order;
   fill_generator(instance, exact, step);
-  exact->step = exponentiate(exact, size_of(order)) ? step : 0.0;
+  exact->step = exponentiate(exact, extended_size(order)) ? step : 0.0;
   memcpy(exact->parameter, instance->parameter, bytes);
   return exact->step != 0.0;
 }
@@ -244,7 +244,7 @@ static bool prepare_matrix(struct Instance *instance, struct Exact *exact, doubl
 static bool compute_next(struct Instance *instance, struct Exact *exact, double step) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   if (!prepare_matrix(instance, exact, step)) return false;
-  size_t n = size_of(exact->order);
+  size_t n = extended_size(exact->order);
   const double *low = instance->saved;
   memcpy(exact->extended, instance->state, states * sizeof(double));
   exact->extended[states] = 1.0;

@@ -22,7 +22,7 @@ struct Oblique {
 
 static struct Oblique oblique_of(size_t n, const size_t *start, const int *coordinate) {
   struct Oblique oblique = {.count = (size_t)coordinate[n], .force = coordinate + n + 1};
-  oblique.c = SADDLE_MASS(start[n]);
+  oblique.c = SADDLE_MASS(start[n], n);
   oblique.response = oblique.c + n * oblique.count;
   oblique.factor = oblique.response + n * oblique.count;
   oblique.pivot = oblique.factor + oblique.count * oblique.count;

@@ -18,16 +18,68 @@ static const double smallest_share = 1e-12;
 /* Solutions keep most of their digits where the weakest constraint has more than this share. */
 static const double weak_share = 1e-3;
 
-/* What is left of a projection, squared, when the rest is rounding. */
-static const double rest_of_forces = 1e-31;
+/* What rounding may make of such a share where those before it have much hold, and where one of them has the share 1 only. */
+static const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
+
+/* What a step takes from the forces, squared, as a share of what it leaves, when it is rounding. */
+static const double rounding_of_forces = 1e-32;
 
 static double positive(double value) {
   return value > 0.0 ? value : 0.0;
 }
 
+/* rest -= K x */
+static void subtract_product(size_t n, const size_t *start, const size_t *column, const double *matrix, const double *x,
+                             double *rest) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = start[i]; k < start[i + 1]; k++) {
+      size_t j = column[k];
+      rest[i] -= matrix[k] * x[j];
+      if (i != j) rest[j] -= matrix[k] * x[i];
+    }
+}
+
+/* x = L^-T e_i, of the rows up to i. */
+static void combine(const size_t *start, const size_t *column, const double *m, size_t i, double *x) {
+  memset(x, 0, i * sizeof *x);
+  x[i] = 1.0;
+  for (size_t row = i + 1; row-- > 0;)
+    for (size_t k = start[row]; k + 1 < start[row + 1]; k++) x[column[k]] -= m[k] * x[row];
+}
+
+/* w^T M w of the coordinates before row i. */
+static double square_by_mass(const size_t *start, const size_t *column, const int *coordinate, const double *matrix,
+                             size_t i, const double *w) {
+  double sum = 0.0;
+  for (size_t row = 0; row < i; row++)
+    for (size_t k = start[row]; coordinate[row] > 0 && k < start[row + 1]; k++)
+      if (coordinate[column[k]] > 0) sum += (column[k] == row ? 1.0 : 2.0) * w[row] * matrix[k] * w[column[k]];
+  return sum;
+}
+
+/*
+ * The pivot of constraint i with another sign, as the square of the motion w that the constraint and those before it leave
+ * each other: it has the digits of w, where the pivot is a difference of squares, and w is refined.
+ */
+static double hold_of(const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                      const double *matrix, size_t i, double *w) {
+  double *rest = w + i + 1;
+  combine(start, column, m, i, w);
+  memset(rest, 0, (i + 1) * sizeof *rest);
+  subtract_product(i + 1, start, column, matrix, w, rest);
+  ldlt_solve(i, start, column, m, rest);
+  for (size_t row = 0; row < i; row++) w[row] += rest[row];
+  return square_by_mass(start, column, coordinate, matrix, i, w);
+}
+
+/* Where those before it have little hold, rounding grows into what is left of a constraint. */
+static bool is_doubtful(double share, double weakest) {
+  return fabs(share) > rounding_of_share && fabs(share) * weakest < rounding_by_weakest;
+}
+
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
-  double *weakest = m + 2 * start[n];
-  memcpy(m + start[n], m, start[n] * sizeof *m);
+  double *matrix = m + start[n], *weakest = matrix + start[n], *work = weakest + 1;
+  memcpy(matrix, m, start[n] * sizeof *m);
   *weakest = 1.0;
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
@@ -39,33 +91,27 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       mobility += positive(term);
       m[k] = l;
     }
-    bool is_constraint = coordinate[i]<0, has_hold = -pivot> smallest_share * mobility;
-    if (!is_constraint && !(pivot > smallest_share_of_mass * diagonal)) return i + 1;
-    m[last] = is_constraint && !has_hold ? -INFINITY : pivot;
-    if (is_constraint && has_hold) *weakest = fmin(*weakest, -pivot / mobility);
+    if (coordinate[i] > 0) {
+      if (!(pivot > smallest_share_of_mass * diagonal)) return i + 1;
+      m[last] = pivot;
+      continue;
+    }
+    double hold = -pivot;
+    if (is_doubtful(hold / mobility, *weakest)) hold = hold_of(start, column, coordinate, m, matrix, i, work);
+    bool has_hold = hold > smallest_share * mobility;
+    m[last] = has_hold ? -hold : -INFINITY;
+    if (has_hold) *weakest = fmin(*weakest, hold / mobility);
   }
   return 0;
 }
 
-/* rest = b - K x */
-static void subtract_product(size_t n, const size_t *start, const size_t *column, const double *matrix, const double *b,
-                             const double *x, double *rest) {
-  memcpy(rest, b, n * sizeof *rest);
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = start[i]; k < start[i + 1]; k++) {
-      size_t j = column[k];
-      rest[i] -= matrix[k] * x[j];
-      if (i != j) rest[j] -= matrix[k] * x[i];
-    }
-}
-
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x) {
-  double *b = x + n, *rest = b + n;
+  double *rest = x + n;
   bool is_weak = m[2 * start[n]] < weak_share;
-  if (is_weak) memcpy(b, x, n * sizeof *b);
+  if (is_weak) memcpy(rest, x, n * sizeof *rest);
   ldlt_solve(n, start, column, m, x);
   if (!is_weak) return;
-  subtract_product(n, start, column, m + start[n], b, x, rest);
+  subtract_product(n, start, column, m + start[n], x, rest);
   ldlt_solve(n, start, column, m, rest);
   for (size_t i = 0; i < n; i++) x[i] += rest[i];
 }
@@ -102,21 +148,62 @@ static double spread_direction(size_t n, const size_t *start, const size_t *colu
   return square;
 }
 
+/*
+ * Takes from the forces what they have along N direction, which is the rest. Returns the square of what was taken as a
+ * share of what is left: whatever rounding has made of the direction, the forces do not grow.
+ */
+static double take_along(size_t n, const int *coordinate, double length, const double *rest, double *forces) {
+  double product = 0.0, left = 0.0;
+  for (size_t i = 0; i < n; i++)
+    if (coordinate[i] < 0) product += rest[i] * forces[i];
+  double share = product / length;
+  for (size_t i = 0; i < n; i++) {
+    if (coordinate[i] >= 0) continue;
+    forces[i] -= share * rest[i];
+    left += forces[i] * forces[i];
+  }
+  return share * product / left;
+}
+
 /* The conjugate gradient method for least squares |F - N y|: in exact numbers it takes a step a column at most. */
-void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
-                         double *x) {
+static void shorten_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                           size_t steps, double *x) {
   double *direction = x + n, *rest = direction + n;
-  size_t steps = 0;
-  for (size_t i = 0; i < n; i++) steps += is_redundant(start, m, i) ? 3 : 0;
-  if (steps == 0) return;
-  double square = project_forces(n, start, column, coordinate, m, x, rest), first = square;
+  double square = project_forces(n, start, column, coordinate, m, x, rest);
   memcpy(direction, rest, n * sizeof *direction);
-  for (; steps > 0 && square > rest_of_forces * first; steps--) {
-    double length = spread_direction(n, start, column, coordinate, m, direction, rest), share = square / length;
-    for (size_t i = 0; i < n; i++)
-      if (coordinate[i] < 0) x[i] -= share * rest[i];
+  for (; steps > 0 && square > 0.0; steps--) {
+    double length = spread_direction(n, start, column, coordinate, m, direction, rest);
+    if (!(length > 0.0) || !(take_along(n, coordinate, length, rest, x) > rounding_of_forces)) return;
     double before = square;
     square = project_forces(n, start, column, coordinate, m, x, rest);
     for (size_t i = 0; i < n; i++) direction[i] = rest[i] + square / before * direction[i];
   }
+}
+
+/* Gives the forces in x the load J^T F of others. */
+static void carry_load(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                       const double *others, double *x) {
+  double *missing = x + n, *load = missing + n;
+  for (size_t i = 0; i < n; i++) {
+    missing[i] = coordinate[i] < 0 ? x[i] - others[i] : 0.0;
+    load[i] = 0.0;
+  }
+  subtract_product(n, start, column, m + start[n], missing, load);
+  for (size_t i = 0; i < n; i++) missing[i] = coordinate[i] < 0 ? 0.0 : load[i];
+  saddle_solve(n, start, column, m, missing);
+  for (size_t i = 0; i < n; i++)
+    if (coordinate[i] < 0) x[i] += missing[i];
+}
+
+/* N balances only as well as the constraints before those that follow have hold: what it spoils is mended once. */
+void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                         double *x) {
+  double *given = x + 3 * n;
+  size_t steps = 0;
+  for (size_t i = 0; i < n; i++) steps += is_redundant(start, m, i) ? 3 : 0;
+  if (steps == 0) return;
+  memcpy(given, x, n * sizeof *given);
+  shorten_forces(n, start, column, coordinate, m, steps, x);
+  carry_load(n, start, column, coordinate, m, given, x);
+  shorten_forces(n, start, column, coordinate, m, steps, x);
 }
