@@ -10,6 +10,7 @@ import fmpy
 import fmu
 from fmu import BUILD, ROOT
 
+WRAPPED = [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]  # as CMakeLists.txt
 WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-parameter".split()
 TIME_LIMIT = 300  # s, for one program
 
@@ -60,7 +61,7 @@ def compile_system(system, folder):
     library.parent.mkdir(parents=True)
     speed = ["-O2"] if plan.unrolled else ["-O1", "-DSERIES_ROLLED"]
     words = [plan.compiler, *speed, *WARNINGS, "-std=gnu11", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-shared",
-             f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(plan.fmi), "-Wl,--exclude-libs,ALL",
+             f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(plan.fmi), *WRAPPED, "-Wl,--exclude-libs,ALL",
              f"-Wl,--version-script={ROOT}/src/runtime/fmi{plan.fmi}/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
     result = run(words, plan.compiler)
     if result.returncode != 0:

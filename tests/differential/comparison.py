@@ -11,7 +11,6 @@ import numpy as np
 from .build import Refused, Wrong, compile_system
 from .derivation import Derivation
 from .exact import Exact, NoValue
-from .generator import generate
 from .event_reference import EventReference
 from .reference import Reference, Undecided
 from .simulation import simulate_apart
@@ -33,12 +32,8 @@ class Outcome:
     families: set = field(default_factory=set)
 
 
-def judge(seed, number, folder, time_limit=60):
-    """The outcome of one system; folder is left with its files."""
-    return judge_system(generate(seed, number), folder, time_limit)
-
-
 def judge_system(system, folder, time_limit=60):
+    """The outcome of one system; folder is left with its files."""
     outcome = Outcome(families=system.families)
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -78,6 +78,9 @@ def guards_of(derivation):
 
 def guards_of_node(derivation, node):
     operands = [derivation.convert(operand) for operand in node.operands]
+    tables = {table.name: table for table in derivation.system.tables}
+    if node.operation in tables and derivation.system.switches:
+        return [(operands[0] - x, SCALES["min"]) for x in tables[node.operation].x]
     match node.operation:
         case "number" | "name" | "+" | "-" | "*" | "negative" | "der" | "if" | "and" | "or" | "not":
             return []

@@ -57,9 +57,10 @@ class Switches:
     modes: dict = field(default_factory=dict)
     events: list = field(default_factory=list)
     finest: float = 1e-3  # the narrowest that is there, for the truth
+    are_followed: bool = False  # from event to event
 
     def __bool__(self):
-        return bool(self.contacts or self.stops or self.frictions or self.modes or self.events)
+        return self.are_followed
 
     @property
     def all_contacts(self):

@@ -7,7 +7,7 @@ from .expressions import function, name, node
 from .frames import chain
 from .generator import follow, plan
 from .skeletons import SKELETONS, body, coordinate
-from .switches import Contact, Event, Friction, Stop
+from .switches import Contact, Event, Friction, Stop, Switches
 from .system import Action, System, Table
 
 time = name("time")
@@ -19,7 +19,7 @@ choose = lambda condition, a, b: function("if", condition, a, b)
 
 
 def generate(seed, number):
-    system = System(f"Switching{number}")
+    system = System(f"Switching{number}", switches=Switches(are_followed=True))
     draw = Draw(f"{seed}/{number}/switching", system)
     system.plan = plan(draw)
     system.plan.actions = [Action() for _ in range(draw.choice([1, 1, 3, 10, 40, 100, 100, 1000]))]
@@ -114,7 +114,7 @@ def pulse_event(draw, value, w, in_time):
     system, level = draw.system, draw.choice([0.5, 0.3, 0.9])
     label = mode(draw)
     sets = [("mode", label, name(label) + 1)]
-    if draw.chance(0.4):
+    if draw.chance(0.4) and not system.constraints:
         c = free_coordinate(draw)
         sets.append(("velocity", c.velocity, draw.value(-0.9, 0.9) * name(c.velocity) + draw.value(-0.5, 0.5)))
     if draw.chance(0.5):
@@ -228,10 +228,10 @@ def event(draw):
     level = node(round(c.start + draw.value(-0.6, 0.6), 4))
     when, direction = draw.choice([
         (q - level, "rising"), (q - level, "falling"), (q - level, "both"), (greater(q, level), None), (v - draw.value(-0.5, 0.5), "both"),
-        (function("or", greater(q, level + 0.7), less(v, -0.8)), None), (sin(7 * time), "both"),
+        (function("or", greater(q, level + 0.7), less(v, -0.8)), None), (sin(7 * time + 0.4), "both"),
         (function("and", less(q, level), function("not", greater(time, node(system.plan.start_time + 0.7)))), None)])  # fmt: skip
     sets = [("mode", label, draw.choice([name(label) + 1, 1 - name(label), q]))]
-    if draw.chance(0.3):
+    if draw.chance(0.3) and not system.constraints:
         sets.append(("velocity", c.velocity, draw.choice([-0.7 * v, 0.5 * v, v + 0.3])))
     system.switches.events.append(Event(when, direction, sets))
     other = free_coordinate(draw)
@@ -244,7 +244,7 @@ def piece(draw):
     c = free_coordinate(draw)
     q, v = name(c.name), name(c.velocity)
     level = node(round(c.start + draw.value(-0.5, 0.5), 4))
-    form = draw.choice([maximum(q - level, 0) * -3, absolute(v) * -v, minimum(q, level), choose(greater(q, level), -1, 0.5 + q - level), sign(sin(5 * time)),
+    form = draw.choice([maximum(q - level, 0) * -3, absolute(v) * -v, minimum(q, level), choose(greater(q, level), -1, 0.5 + q - level), sign(sin(5 * time + 0.4)),
                         choose(function("or", greater(q, level), greater(time, 2)), cos(q), -0.3), absolute(q - level)])  # fmt: skip
     draw.system.forces.append((c.name, draw.quantity(0.3, 1.5) * form))
 
