@@ -101,7 +101,7 @@ def compare_motion(derivation, record, folder, outcome):
     spread = np.array([spread[max(0, i - 3) : i + 4].max(axis=0) for i in range(len(spread))])
     size = np.maximum(1.0, np.abs(exact))
     bound = FACTORS[system.method] * np.maximum(spread, tolerance * size) + 20 * doubt + 1e-15 * size
-    path = np.maximum(1.0, np.nanmax(exact, axis=0) - np.nanmin(exact, axis=0))
+    path = np.maximum(1.0, np.ptp(np.nan_to_num(exact), axis=0))
     decided = False
     for i, (row, time_) in enumerate(zip(record.rows, system.plan.times)):
         for j, name in enumerate(system.columns):
