@@ -97,6 +97,10 @@ def compare_motion(derivation, record, folder, outcome):
     spread = np.zeros_like(exact)
     for seed in range(KICKS):
         spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-15, 0.5, kicks(seed, tolerance)) - exact))
+    if system.switches:  # a jump is later or earlier by what errors of all steps make
+        factor = FACTORS[system.method]
+        for seed in range(KICKS):
+            spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-15, 0.5, kicks(seed, factor * tolerance)) - exact) / factor)
     # Three differences may all be near 0 at a moment, so that neighbours in time count too.
     spread = np.array([spread[max(0, i - 3) : i + 4].max(axis=0) for i in range(len(spread))])
     size = np.maximum(1.0, np.abs(exact))
