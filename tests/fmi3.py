@@ -38,13 +38,13 @@ class Instance:
     status is worse than a warning.
     """
 
-    def __init__(self, name, kind=FMU3Slave, logging=True, token=None, **options):
+    def __init__(self, name, kind=FMU3Slave, logging=True, token=None, instance_name="instance", **options):
         self.description = description(name)
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self.messages = []
         self.fmu = kind(
             guid=token or self.description.instantiationToken, unzipDirectory=str(unpacked(name)), modelIdentifier=name,
-            instanceName="instance",
+            instanceName=instance_name,
         )  # fmt: skip
         self.fmu.component = None
         self.time = 0.0

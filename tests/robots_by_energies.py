@@ -32,9 +32,11 @@ def place(element):
 
 
 def across(axis):
-    """x and y of a planar joint whose axis is one of the axes of coordinates."""
-    i = [abs(component) for component in axis].index(1)
-    first = [mp.mpf(j == (i + 1) % 3) for j in range(3)]
+    """x and y of a planar joint: the axis of coordinates that follows the one nearest to the joint's, as far as it is across."""
+    sizes = [abs(component) for component in axis]
+    next_one = (sizes.index(max(sizes)) + 1) % 3
+    first = [(j == next_one) - axis[next_one] * axis[j] for j in range(3)]
+    first = [component / mp.norm(mp.matrix(first)) for component in first]
     second = [axis[(j + 1) % 3] * first[(j + 2) % 3] - axis[(j + 2) % 3] * first[(j + 1) % 3] for j in range(3)]
     return mp.matrix(first), mp.matrix(second)
 

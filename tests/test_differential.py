@@ -8,20 +8,24 @@ import signal
 import numpy as np
 import pytest
 
-from differential import simulation
+from differential import simulation, switching_generator
 from differential.build import Wrong
 from differential.comparison import judge_system
 from differential.derivation import Derivation
 from differential.draw import Draw, absolute, exp
-from differential.expressions import name, node
+from differential.event_reference import EventReference
+from differential.expressions import function, name, node
 from differential.generator import generate
 from differential.reference import Reference
 from differential.skeletons import coordinate, body
+from differential.switches import Contact, Event, Friction, Switches
 from differential.system import Action, Plan, System
 from references import Motion
 
 SEED = 644
 COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the fewest that have all families of equations, of any seed tried
+# Of the first systems that switch, few that have contacts, stops, frictions, events, frames, hills, and the methods.
+SWITCHING = [23, 30, 34, 47, 52]
 SMOOTH = {
     "smooth_potential",
     "smooth_force",
@@ -41,6 +45,14 @@ def test_random_system(number, tmp_path):
     system.plan.unrolled = False  # takes long to compile; the FMUs of all other tests are
     outcome = judge_system(system, tmp_path, TIME_LIMIT)
     assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
+
+
+@pytest.mark.parametrize("number", SWITCHING)
+def test_random_system_that_switches(number, tmp_path):
+    """As above, from event to event; through event mode of FMI 3.0 where the plan says so."""
+    system = switching_generator.generate(1, number)
+    outcome = judge_system(system, tmp_path, TIME_LIMIT)
+    assert outcome.verdict == "agrees", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
 
 def test_the_systems_have_everything():
@@ -116,6 +128,33 @@ def test_reference_sees_a_kink(tmp_path):
     assert q == pytest.approx(-math.sinh(5 - math.pi), rel=1e-14) and v == pytest.approx(
         -math.cosh(5 - math.pi), rel=1e-14
     )
+
+
+def test_reference_switches(tmp_path):
+    """
+    A ball under g = 2 bounces with 0.5 from 1 m and rests from t = 3 on; a mass of 1 m/s that friction of 0.5 brakes stands at
+    x = 1 from t = 2 on; a push of 1/w inside of the hill of a condition, and an event that counts it.
+    """
+    w = 1e-4
+    system = System("Known", plan=Plan(0.0, 4.0, [Action() for _ in range(8)], 1e-10), switches=Switches(are_followed=True, finest=w / 20))
+    draw = Draw(0, system)
+    for start, rate in ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0)):
+        body(draw, node(1), x=coordinate(draw, start, rate)[0])
+    hill = exp(-(((name("time") - 0.7) / node(w)) ** 2))
+    system.forces = [("q1", node(-2)), ("q3", function("if", function(">", hill, 0.5), node(1 / w), 0))]
+    system.switches.contacts.append(Contact("ground", name("q1"), 0.5))
+    system.switches.frictions.append(Friction("rub", name("v2"), node(0.5), node(0.5)))
+    system.switches.modes["n"] = 0.0
+    system.switches.events.append(Event(hill - 0.5, "both", [("mode", "n", name("n") + 1)]))
+    rows = EventReference(Derivation(system), tmp_path).trajectory(7, 1e-16, 0.5)
+    push = 2 * math.sqrt(math.log(2))
+    column = lambda label: rows[[0, 1, 3, 7, 8], system.columns.index(label)]  # at 0, 0.5, 1.5, 3.5 and 4
+    assert column("q1") == pytest.approx([1, 0.75, 0.25, 0, 0], abs=1e-12)
+    assert list(column("ground.closed")) == [0, 0, 0, 1, 1] and column("ground.force") == pytest.approx([0, 0, 0, 2, 2])
+    assert column("q2") == pytest.approx([0, 0.4375, 0.9375, 1, 1], abs=1e-14)
+    assert list(column("rub.sliding")) == [1, 1, 1, 0, 0] and list(column("n")) == [0, 0, 2, 2, 2]
+    assert column("v3") == pytest.approx([0, 0, push, push, push], rel=1e-13)
+    assert column("q3")[2:] == pytest.approx(push * np.array([0.8, 2.8, 3.3]), rel=1e-13)
 
 
 def test_reference_agrees_with_taylor_series(tmp_path):

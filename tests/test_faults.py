@@ -8,10 +8,28 @@ from fmu import ROOT
 
 sys.path.append(str(ROOT / "tests" / "faults"))
 from faults import FAULTS
+from places import Fault, find
 
 
-@pytest.mark.parametrize("place", range(len(FAULTS)))
-def test_fault_can_be_planted(place):
-    file, right, wrong, (kind, test, *_) = FAULTS[place]
-    assert (ROOT / file).read_text().count(right) == 1 and right != wrong
-    assert (ROOT / "tests" / (f"compiler/{test}.c" if kind == "ctest" else f"{test}.py")).exists()
+def test_faults_can_be_planted():
+    problems = []
+    for fault in FAULTS:
+        kind, test, *_ = fault.test
+        if not (ROOT / "tests" / (f"compiler/{test}.c" if kind == "ctest" else f"{test}.py")).exists():
+            problems.append(f"there is no test {test}")
+        try:
+            place = find(fault)
+            text = (ROOT / place.file).read_text()
+            if "".join(text[place.start : place.end].split()) == "".join(fault.wrong.split()):
+                problems.append(f"{fault.right!r} is no fault")
+        except LookupError as error:
+            problems.append(str(error))
+    assert not problems, "\n".join(problems)
+
+
+@pytest.mark.parametrize("text, function, message", [("no such words", None, "stands 0 times, in no file"),
+                                                     ("return true;", None, "stands [0-9]+ times, in modelDescription"),
+                                                     ("evaluate_prepare(instance);", "log_error", "stands 0 times")])  # fmt: skip
+def test_places_that_are_not_clear_are_refused(text, function, message):
+    with pytest.raises(LookupError, match=message):
+        find(Fault(text, "", ("ctest", "test_graph"), function))

@@ -270,6 +270,10 @@ def test_arrays(types, opened):
     assert "1 values; expected 3" in instance.messages[-1][2]
     instance.fmu.reset()
     instance.initialize(dict(F=before))
+    refused(ERROR, instance.fmu.setFloat64, instance.vr("F"), [1.0] * 4)
+    assert "4 values; expected 3" in instance.messages[-1][2]
+    instance.fmu.reset()
+    instance.initialize(dict(F=before))
     refused(ERROR, instance.fmu.getFloat64, [instance.vr("F")[0] + 1])
     assert "an element of an array" in instance.messages[-1][2]
 
@@ -325,13 +329,13 @@ def test_partial_derivatives(name, kind, opened):
 
 
 def test_output_derivatives(opened):
-    """One order for a whole array."""
+    """One order for a whole array, and another for the next."""
     instance = opened("ChainPendulum").initialize()
     instance.step(0.3)
-    references, orders = (c_uint32 * 2)(*instance.vr("theta", "omega")), (ctypes.c_int32 * 2)(1, 1)
-    values = (c_double * 20)()
-    instance.fmu.fmi3GetOutputDerivatives(instance.fmu.component, references, 2, orders, values, 20)
-    np.testing.assert_allclose(values, instance.get("der(theta)", "der(omega)"), rtol=1e-12)
+    references, values = (c_uint32 * 2)(*instance.vr("theta", "omega")), (c_double * 20)()
+    for orders, expected in (((1, 1), ("der(theta)", "der(omega)")), ((2, 1), ("der(omega)", "der(omega)"))):
+        instance.fmu.fmi3GetOutputDerivatives(instance.fmu.component, references, 2, (ctypes.c_int32 * 2)(*orders), values, 20)
+        np.testing.assert_allclose(values, instance.get(*expected), rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "DampedPendulum", "ParticleCartesian", "FourBar"])
@@ -425,8 +429,9 @@ def test_early_return(opened):
     instance = observed(opened, "DampedPendulum", importer, ["theta"], earlyReturnAllowed=True).initialize()
     event, terminate, early, last = instance.step(1.0)
     assert (event, terminate, early) == (False, False, True) and last == max(0.437, importer.calls[0][0])
-    importer.end_at = None
-    instance.step(1.0 - last)
+    importer.end_at = 5.0  # beyond the step, which ends as it would
+    assert instance.step(1.0 - last) == (False, False, False, 1.0)
+    assert [can_return for _, can_return, _ in importer.calls[-2:]] == [True, False] and importer.calls[-1][0] == 1.0
     straight = opened("DampedPendulum").initialize()
     straight.step(1.0)
     np.testing.assert_allclose(instance.get("theta", "omega"), straight.get("theta", "omega"), rtol=1e-6)
@@ -462,9 +467,13 @@ def test_a_discarded_step_changes_nothing(opened):
 @pytest.mark.parametrize(
     "options, message",
     [(dict(token="{0}"), "the instantiation token is '{0}'"), (dict(eventModeUsed=True), "hasEventMode"),
-     (dict(requiredIntermediateVariables=[999]), "intermediateUpdate")],
+     (dict(requiredIntermediateVariables=[999]), "intermediateUpdate"), (dict(requiredIntermediateVariables=["solverSteps"]), "intermediateUpdate"),
+     (dict(instance_name=" "), "has no name")],
 )  # fmt: skip
 def test_bad_instances(options, message, opened):
+    if options.get("requiredIntermediateVariables") == ["solverSteps"]:
+        variables = fmi3.description("DampedPendulum").modelVariables
+        options = dict(requiredIntermediateVariables=[v.valueReference for v in variables if v.name == "solverSteps"])
     instance = fmi3.Instance.__new__(fmi3.Instance)
     with pytest.raises(Exception):
         instance.__init__("DampedPendulum", logging=False, **options)
@@ -482,6 +491,11 @@ def test_log(opened):
     assert len(loud.messages) == 2
     refused(ERROR, loud.step, -1.0)
     assert loud.messages[-1][:2] == (ERROR, "logStatusError")
+    loud.fmu.reset()
+    loud.fmu.setDebugLogging(True, [])  # all of them
+    count = len(loud.messages)
+    loud.initialize()
+    assert [category for _, category, _ in loud.messages[count:]] == ["logEvents"]
 
 
 def test_terminals(own_systems):

@@ -23,6 +23,9 @@ CURVES = """<system name="{name}">
 {lines}</table>
   <table name="held" unit="N" argumentUnit="m" extrapolation="constant" interpolation="spline" file="curve.csv"/>
   <table name="straight" unit="N" interpolation="linear" argumentUnit="m" file="curve.csv" extrapolation="constant"/>
+  <table name="slanted" unit="N" interpolation="linear" argumentUnit="m" file="curve.csv"/>
+  <table name="pair" argumentUnit="m">0 2
+1 5</table>
   <table name="parabola" interpolation="spline" argumentUnit="m">0 0<!-- and -->
 1 1
 3;9
@@ -35,6 +38,8 @@ CURVES = """<system name="{name}">
   <output name="straightAtU" unit="N">straight(u)</output>
   <output name="parabolaAtU">parabola(u)</output>
   <output name="lineAtU">line(u)</output>
+  <output name="slantedAtU" unit="N">slanted(u)</output>
+  <output name="pairAtU">pair(u)</output>
 </system>
 """
 # In the potential of a curve, started on a point of it, left- or rightwards; and in a part.
@@ -57,6 +62,12 @@ def outside(curve, u):
     """Beyond the ends with the slopes there."""
     inside = np.clip(u, X[0], X[-1])
     return curve(inside) + curve(inside, 1) * (u - inside)
+
+
+def straight_on(u):
+    """From point to point, and on beyond the ends."""
+    slopes = np.diff(Y) / np.diff(X)
+    return np.interp(u, X, Y) + slopes[0] * min(u - X[0], 0) + slopes[-1] * max(u - X[-1], 0)
 
 
 def slope_outside(curve, u):
@@ -82,11 +93,11 @@ def built():
 @pytest.mark.parametrize("name", ["TableCurves", "TableTables"])
 def test_values_and_derivatives(name, open_fmu):
     instance = open_fmu(name).initialize()
-    names = ["monotoneAtU", "splineAtU", "heldAtU", "straightAtU", "parabolaAtU", "lineAtU"]
+    names = ["monotoneAtU", "splineAtU", "heldAtU", "straightAtU", "parabolaAtU", "lineAtU", "slantedAtU", "pairAtU"]
     for u in ARGUMENTS:
         instance.set(u=u)
         held = SPLINE(np.clip(u, X[0], X[-1]))
-        values = [outside(MONOTONE, u), outside(SPLINE, u), held, np.interp(u, X, Y), np.nan, 2 + 3 * u]
+        values = [outside(MONOTONE, u), outside(SPLINE, u), held, np.interp(u, X, Y), np.nan, 2 + 3 * u, straight_on(u), 2 + 3 * u]
         values[4] = u * u if 0 <= u <= 3 else 0.0 if u < 0 else 9 + 6 * (u - 3)
         np.testing.assert_allclose(instance.get(*names), values, rtol=1e-13, atol=1e-13)
         along = instance.fmu.getDirectionalDerivative(instance.vr(*names[:2]), instance.vr("u"), [1.0])

@@ -11,6 +11,7 @@ import fmpy
 import fmu
 from fmu import BUILD, ROOT
 
+WRAPPED = [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]  # as CMakeLists.txt
 WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-parameter".split()
 TIME_LIMIT = 300  # s, for one program
 
@@ -24,11 +25,11 @@ class Wrong(Exception):
 
 
 @functools.cache
-def runtime():
+def runtime(version):
     """Object files and libraries that every FMU is linked with."""
     cache = (BUILD / "CMakeCache.txt").read_text()
     sundials = re.search(r"^sundials_in_use:INTERNAL=(.+)$", cache, re.MULTILINE)
-    folders = [BUILD / "CMakeFiles" / f"{layer}.dir" for layer in ("core", "fmi2")]
+    folders = [BUILD / "CMakeFiles" / f"{layer}.dir" for layer in ("core", f"fmi{version}")]
     # Objects of sources that are gone stay in a build folder.
     objects = sorted(
         path for folder in folders for path in folder.rglob("*.o")
@@ -55,17 +56,18 @@ def compile_system(system, folder):
         raise Refused("lagc: " + re.sub(r"^.*?system\.xml(:\d+)?: ", "", result.stderr.splitlines()[0]))
     if result.returncode != 0:
         raise Wrong(f"lagc ends with {result.returncode}: {result.stderr[:500]}")
-    library = target / "binaries" / "linux64" / f"{system.name}.so"
-    library.parent.mkdir(parents=True)
     plan = system.plan
+    unpacked = target if plan.fmi == 2 else target / "fmi3"
+    library = unpacked / "binaries" / ("linux64" if plan.fmi == 2 else "x86_64-linux") / f"{system.name}.so"
+    library.parent.mkdir(parents=True)
     speed = ["-O2"] if plan.unrolled else ["-O1", "-DSERIES_ROLLED"]
     words = [plan.compiler, *speed, *WARNINGS, "-std=gnu11", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-shared",
-             f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(), "-Wl,--exclude-libs,ALL",
-             f"-Wl,--version-script={ROOT}/src/runtime/fmi2/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
+             f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", target / "system.c", *runtime(plan.fmi), *WRAPPED, "-Wl,--exclude-libs,ALL",
+             f"-Wl,--version-script={ROOT}/src/runtime/fmi{plan.fmi}/exports.map", "-Wl,--no-undefined", "-o", library]  # fmt: skip
     result = run(words, plan.compiler)
     if result.returncode != 0:
         raise Wrong(f"C that {plan.compiler} refuses: {result.stderr[:1000]}")
-    return pack(system, folder, library) if plan.packed else target
+    return pack(system, folder, library) if plan.packed else unpacked
 
 
 def pack(system, folder, library):

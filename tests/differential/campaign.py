@@ -14,33 +14,34 @@ from pathlib import Path
 
 from fmu import ROOT
 
-from .comparison import Outcome, judge
-from .generator import generate
+from .comparison import Outcome, judge_system
+from . import generator, switching_generator
 from .reference import integrator
 
+GENERATORS = {"smooth": generator.generate, "switching": switching_generator.generate}
 VERDICTS = ["agrees", "refused", "undecided", "wrong"]
 
 
 def examine(task):
-    seed, number, keep = task
+    kind, seed, number, keep = task
     folder = Path(tempfile.mkdtemp(prefix=f"random{number}-"))
     try:
-        outcome = judge(seed, number, folder)
+        outcome = judge_system(GENERATORS[kind](seed, number), folder)
     except Exception:
         outcome = Outcome("wrong", "the test itself: " + traceback.format_exc()[-1500:])
     if outcome.verdict == "wrong":
-        leave(seed, number, folder, keep, outcome)
+        leave(kind, seed, number, keep, outcome)
     shutil.rmtree(folder)
     return number, outcome
 
 
-def leave(seed, number, folder, keep, outcome):
+def leave(kind, seed, number, keep, outcome):
     """A folder for each wrong system."""
-    place = keep / f"{seed}-{number}"
+    place = keep / f"{kind}-{seed}-{number}"
     place.mkdir(parents=True, exist_ok=True)
-    system = generate(seed, number)
+    system = GENERATORS[kind](seed, number)
     system.write(place)
-    command = f"scripts/differential --seed {seed} --only {number}"
+    command = f"scripts/differential --kind {kind} --seed {seed} --only {number}"
     (place / "README").write_text(
         f"{outcome.message}\n\nfamilies: {', '.join(sorted(system.families))}\nplan: {system.plan}\n\n{command}\n"
     )
@@ -83,6 +84,7 @@ def main():
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0, help="number of the first system")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=GENERATORS, default="smooth")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", type=int, help="one system by its number")
     parser.add_argument(
@@ -92,7 +94,7 @@ def main():
     integrator()
     numbers = [words.only] if words.only is not None else range(words.first, words.first + words.count)
     outcomes, begin = {}, time.perf_counter()
-    tasks = [(words.seed, number, words.keep) for number in numbers]
+    tasks = [(words.kind, words.seed, number, words.keep) for number in numbers]
     # Not a Pool, whose workers may not have children.
     with ProcessPoolExecutor(words.jobs, multiprocessing.get_context("fork")) as pool:
         for future in as_completed([pool.submit(examine, task) for task in tasks]):

@@ -54,8 +54,9 @@ class Derivation:
         self.results = {}
         self.symbols |= {displacement: sp.Integer(0) for displacement in system.displacements}
         self.symbols |= {table.name: curve(table) for table in system.tables}
+        self.symbols |= {mode: symbol(mode) for mode in system.switches.modes}
         self._define(system)
-        self.bodies = self._bodies(q, v)
+        self.bodies = self._bodies(q, v) + sum(frame.kinetic(self.convert, q, v) for frame in system.frames)
         energy = sp.sympify(self.bodies + sum(map(self.convert, system.kinetic)))
         potential = sum(map(self.convert, system.potentials))
         potential += sum(self.symbols[c.name] ** 2 for c in system.coordinates if c.part)
@@ -87,6 +88,10 @@ class Derivation:
                 self.symbols[label] = self.results[label] = sp.sympify(self.convert(tree))
             if body.angle is not None:
                 self.symbols[f"{body.name}.angle"] = self.results[f"{body.name}.angle"] = self.convert(body.angle)
+        for frame in system.frames:
+            for label, place in frame.places(self.convert).items():
+                for axis, x in zip(AXES, place):
+                    self.symbols[f"{label}.{axis}"] = self.results[f"{label}.{axis}"] = x
         for label, tree in system.definitions.items():
             self.symbols[label] = self.convert(tree)
 

@@ -86,6 +86,12 @@ FUNCTIONS = {
     for name in "sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log sqrt".split()
 } | {"pow": raised, "^": raised, "abs": Absolute, "sign": Sign, "min": Minimum, "max": Maximum}  # fmt: skip
 
+CONDITIONS = {
+    ">": lambda a, b: Less(b, a), "<": lambda a, b: Less(a, b), "and": lambda a, b: a * b, "or": lambda a, b: a + b - a * b,
+    "not": lambda a: 1 - a, "if": lambda c, a, b: c * a + (1 - c) * b,
+}  # fmt: skip
+FUNCTIONS |= CONDITIONS
+
 PRECEDENCE = {"+": 1, "-": 1, "*": 2, "/": 2, "negative": 3, "^": 4}
 
 
@@ -134,6 +140,8 @@ class Node:
         """With as few parentheses as the grammar of the README allows."""
         if self.operation in ("number", "name"):
             return self.text
+        if self.operation in CONDITIONS and self.operation != "if":
+            return self._condition()
         if self.operation not in PRECEDENCE:
             return f"{self.operation}({', '.join(map(str, self.operands))})"
         if self.operation == "negative":
@@ -144,6 +152,12 @@ class Node:
             return f"{self._operand(0, 5)}^{self._operand(1, 3)}"
         blank = " " if level == 1 else ""
         return f"{self._operand(0, level)}{blank}{self.operation}{blank}{self._operand(1, level + 1)}"
+
+    def _condition(self):
+        if self.operation in "<>":
+            return f"{self.operands[0]} {self.operation} {self.operands[1]}"
+        parts = [f"({operand})" for operand in self.operands]
+        return f"not {parts[0]}" if self.operation == "not" else f" {self.operation} ".join(parts)
 
     def _operand(self, index, level):
         operand = self.operands[index]

@@ -86,17 +86,16 @@ static real attempt(struct Run *run, real time, real h, const real *state, real 
 }
 
 /*
- * From time to end; step holds the first step and receives the last. A step that is as short as rounding is taken
- * whatever its error: it ends at a jump.
+ * One step that is not longer than to the end; step holds its length and receives that of the next. A step that is as short
+ * as rounding is taken whatever its error: it ends at a jump.
  */
-static enum Outcome follow(struct Run *run, real time, real end, real *state, real *step) {
+static enum Outcome step_once(struct Run *run, real *time, real end, real *state, real *step) {
   real shortest = 1e-16L * fmaxl(1, fabsl(end));
-  while (time < end) {
-    if (run->evaluations > run->limit) return TOO_LONG;
+  while (run->evaluations <= run->limit) {
     real h = fminl(*step, run->longest), result[STATES];
-    bool last = time + h >= end;
-    if (last) h = end - time;
-    real error = attempt(run, time, h, state, result, h > shortest);
+    bool last = *time + h >= end;
+    if (last) h = end - *time;
+    real error = attempt(run, *time, h, state, result, h > shortest);
     if (error < 0 && h <= shortest) return NOT_FINITE;
     if (error > 1 && h > shortest) {
       *step = h * fmaxl(0.1L, 0.8L * powl(error, -1.0L / (2 * run->columns - 1)));
@@ -107,11 +106,18 @@ static enum Outcome follow(struct Run *run, real time, real end, real *state, re
       continue;
     }
     memcpy(state, result, (size_t)run->states * sizeof *state);
-    time = last ? end : time + h;
+    *time = last ? end : *time + h;
     real growth = fminl(3, 0.8L * powl(fmaxl(error, 1e-10L), -1.0L / (2 * run->columns - 1)));
     if (!last || growth < 1) *step = h * growth;
+    return DONE;
   }
-  return DONE;
+  return TOO_LONG;
+}
+
+static enum Outcome follow(struct Run *run, real time, real end, real *state, real *step) {
+  enum Outcome outcome = DONE;
+  while (time < end && outcome == DONE) outcome = step_once(run, &time, end, state, step);
+  return outcome;
 }
 
 /* For Python: the outcome, and evaluations added to the count. */

@@ -72,20 +72,23 @@ def guards_of(derivation):
         for node in tree.nodes():
             for operand, scale in guards_of_node(derivation, node):
                 if sp.sympify(operand).free_symbols:
-                    guards[operand, scale] = None
+                    guards[operand, scale.replace("1e-3L", f"{derivation.system.switches.finest!r}L")] = None
     return list(guards)[:GUARDS]
 
 
 def guards_of_node(derivation, node):
     operands = [derivation.convert(operand) for operand in node.operands]
+    tables = {table.name: table for table in derivation.system.tables}
+    if node.operation in tables and derivation.system.switches:
+        return [(operands[0] - x, SCALES["min"]) for x in tables[node.operation].x]
     match node.operation:
-        case "number" | "name" | "+" | "-" | "*" | "negative" | "der":
+        case "number" | "name" | "+" | "-" | "*" | "negative" | "der" | "if" | "and" | "or" | "not":
             return []
         case "/":
             return [(operands[1], SCALES["/"])]
         case "^" | "pow":
             return guards_of_power(*operands)
-        case "min" | "max":
+        case "min" | "max" | "<" | ">":
             return [(operands[0] - operands[1], SCALES["min"])]
     return [(operand, SCALES.get(node.operation, "1")) for operand in operands]
 
@@ -112,15 +115,10 @@ def compile_c(source, library, optimization):
     subprocess.run(list(map(str, words)), check=True)
 
 
-def right_side_in_c(derivation):
-    mechanics, guards = derivation.mechanics, guards_of(derivation)
-    n, size = len(mechanics.q), len(mechanics.terms)
-    system = derivation.system
-    lines = [
-        PRELUDE,
-        "void right(real t, const real *y, const real *k, real *d, real *operand, real *scale) {",
-        "real time_ = t;",
-    ]
+def declarations(derivation):
+    """The names of an expression, from the time t, the state y and the constants k."""
+    mechanics, system = derivation.mechanics, derivation.system
+    lines = ["real time_ = t;"]
     for i, s in enumerate([*mechanics.q, *mechanics.v]):
         lines.append(f"real {s} = y[{i}];")
     for i, p in enumerate(system.parameters):
@@ -130,21 +128,39 @@ def right_side_in_c(derivation):
     for i, u in enumerate(system.inputs):
         k = [f"k[{base + INPUT_COEFFICIENTS * i + order}]" for order in range(INPUT_COEFFICIENTS)]
         lines.append(f"real {u} = {k[0]} + s * ({k[1]} + s * ({k[2]} + s * {k[3]}));")
+    return lines
+
+
+def in_c(expressions):
+    """Statements for what they share, and the text of each."""
+    printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
+        name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
+    parts, results = sp.cse([sp.sympify(e).subs(sp.Symbol("time"), sp.Symbol("time_")) for e in expressions],
+                            symbols=sp.numbered_symbols("c"), optimizations=None)  # fmt: skip
+    statements = [f"real {symbol} = {printer.doprint(part)};" for symbol, part in parts]
+    return statements, [printer.doprint(result) for result in results]
+
+
+def right_side_in_c(derivation):
+    mechanics, guards = derivation.mechanics, guards_of(derivation)
+    n, size = len(mechanics.q), len(mechanics.terms)
+    system = derivation.system
+    lines = [
+        PRELUDE,
+        "void right(real t, const real *y, const real *k, real *d, real *operand, real *scale) {",
+        *declarations(derivation),
+    ]
     power = (
         [derivation.driven_power + sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
     )
-    printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
-        name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
     flat = [
         *mechanics.mass,
         *(sp.sympify(sum(terms)) for terms in mechanics.terms),
         *power,
         *(operand for operand, _ in guards),
     ]
-    parts, results = sp.cse([sp.sympify(e).subs(sp.Symbol("time"), sp.Symbol("time_")) for e in flat],
-                            symbols=sp.numbered_symbols("c"), optimizations=None)  # fmt: skip
-    lines += [f"real {symbol} = {printer.doprint(part)};" for symbol, part in parts]
-    texts = [printer.doprint(result) for result in results]
+    statements, texts = in_c(flat)
+    lines += statements
     first = size * size + size
     lines.append(f"real m[] = {{{', '.join(texts[: size * size])}}}, x[] = {{{', '.join(texts[size * size : first])}}};")
     lines.append(f"solve({size}, m, x);")

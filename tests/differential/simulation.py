@@ -11,6 +11,7 @@ from fmpy.fmi2 import FMU2Slave
 
 import fmu
 
+from . import switching_simulation
 from .build import Wrong
 from .system import course
 
@@ -148,7 +149,7 @@ def simulate(system, folder, record):
 def in_child(pipe, system, folder):
     record = Record()
     try:
-        simulate(system, folder, record)
+        (switching_simulation.simulate if system.switches else simulate)(system, folder, record)
     except Exception as error:
         record.wrong = f"{type(error).__name__}: {error}"
     pipe.send(record)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr, escape
 
+from .switches import Switches
+
 
 @dataclass
 class Coordinate:
@@ -59,6 +61,8 @@ class Plan:
     compiler: str = "gcc"
     unrolled: bool = False  # as users build it, which takes long to compile
     form: str = "statements"  # of the generated code
+    fmi: int = 2
+    event_mode: bool = False  # an importer of FMI 3.0 that goes through events
 
     @property
     def times(self):
@@ -85,6 +89,8 @@ class System:
     tables: list = field(default_factory=list)
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
+    switches: Switches = field(default_factory=Switches)
+    frames: list = field(default_factory=list)
     work: bool = False
     method: str = None
     families: set = field(default_factory=set)
@@ -101,6 +107,11 @@ class System:
     @property
     def states(self):
         return self.positions + self.velocities + (["nonConservativeWork"] if self.work else [])
+
+    @property
+    def columns(self):
+        """What is compared at the communication points."""
+        return [*self.states, *self.switches.reals, *self.switches.integers]
 
     @property
     def rates(self):
@@ -124,6 +135,9 @@ class System:
         yield from self.constraints
         yield from self.driven_velocities
         yield from self.definitions.values()
+        yield from self.switches.expressions()
+        for frame in self.frames:
+            yield from frame.expressions()
 
     @property
     def parts(self):
@@ -184,6 +198,7 @@ class System:
                 add("body", name=body.name, mass=body.mass, **body.position, inertia=body.inertia, angle=body.angle)
         for name, expression in self.definitions.items():
             add("define", expression, name=name)
+        lines += [f"  {line}" for frame in self.frames for line in frame.xml()]
         energies = {"kinetic": self.kinetic, "potential": self.potentials, "dissipation": self.dissipations}
         for tag, expressions in energies.items():
             for expression in expressions:
@@ -194,6 +209,7 @@ class System:
             add("force", on=body, **force)
         for i, expression in enumerate(self.constraints, 1):
             add("constraint", expression, name=f"c{i}")
+        lines += [f"  {line}" for line in self.switches.xml()]
         for name, expression in self.outputs.items():
             add("output", expression, name=name)
         if self.work:

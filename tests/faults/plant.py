@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 from faults import FAULTS
+from places import find
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TREE = ROOT / "build" / "faults"
@@ -20,7 +21,7 @@ PASSES, FAILS, ABSENT = range(3)
 def place_in_copy(file):
     """Where a file of the project goes. Systems of tests/systems that a test of the list needs stand beside those of fmu/."""
     parts = Path(file).parts
-    is_needed = parts[:2] == ("tests", "systems") and any(parts[2] in test[3:] for *_, test in FAULTS)
+    is_needed = parts[:2] == ("tests", "systems") and any(parts[2] in fault.test[3:] for fault in FAULTS)
     return TREE / "fmu" / Path(*parts[2:]) if is_needed else TREE / file
 
 
@@ -63,10 +64,11 @@ def run(kind, test, keyword="", *_):
     return {0: PASSES, 1: FAILS, 8: FAILS}.get(code, ABSENT)
 
 
-def outcome(file, right, wrong, test):
-    path = TREE / file
+def outcome(fault):
+    place, test = find(fault), fault.test
+    path = TREE / place.file
     text = path.read_text()
-    path.write_text(text.replace(right, wrong))
+    path.write_text(text[: place.start] + fault.wrong + text[place.end :])
     try:
         is_built = build(targets_of(*test))
         result = run(*test) if is_built else None
@@ -95,12 +97,12 @@ def main():
     started = time.monotonic()
     chosen = [FAULTS[int(place)] for place in sys.argv[1:]] or FAULTS
     copy_project()
-    check_without_faults([fault[3] for fault in chosen])
+    check_without_faults([fault.test for fault in chosen])
     unseen = 0
     for fault in chosen:
-        result = outcome(*fault)
+        result = outcome(fault)
         unseen += result != "seen"
-        print(f"{FAULTS.index(fault):3} {result}: {fault[0]}: {fault[1].strip()}  ->  {fault[2].strip()}", flush=True)
+        print(f"{FAULTS.index(fault):3} {result}: {find(fault).file}: {fault.right.strip()}  ->  {fault.wrong.strip()}", flush=True)
     print(f"{len(chosen)} faults in {time.monotonic() - started:.0f} s")
     sys.exit(f"{unseen} of {len(chosen)} faults were not seen" if unseen else 0)
 

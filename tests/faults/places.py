@@ -1,0 +1,60 @@
+"""Where a fault stands: by its text, or by the name of the function around it where that text stands in several, in whatever file."""
+
+import functools
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+FOLDERS = ["src", "modelDescription", "include"]
+
+
+class Fault(NamedTuple):
+    right: str  # stands once in all files, but for blanks
+    wrong: str
+    test: tuple
+    function: str = None
+
+
+class Place(NamedTuple):
+    file: Path  # relative to ROOT
+    start: int
+    end: int
+
+
+@functools.cache
+def sources():
+    """The texts by file, each also without blanks and with the places of all that is none."""
+    files = sorted(path for folder in FOLDERS for end in "ch" for path in (ROOT / folder).rglob(f"*.{end}"))
+    texts = {path.relative_to(ROOT): path.read_text() for path in files}
+    return {path: (text, "".join(text.split())) for path, text in texts.items()}
+
+
+def spans(text, function):
+    """Where the definitions of a function begin and end; of all the text, without a function."""
+    if function is None:
+        return [(0, len(text))]
+    found = re.finditer(rf"^[A-Za-z][^\n;]*\b{function}\([^;{{}}]*\)\s*\{{.*?^\}}", text, re.MULTILINE | re.DOTALL)
+    return [match.span() for match in found]
+
+
+def places_of(fault):
+    wanted = "".join(fault.right.split())
+    for path, (text, squeezed) in sources().items():
+        if wanted not in squeezed:
+            continue
+        for first, last in spans(text, fault.function):
+            marks = [i for i in range(first, last) if not text[i].isspace()]
+            part = "".join(text[i] for i in marks)
+            for match in re.finditer(re.escape(wanted), part):
+                yield Place(path, marks[match.start()], marks[match.end() - 1] + 1)
+
+
+def find(fault):
+    """The place of a fault. Raises LookupError where there is none, or several."""
+    places = list(places_of(fault))
+    if len(places) == 1:
+        return places[0]
+    where = f" in {fault.function}()" if fault.function else ""
+    files = ", ".join(sorted({str(place.file) for place in places})) or "no file"
+    raise LookupError(f"{fault.right!r}{where} stands {len(places)} times, in {files}; expected once (or the name of a function, or more of the text)")

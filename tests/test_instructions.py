@@ -1,0 +1,55 @@
+"""Code in tables does what code in statements does: the same bits, the same number of steps, the same messages."""
+
+import pytest
+from fmpy.fmi1 import FMICallException
+
+from differential.build import compile_system
+from differential.simulation import Built
+from differential.system import Action, Plan, System
+
+# Functions that bound steps, constants of parameters, pieces, and a matrix that is singular at r = 0 and where k is 0.
+TEXT = """<system name="Forms">
+  <parameter name="p" start="-0.4"/><parameter name="k" start="1" min="0"/><parameter name="n" start="0"/>
+  <coordinate name="r" velocity="vr" start="1" velocityStart="-0.3"/>
+  <coordinate name="phi" velocity="w" start="0.5" velocityStart="1"/>
+  <coordinate name="x" velocity="v" start="0.3" velocityStart="-0.7"/>
+  <coordinate name="y" velocity="u" start="-0.2" velocityStart="0.5"/>
+  <particle mass="1" x="r*cos(phi)" y="r*sin(phi)"/>
+  <kinetic>k*v^2/2 + cos(x)*u*v/4 + u^2/2 + r^2*u^2/8</kinetic>
+  <potential>3*(r - 1)^2 + sign(p)*x^2 + sign(n)*y + max(p, 0.3)*y^2 + 2*abs(p)*x^4</potential>
+  <force coordinate="x">-tanh(20*(x - 0.1)) + atan2(y, x + 0.5) + max(x, y) - min(0.2, phi)</force>
+  <force coordinate="y">-abs(y)*u + if(x > 0.1, sqrt(x - 0.05), 0) + exp(-(y/0.05)^2)</force>
+  <output name="far">atan2(x, p) + max(x, y)</output>
+  <solver method="taylor" tolerance="1e-9"/>
+</system>"""
+RESULTS = ["r", "phi", "x", "y", "vr", "w", "v", "u", "far", "der(v)", "totalEnergy"]
+
+
+def motion_and_messages(form, folder):
+    system = System("Forms", plan=Plan(0.0, 2.0, [Action()], 1e-9, form=form))
+    system.xml = lambda: TEXT
+    folder.mkdir()
+    instance = Built(compile_system(system, folder))
+    try:
+        instance.initialize()
+        rows = [row[1:] for row in instance.run(2.0, 0.25, *RESULTS)]
+        steps = instance.fmu.getInteger(instance.vr("solverSteps", "derivativeEvaluations", "events"))
+        along = instance.fmu.getDirectionalDerivative(instance.vr("far", "der(v)"), instance.vr("x", "p", "y"), [0.3, 0.7, -0.4])
+        told = []
+        for values in ({"r": 0.0}, {"k": 0.0, "x": 0.0}, {"k": 1e-9, "r": 1e-9}):
+            instance.reset()
+            instance.fmu.setupExperiment(startTime=0.0)
+            instance.set(values)
+            instance.fmu.enterInitializationMode()
+            with pytest.raises(FMICallException):
+                instance.get("der(v)")
+            told.append(instance.problem())
+    finally:
+        instance.free()
+    return rows, steps, along, told
+
+
+def test_tables_do_what_statements_do(tmp_path):
+    statements, tables = (motion_and_messages(form, tmp_path / form) for form in ("statements", "tables"))
+    assert tables == statements
+    assert "'phi'" in statements[3][0] and "'x'" in statements[3][1] and statements[1][2] > 2, statements
