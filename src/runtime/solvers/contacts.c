@@ -1,19 +1,21 @@
 /*
- * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, each by Newton's law of
- * restitution through M; what a contact beside would then have to take comes as an impact of its own, so that a row of
- * touching bodies hands a push on. Friction that rests on the force of a contact takes its part in the impact by Coulomb's
- * law.
+ * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, with all that are as fast;
+ * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
+ * on.
  */
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "impacts.h"
 #include "settlement.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
 /* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
 static const double shortest_flight = 1000.0;
+/* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
+static const double equal_share = 1e-9;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
@@ -47,70 +49,6 @@ static void open_all(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
 }
 
-/* Whether the friction follows from the force of the contact. */
-static bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
-  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
-}
-
-/* Frictions that slide before the impact, as they do then; others take no part, or stick. */
-static void set_frictions(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
-    double velocity = settlement->value[place], mode = velocity < 0.0 ? -1.0 : 1.0;
-    bool sticks = fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE);
-    bool takes_part = rests_on(switches, i, contact);
-    settlement_set_mode(settlement, switches->frictions[i].mode, !takes_part ? 1.0 : sticks ? 0.0 : mode);
-  }
-}
-
-/* The values behind a push; the noise of the present ones is not needed any more. */
-static const double *values_behind(struct Settlement *settlement) {
-  return settlement_values(settlement, settlement->state, settlement->noise) ? settlement->noise : NULL;
-}
-
-/* Lets those frictions stick whose velocity the push has turned round. Whether there are any, or were before. */
-static bool let_stick(struct Settlement *settlement, const double *value, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool any = false;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t mode = switches->frictions[i].mode, place = friction_place(settlement, i, FRICTION_VELOCITY);
-    if (!rests_on(switches, i, contact)) continue;
-    if (mode_of(settlement, mode) * value[place] < 0.0) settlement_set_mode(settlement, mode, 0.0);
-    any |= mode_of(settlement, mode) == 0.0;
-  }
-  return any;
-}
-
-/*
- * An impact with friction that sticks: first the friction alone, then both, so that what sticks stays and the contact parts
- * as fast as restitution says.
- */
-static bool push_sticking(struct Settlement *settlement, size_t contact, double restitution, double rate) {
-  const struct ContactFacts *facts = &settlement->switches->contacts[contact];
-  settlement_set_mode(settlement, facts->mode, 0.0);
-  const double *value = settlement_push(settlement, 1.0) ? values_behind(settlement) : NULL;
-  if (value == NULL) return false;
-  double closing = value[contact_place(settlement, contact, CONTACT_RATE)];
-  settlement_set_mode(settlement, facts->mode, 1.0);
-  return settlement_push(settlement, closing < 0.0 ? 1.0 + restitution * rate / closing : 1.0);
-}
-
-/* Newton's law for one contact by itself, with the frictions that rest on it. */
-static bool push(struct Settlement *settlement, size_t contact, double restitution) {
-  double rate = settlement->value[contact_place(settlement, contact, CONTACT_RATE)];
-  size_t bytes = lagrangian.coordinate_count * sizeof(double);
-  double *velocity = settlement->state + lagrangian.coordinate_count;
-  memcpy(settlement->kept_velocities, velocity, bytes);
-  if (!settlement_push(settlement, 1.0 + restitution)) return false;
-  if (settlement->switches->rests_on == NULL) return true;
-  const double *value = values_behind(settlement);
-  if (value == NULL) return false;
-  if (!let_stick(settlement, value, contact)) return true;
-  memcpy(velocity, settlement->kept_velocities, bytes);
-  return push_sticking(settlement, contact, restitution, rate);
-}
-
 static double *modes_of(const struct Settlement *settlement) {
   return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
 }
@@ -124,24 +62,51 @@ static void restore_modes(struct Settlement *settlement) {
   settlement->instance->prepared_is_stale = true;
 }
 
-static bool take_impact(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
+/* Logs a restitution that is none. */
+static bool check_restitution(const struct Settlement *settlement, size_t contact) {
   double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
-  if (!(restitution >= 0.0 && restitution <= 1.0)) {
-    log_message(settlement->instance, STATUS_DISCARD,
-                "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
-                switches->contacts[contact].name, restitution);
-    return false;
+  if (restitution >= 0.0 && restitution <= 1.0) return true;
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
+              settlement->switches->contacts[contact].name, restitution);
+  return false;
+}
+
+/* The contacts that are hit as fast as one, but for rounding; where pushes go to and fro without end, all that touch. */
+static bool choose_hit(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t place = contact_place(settlement, contact, CONTACT_RATE);
+  double fastest = settlement->value[place], noise = settlement->noise[place];
+  bool bounces = settlement->impacts < IMPACT_LIMIT, is_fine = true;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    double slower = settlement->value[rate] - fastest;
+    bool is_tied = slower <= noise + settlement->noise[rate] - equal_share * fastest;
+    settlement->takes_part[i] = is_touching(settlement, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    if (settlement->takes_part[i] == 0.0) continue;
+    is_fine &= check_restitution(settlement, i);
+    settlement->was_opened[i] = 0.0;
   }
+  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 1.0;
+  return is_fine;
+}
+
+static void let_all_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+}
+
+/* An impact of a contact, and of those that are hit together with it. */
+static bool take_impact(struct Settlement *settlement, size_t contact) {
+  if (!choose_hit(settlement, contact)) return false;
   keep_modes(settlement);
-  set_frictions(settlement, contact);
+  let_all_slide(settlement);
   open_all(settlement);
-  settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
-  bool done = push(settlement, contact, restitution);
+  bool done = impacts_take(settlement, settlement->impacts < IMPACT_LIMIT);
   restore_modes(settlement);
   open_all(settlement);
   settlement->jumped = true;
-  settlement->was_opened[contact] = 0.0;
   settlement->impacts++;
   return done;
 }
@@ -264,13 +229,8 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   *again = true;
   if ((settlement->moved || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
   size_t contact = find_impact(settlement);
-  if (contact < switches->contact_count && settlement->impacts < IMPACT_LIMIT)
-    return take_impact(settlement, contact) ? NULL : no_impact;
-  if (contact < switches->contact_count) { /* a push that goes to and fro dies away */
-    settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
-    return settlement_push(settlement, 1.0) ? NULL : no_impact;
-  }
-  if (close_contacts(settlement)) return settlement_push(settlement, 1.0) ? NULL : no_impact;
+  if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
+  if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
   bool lifts;
   if (!lift(settlement, &lifts)) return no_impact;
   if (lifts) return NULL;

@@ -10,7 +10,7 @@
 /* A state is not told from others nearer than the last digit of this share of its nominal value. */
 static const double least_share = 0.1;
 
-static size_t decision_count(const struct SwitchTable *switches) {
+size_t settlement_value_count(const struct SwitchTable *switches) {
   return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
          FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count +
          switches->energy_count;
@@ -27,14 +27,14 @@ static size_t search_work_count(void) {
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return search_work_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
-         switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
-         3 * lagrangian.state_count + corrections;
+  return search_work_count() + 3 * settlement_value_count(switches) + switches->condition_count +
+         indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
+         rows_of_matrix() + switches->mode_count + 3 * lagrangian.state_count + corrections;
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t values = decision_count(switches), indicators = indicator_count(switches);
+  size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
   struct Settlement settlement = {.instance = instance, .switches = switches};
   settlement.value = instance->switching_work + search_work_count();
   settlement.noise = settlement.value + values;
@@ -42,7 +42,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
-  settlement.energy = settlement.was_opened + switches->contact_count;
+  settlement.takes_part = settlement.was_opened + switches->contact_count;
+  settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
   settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
   settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
@@ -91,7 +92,7 @@ static void measure_velocity(struct Settlement *settlement, size_t place) {
 }
 
 bool settlement_evaluate(struct Settlement *settlement) {
-  size_t count = decision_count(settlement->switches);
+  size_t count = settlement_value_count(settlement->switches);
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
   switching_round(settlement->state, false, settlement->rounded);
   if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
@@ -117,14 +118,14 @@ void settlement_set_mode(struct Settlement *settlement, size_t mode, double valu
   settlement->changed = true;
 }
 
-bool settlement_push(struct Settlement *settlement, double factor) {
+bool settlement_push(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   double *velocity = settlement->state + lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
   instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += factor * settlement->correction[i];
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += settlement->correction[i];
   settlement->changed = true;
   return true;
 }

@@ -19,6 +19,7 @@ struct Settlement {
   double *largest;            /* of each velocity in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
   double *acceleration;       /* and forces of constraints */
   double *kept_modes, *kept_velocities;
   double *rounded, *derivative, *correction;
@@ -52,6 +53,9 @@ struct FrictionLaws {
   const char *(*check)(const struct Settlement *settlement);
 };
 
+/* The numbers in value[]. */
+size_t settlement_value_count(const struct SwitchTable *switches);
+
 /* Numbers of workspace, and where they are. */
 size_t settlement_work_count(void);
 struct Settlement settlement_of(struct Instance *instance);
@@ -65,11 +69,8 @@ bool settlement_evaluate(struct Settlement *settlement);
 /* The values at a state, without what rounding may make of them. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
 
-/*
- * Changes the velocities by a factor of the way to the constraints that hold, the least in the metric of M, and by what
- * friction adds to that. False where there is none.
- */
-bool settlement_push(struct Settlement *settlement, double factor);
+/* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
+bool settlement_push(struct Settlement *settlement);
 
 /* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
 bool settlement_move(struct Settlement *settlement);

@@ -211,7 +211,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
     if (round == 0 && problem == NULL) copy_conditions(&settlement);
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
-  if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
+  if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement))
     problem = constraints_not_kept;
   if (problem == NULL) problem = continuity_check(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);
