@@ -51,6 +51,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_source(file, "complementarity.c");
     include_source(file, "pushes.c");
     include_source(file, "impacts.c");
+    include_source(file, "contact_forces.c");
     include_source(file, "contacts.c");
   }
   if (program->model->switches.friction_count > 0) include_source(file, "frictions.c");

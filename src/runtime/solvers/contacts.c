@@ -3,11 +3,14 @@
  * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
  * on.
  */
+#include "contacts.h"
+
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
+#include "contact_forces.h"
 #include "impacts.h"
+#include "pushes.h"
 #include "settlement.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
@@ -21,7 +24,7 @@ static const double largest_penetration = 1e-9;
 
 static const char no_impact[] = "a contact cannot take an impact there";
 
-static bool is_touching(const struct Settlement *settlement, size_t contact) {
+bool is_touching(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement, contact, CONTACT_GAP);
   double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
   return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
@@ -47,19 +50,6 @@ static size_t find_impact(const struct Settlement *settlement) {
 static void open_all(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->contact_count; i++) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
-}
-
-static double *modes_of(const struct Settlement *settlement) {
-  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
-}
-
-static void keep_modes(struct Settlement *settlement) {
-  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
-}
-
-static void restore_modes(struct Settlement *settlement) {
-  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
-  settlement->instance->prepared_is_stale = true;
 }
 
 /* Logs a restitution that is none. */
@@ -91,6 +81,21 @@ static bool choose_hit(struct Settlement *settlement, size_t contact) {
   return is_fine;
 }
 
+/* A friction that rests on contacts, all of which are open, cannot stick. */
+static void let_go(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool rests = false, presses = false;
+    for (size_t k = 0; k < switches->contact_count; k++) {
+      if (!rests_on(switches, i, k)) continue;
+      rests = true;
+      presses |= mode_of(settlement, switches->contacts[k].mode) != 0.0;
+    }
+    if (!rests || presses || mode_of(settlement, switches->frictions[i].mode) != 0.0) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+  }
+}
+
 static void let_all_slide(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++)
@@ -100,12 +105,13 @@ static void let_all_slide(struct Settlement *settlement) {
 /* An impact of a contact, and of those that are hit together with it. */
 static bool take_impact(struct Settlement *settlement, size_t contact) {
   if (!choose_hit(settlement, contact)) return false;
-  keep_modes(settlement);
+  settlement_keep_modes(settlement);
   let_all_slide(settlement);
   open_all(settlement);
   bool done = impacts_take(settlement, settlement->impacts < IMPACT_LIMIT);
-  restore_modes(settlement);
+  settlement_restore_modes(settlement);
   open_all(settlement);
+  let_go(settlement);
   settlement->jumped = true;
   settlement->impacts++;
   return done;
@@ -187,7 +193,7 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   const struct SwitchTable *switches = settlement->switches;
   *lifts = false;
   if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
-  keep_modes(settlement);
+  settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
     double noise = settlement->noise[contact_place(settlement, i, CONTACT_GAP)];
@@ -199,7 +205,7 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   if (!*lifts) return true;
   settlement->lifts++;
   bool done = settlement_move(settlement);
-  restore_modes(settlement);
+  settlement_restore_modes(settlement);
   return done;
 }
 
@@ -239,6 +245,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   if (!*again) return NULL;
   settlement->was_opened[pulling] = 1.0;
   settlement_set_mode(settlement, switches->contacts[pulling].mode, 0.0);
+  let_go(settlement);
   return NULL;
 }
 
@@ -257,4 +264,8 @@ static const char *check_gaps(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {.act = act_once, .release = release, .check_gaps = check_gaps};
+const struct ContactLaws contact_laws = {.act = act_once,
+                                         .settle_forces = contact_forces_settle,
+                                         .release = release,
+                                         .check_gaps = check_gaps,
+                                         .explain = contact_forces_explain};

@@ -29,7 +29,7 @@ size_t settlement_work_count(void) {
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
   return search_work_count() + 3 * settlement_value_count(switches) + switches->condition_count +
          indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
-         rows_of_matrix() + switches->mode_count + 3 * lagrangian.state_count + corrections;
+         rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
@@ -46,8 +46,7 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
   settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
-  settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
-  settlement.rounded = settlement.kept_velocities + lagrangian.state_count;
+  settlement.rounded = settlement.kept_modes + switches->mode_count;
   settlement.derivative = settlement.rounded + lagrangian.state_count;
   settlement.correction = settlement.derivative + lagrangian.state_count;
   memset(settlement.largest, 0, values * sizeof(double));
@@ -116,6 +115,19 @@ void settlement_set_mode(struct Settlement *settlement, size_t mode, double valu
   settlement->instance->parameter[mode] = value;
   settlement->instance->prepared_is_stale = true;
   settlement->changed = true;
+}
+
+static double *modes_of(const struct Settlement *settlement) {
+  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
+}
+
+void settlement_keep_modes(struct Settlement *settlement) {
+  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
+}
+
+void settlement_restore_modes(struct Settlement *settlement) {
+  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
+  settlement->instance->prepared_is_stale = true;
 }
 
 bool settlement_push(struct Settlement *settlement) {

@@ -21,7 +21,7 @@ struct Settlement {
   double *flips, *was_opened; /* of each branch and friction; of each contact */
   double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
   double *acceleration;       /* and forces of constraints */
-  double *kept_modes, *kept_velocities;
+  double *kept_modes;
   double *rounded, *derivative, *correction;
   const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
   double overshoot;                    /* in s: how long before its indicator was 0 */
@@ -39,10 +39,17 @@ struct ContactLaws {
    * motion cannot go on.
    */
   const char *(*act)(struct Settlement *settlement, bool *again);
+  /*
+   * Behind frictions: opens and closes contacts at rest as the only solution for their forces says. NULL, or the reason why
+   * there is none.
+   */
+  const char *(*settle_forces)(struct Settlement *settlement, bool *again);
   /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
   bool (*release)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
+  /* Logs a contact whose force grows beyond all bounds; false where there is none. */
+  bool (*explain)(struct Settlement *settlement);
 };
 
 /* What frictions do; FMUs without any do not hold it. */
@@ -120,6 +127,10 @@ const char *continuity_check(struct Settlement *settlement);
 extern const char constraints_not_kept[];
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
+
+/* What is tried out in between leaves no mode behind. */
+void settlement_keep_modes(struct Settlement *settlement);
+void settlement_restore_modes(struct Settlement *settlement);
 
 /* What rounding of the state and the time leaves of a value that changes at a rate. */
 double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate);

@@ -174,6 +174,9 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
+  if (settlement->switches->contact_laws != NULL)
+    problem = settlement->switches->contact_laws->settle_forces(settlement, again);
+  if (problem != NULL || *again) return problem;
   return happen(settlement, again);
 }
 
@@ -271,6 +274,21 @@ static bool is_due(struct Instance *instance) {
   return due;
 }
 
+static bool explain_stop(struct Instance *instance, double time) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL) return false;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
+  return settlement_evaluate(&settlement) && laws->explain(&settlement);
+}
+
+static bool holds_at_times(const char *constraint) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_held = false;
+  for (size_t i = 0; i < switches->contact_count; i++) is_held |= strcmp(switches->contacts[i].name, constraint) == 0;
+  for (size_t i = 0; i < switches->friction_count; i++) is_held |= strcmp(switches->frictions[i].name, constraint) == 0;
+  return is_held;
+}
+
 const struct Switching switching = {.work_count = settlement_work_count,
                                     .settle = settle,
                                     .guess = guess,
@@ -281,5 +299,7 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
+                                    .explain_stop = explain_stop,
+                                    .holds_at_times = holds_at_times,
                                     .indicators = told_indicators,
                                     .is_due = is_due};
