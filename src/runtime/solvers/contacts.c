@@ -133,6 +133,16 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
          rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
 }
 
+/* What does not slide as a contact comes to rest sticks: else what rest takes from the gap would make it slide. */
+static void let_stick(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY);
+    bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
+    if (rests_on(switches, i, contact) && !slides) settlement_set_mode(settlement, switches->frictions[i].mode, 0.0);
+  }
+}
+
 /* Closes contacts that come to rest, all at once. */
 static bool close_contacts(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -141,6 +151,7 @@ static bool close_contacts(struct Settlement *settlement) {
     bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
     if (!is_open || !comes_to_rest(settlement, i)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    let_stick(settlement, i);
     closes = true;
   }
   return closes;
