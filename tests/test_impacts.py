@@ -19,9 +19,9 @@ def random_system(name, order):
     every = [(i, k) for i in range(SIZE) for k in range(SIZE)]
     pairs = [(i, k) for i, k in every if i <= k]
     lines = [f'<parameter name="m{i}{k}" start="{int(i == k)}"/>' for i, k in pairs]
-    lines += [f'<parameter name="f{i}"/>' for i in range(SIZE)]
+    lines += [f'<parameter name="f{i}" start="0"/>' for i in range(SIZE)]
     for c in range(CONTACTS):
-        lines += [f'<parameter name="{p}{c}"/>' for p in ("gap", "e", "mu")]
+        lines += [f'<parameter name="{p}{c}" start="0"/>' for p in ("gap", "e", "mu")]
         lines += [f'<parameter name="{p}{c}{i}" start="{int(i == (2 * c + (p == "t")))}"/>' for p in "nt" for i in range(SIZE)]
     lines += [f'<coordinate name="q{i}" velocity="v{i}"/>' for i in range(SIZE)]
     kinetic = " + ".join(f"{1 if i != k else 0.5}*m{i}{k}*v{i}*v{k}" for i, k in pairs)
@@ -52,7 +52,7 @@ def balls(name, order):
 
 
 ROD = """<system name="PainleveRod" description="Uniform rod that slides on its tip">
-  <parameter name="mu" start="2"/><parameter name="e"/><parameter name="theta0" start="1.2"/>
+  <parameter name="mu" start="2"/><parameter name="e" start="0"/><parameter name="theta0" start="1.2"/>
   <coordinate name="x" velocity="vx" velocityStart="-1"/>
   <coordinate name="y" velocity="vy" start="sin(theta0)"/>
   <coordinate name="theta" velocity="w" start="theta0"/>
@@ -64,7 +64,7 @@ ROD = """<system name="PainleveRod" description="Uniform rod that slides on its 
 </system>"""
 
 WEDGE = """<system name="Wedge" description="Ball that falls into a wedge of 60 degrees">
-  <parameter name="e" start="0.8"/><parameter name="mu"/><parameter name="r" start="0.1"/>
+  <parameter name="e" start="0.8"/><parameter name="mu" start="0"/><parameter name="r" start="0.1"/>
   <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" start="1"/><coordinate name="phi" velocity="w"/>
   <body mass="1" x="x" y="y" inertia="0.4*r^2" angle="phi"/>
   <potential>9.81*y</potential>
