@@ -186,20 +186,48 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
         rates = case.n[:k] @ v
         assert np.all(rates >= -1e-9 * size * unit[:k])
         if tied:
+            share = [1.0]
             slip, limit = case.t[:k] @ v, case.mu[:k] * normal
             pressed = normal > 1e-6 * size / unit[:k]
             slides = pressed & (abs(slip) > 1e-9 * size * unit[k:])
             assert np.all(abs(along + np.sign(slip) * limit)[slides] <= 1e-8 * size / unit[k:][slides] * (1 + case.mu[:k][slides]))
-            share = rates[pressed] / case.e[:k][pressed]
-            if np.all(case.e[:k] > 0) and pressed.any():
-                assert np.ptp(share) <= 1e-7 * max(1.0, size * unit.max()) and share[0] <= 1 + 1e-8
-                lessened += share[0] < 1 - 1e-6
-                if share[0] < 1 - 1e-6:  # as little as keeps the energy
-                    assert v @ case.mass @ v >= size**2 * (1 - 1e-7)
+            if np.all(case.e[:k] > 0.01) and pressed.any():
+                share = rates[pressed] / case.e[:k][pressed]
+                assert np.ptp(share) <= 1e-6 * max(1.0, size * unit.max()) and share[0] <= 1 + 1e-7
+            if share[0] < 1 - 1e-6:
+                lessened += 1
+                gains = impacts_by_trial(case)
+                assert len(gains) > 1 or np.all(np.array(gains) > 0)
+                assert k > 1 or v @ case.mass @ v >= size**2 * (1 - 1e-7)  # as little as keeps the energy from growing
         swapped = case.start(other)
         turned += np.allclose(v, swapped, atol=1e-8 * abs(v).max())
     assert turned == 400
     assert lessened > 10 or not tied
+
+
+def impacts_by_trial(case):
+    """Twice the energy that all solutions of the law without lessened restitution gain, by trying all modes out."""
+    k, gains = case.count, []
+    w = case.rows() @ np.linalg.inv(case.mass) @ case.rows().T
+    before = case.rows() @ case.v
+    target = -case.e[:k] * before[:k]
+    for modes in itertools.product(("open", "sticks", 1, -1), repeat=k):
+        a, b = np.zeros((2 * k, 2 * k)), np.zeros(2 * k)
+        for i, mode in enumerate(modes):
+            if mode == "open":
+                a[i, i] = a[k + i, k + i] = 1.0
+                continue
+            a[i], b[i] = w[i], target[i] - before[i]
+            if mode == "sticks":
+                a[k + i], b[k + i] = w[k + i], -before[k + i]
+            else:
+                a[k + i, k + i], a[k + i, i] = 1.0, mode * case.mu[i]
+        z = np.linalg.solve(a, b)
+        behind = before + w @ z
+        fits = np.all(z[:k] >= -1e-10) and np.all(abs(z[k:]) <= case.mu[:k] * z[:k] + 1e-10) and np.all(behind[:k] >= target - 1e-10)
+        if fits and all(behind[k + i] * mode >= 0 for i, mode in enumerate(modes) if mode in (1, -1)):
+            gains.append(z @ (before + behind))
+    return gains
 
 
 def motions(free, s):
@@ -222,7 +250,8 @@ def test_forces_of_sliding_contacts_are_the_only_ones_or_refused(open_fmu):
     for _ in range(500):
         case = Contacts(rng, 2.0)
         k = case.count
-        case.v -= np.linalg.pinv(case.n[:k]) @ (case.n[:k] @ case.v)
+        for _ in range(3):
+            case.v -= np.linalg.pinv(case.n[:k]) @ (case.n[:k] @ case.v)
         inverse = np.linalg.inv(case.mass)
         pushes = case.n[:k].T - case.t[:k].T * (np.sign(case.t[:k] @ case.v) * case.mu[:k])
         s, free = case.n[:k] @ inverse @ pushes, case.n[:k] @ inverse @ case.force
@@ -261,14 +290,26 @@ def test_a_rod_that_locks_is_refused(open_fmu, w, words):
 
 
 def test_a_rod_ends_where_it_begins_to_lock(open_fmu):
-    """It slides well at first; the force grows beyond all bounds where p comes to 0, unless that of the contact ends before."""
-    instance = open_fmu("PainleveRod").initialize({"mu": 1.6, "theta0": 1.4})
+    """p falls from 1.2 to 0, where the force grows beyond all bounds; until then the motion is that of an ODE."""
+    mu, theta, w, slip = 1.5, 0.8, 1.0, -30.0
+
+    def rate(t, state):
+        theta, w, _ = state
+        force = (G - np.sin(theta) * w**2) / rod_pressure(theta, mu)
+        return [w, 3 * force * (mu * np.sin(theta) - np.cos(theta)), mu * force]
+
+    locks = lambda t, state: rod_pressure(state[0], mu) - 1e-6
+    locks.terminal = True
+    path = solve_ivp(rate, (0, 1), [theta, w, slip - np.sin(theta) * w], events=locks, rtol=1e-12, atol=1e-12, dense_output=True)
+    start = {"mu": mu, "theta0": theta, "w": w, "vy": np.cos(theta) * w, "vx": slip - np.sin(theta) * w}
+    instance = open_fmu("PainleveRod").initialize(start, tolerance=1e-11)
+    for share in (0.5, 0.9, 0.99):
+        to(instance, share * path.t[-1])
+        assert instance.get("theta", "w", "vx") == pytest.approx(path.sol(instance.time), rel=1e-8)
+    energy = instance.get("totalEnergy")
     with instance.fails(DISCARD, "contact 'tip' .* friction 'rub'.*Painleve"):
-        for _ in range(100):
-            instance.step(0.01)
-            assert instance.get("tip.force") >= 0
-            energy = instance.get("totalEnergy")
-            assert energy <= 0.5 + G * np.sin(1.4) + 1e-9
+        to(instance, 1.1 * path.t[-1])
+    assert instance.get("totalEnergy") <= energy and instance.get("tip.force") > 0
     assert not any("limit of its reach" in text for _, _, text in instance.messages)
 
 

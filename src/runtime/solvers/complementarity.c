@@ -9,8 +9,11 @@
 
 enum { PIVOTS_A_ROW = 50 };
 
-/* Less than this in a pivot, or between two ratios, is rounding. */
+/* Less than this in a pivot is rounding. */
 static const double least_pivot = 1e-12;
+
+/* So is less than this between two ratios: where the first does not lead to the end, the next is tried. */
+static const double least_differences[] = {1e-14, 1e-12, 1e-10};
 
 /*
  * Rows of the equations for the variables of the basis: the coefficients of w, of z, of z0, and the right side. Variables
@@ -20,6 +23,7 @@ struct LemkeTableau {
   size_t n, width;
   double *row;   /* n rows of width */
   double *basis; /* the variable of each row */
+  double least_difference;
 };
 
 size_t complementarity_work_count(size_t n) {
@@ -61,7 +65,7 @@ static void pivot_at(const struct LemkeTableau *tableau, size_t leaving, size_t 
 static bool is_first(const struct LemkeTableau *tableau, size_t entering, size_t i, size_t k) {
   const double *one = tableau_row(tableau, i), *other = tableau_row(tableau, k);
   double difference = one[tableau->width - 1] / one[entering] - other[tableau->width - 1] / other[entering];
-  for (size_t j = 0; j < tableau->n && fabs(difference) <= least_pivot; j++)
+  for (size_t j = 0; j < tableau->n && fabs(difference) <= tableau->least_difference; j++)
     difference = one[j] / one[entering] - other[j] / other[entering];
   return difference < 0.0;
 }
@@ -75,7 +79,7 @@ static size_t find_leaving(const struct LemkeTableau *tableau, size_t entering) 
   for (size_t i = 0; i < n && found < n; i++) {
     const double *row = tableau_row(tableau, i), *first = tableau_row(tableau, found);
     if (tableau->basis[i] != (double)last || !(row[entering] > least_pivot)) continue;
-    if (row[last + 1] / row[entering] <= first[last + 1] / first[entering] + least_pivot) found = i;
+    if (row[last + 1] / row[entering] <= first[last + 1] / first[entering] + tableau->least_difference) found = i;
   }
   return found;
 }
@@ -88,9 +92,11 @@ static size_t find_least(const struct LemkeTableau *tableau) {
   return least;
 }
 
-bool complementarity_solve(size_t n, const double *matrix, const double *q, double *z, double *work) {
+static bool follow_path(size_t n, const double *matrix, const double *q, double least_difference, double *z,
+                        double *work) {
   struct LemkeTableau tableau = fill_tableau(n, matrix, q, work);
   size_t z0 = 2 * n, entering = z0, leaving = find_least(&tableau);
+  tableau.least_difference = least_difference;
   memset(z, 0, n * sizeof *z);
   if (!(q[leaving] < 0.0)) return true;
   for (size_t count = 0; count < PIVOTS_A_ROW * n; count++) {
@@ -107,4 +113,11 @@ bool complementarity_solve(size_t n, const double *matrix, const double *q, doub
     if (leaving == n) return false;
   }
   return false;
+}
+
+bool complementarity_solve(size_t n, const double *matrix, const double *q, double *z, double *work) {
+  bool is_solved = false;
+  for (size_t i = 0; i < sizeof least_differences / sizeof *least_differences && !is_solved; i++)
+    is_solved = follow_path(n, matrix, q, least_differences[i], z, work);
+  return is_solved;
 }

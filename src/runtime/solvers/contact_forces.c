@@ -54,7 +54,18 @@ static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
   return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
 }
 
-/* Which contacts may open or close by their forces, and which frictions slide; false where no such friction presses. */
+/* Whether an open contact at rest would close, as one that another has opened too soon. */
+static bool sinks(const struct Settlement *settlement) {
+  bool any = false;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
+    size_t place = contact_place(settlement, i, CONTACT_ACCELERATION);
+    bool is_open = mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0;
+    any |= is_open && settlement->takes_part[i] != 0.0 && settlement->value[place] < -settlement->noise[place];
+  }
+  return any;
+}
+
+/* Which contacts may open or close by their forces, and which frictions slide. Whether such a friction rests on any. */
 static bool choose_resting(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t contacts = switches->contact_count;
@@ -283,13 +294,13 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
 const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   struct RestingContacts resting;
   *again = false;
-  if (settlement->switches->rests_on == NULL || !choose_resting(settlement)) return NULL;
-  if (!create_resting(settlement, &resting)) return NULL;
+  bool slides = choose_resting(settlement), is_wrong = sinks(settlement);
+  if (!(slides || is_wrong) || !create_resting(settlement, &resting)) return NULL;
   const char *problem = NULL;
-  if (resting.count <= COMBINED_LIMIT && !is_surely_one(&resting)) {
+  if (resting.count <= COMBINED_LIMIT && (is_wrong || !is_surely_one(&resting))) {
     int count = count_solutions(&resting);
-    if (count != 1) problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
-    else *again = take_solution(settlement, &resting);
+    if (count == 1) *again = take_solution(settlement, &resting);
+    else if (slides) problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
   }
   free_resting(settlement, &resting);
   return problem;
@@ -297,8 +308,7 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
 
 bool contact_forces_explain(struct Settlement *settlement) {
   struct RestingContacts resting;
-  if (settlement->switches->rests_on == NULL || !choose_resting(settlement)) return false;
-  if (!create_resting(settlement, &resting)) return false;
+  if (!choose_resting(settlement) || !create_resting(settlement, &resting)) return false;
   size_t contact = find_locked(&resting);
   bool locks = resting.s[contact * resting.count + contact] < locking_share;
   if (locks)

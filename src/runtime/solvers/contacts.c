@@ -133,6 +133,18 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
          rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
 }
 
+/* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */
+static void let_moving_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
+    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
+    double velocity = settlement->value[place];
+    bool sticks = mode_of(settlement, switches->frictions[i].mode) == 0.0;
+    if (!sticks || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE)) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, velocity < 0.0 ? -1.0 : 1.0);
+  }
+}
+
 /* What does not slide as a contact comes to rest sticks: else what rest takes from the gap would make it slide. */
 static void let_stick(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
@@ -154,6 +166,7 @@ static bool close_contacts(struct Settlement *settlement) {
     let_stick(settlement, i);
     closes = true;
   }
+  if (closes) let_moving_slide(settlement);
   return closes;
 }
 
@@ -245,7 +258,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = true;
   if ((settlement->moved || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
-  size_t contact = find_impact(settlement);
+  size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
   if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
   if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
   bool lifts;

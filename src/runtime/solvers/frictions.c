@@ -2,6 +2,7 @@
  * Dry friction: which slides, which sticks. Of frictions the first that cannot stay as it is switches, by Murty's least-index
  * method: it comes to an end, but the first ones may switch often where many act on one another.
  */
+#include <float.h>
 #include <math.h>
 
 #include "settlement.h"
@@ -25,8 +26,10 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
   double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
-  double rate = settlement->value[place + FRICTION_RATE],
-         noise = settlement_noise(settlement, place, place + FRICTION_RATE);
+  double rate = settlement->value[place + FRICTION_RATE];
+  /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
+  double noise = settlement->noise[place] +
+                 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
   double flips = settlement->flips[indicator_of_friction(settlement, friction)];
   bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
@@ -47,7 +50,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
     return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
   }
   bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
-  if (is_moving && settlement->jumped) return direction;
+  if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
   if (is_moving && !turns) return mode;
   if (is_first_of_all && is_first) return 0.0;
   double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;

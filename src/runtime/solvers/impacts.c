@@ -33,7 +33,7 @@ struct ImpactProblem {
   const struct Pushes *pushes;
   size_t count;
   double *unit; /* of the impulse of each push */
-  double *matrix, *rate, *q, *z, *work;
+  double *matrix, *rate, *q, *z, *next, *work;
   double *impulse; /* of each push */
   void *block;
 };
@@ -68,7 +68,7 @@ static void fill_friction(struct ImpactProblem *problem, size_t friction) {
 /* False where a contact cannot be moved, or there is no memory. */
 static bool create_problem(struct Settlement *settlement, const struct Pushes *pushes, struct ImpactProblem *problem) {
   size_t n = pushes->contact_count + 3 * pushes->friction_count, count = pushes->count;
-  size_t numbers = 2 * count + n * n + 3 * n + complementarity_work_count(n);
+  size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
   problem->block = settlement->instance->memory.allocate(numbers, sizeof(double));
   if (problem->block == NULL) return false;
@@ -78,7 +78,8 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   problem->rate = problem->matrix + n * n;
   problem->q = problem->rate + n;
   problem->z = problem->q + n;
-  problem->work = problem->z + n;
+  problem->next = problem->z + n;
+  problem->work = problem->next + n;
   bool moves = true;
   for (size_t i = 0; i < count; i++) {
     double mobility = pushes->mobility[i * count + i];
@@ -116,11 +117,13 @@ static bool find_impulses(const struct Settlement *settlement, struct ImpactProb
   double scale = fill_rates(settlement, problem, share);
   memset(problem->z, 0, n * sizeof *problem->z);
   for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] += regularization;
-  bool is_solved = true;
-  for (int count = 0; count < SOLUTIONS && is_solved; count++) {
+  bool is_solved = false, improves = true;
+  for (int count = 0; count < SOLUTIONS && improves; count++) {
     for (size_t i = 0; i < n; i++)
       problem->q[i] = problem->rate[i] - (i < regular ? regularization * problem->z[i] : 0.0);
-    is_solved = complementarity_solve(n, problem->matrix, problem->q, problem->z, problem->work);
+    improves = complementarity_solve(n, problem->matrix, problem->q, problem->next, problem->work);
+    if (improves) memcpy(problem->z, problem->next, n * sizeof *problem->z);
+    is_solved |= improves;
   }
   for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] -= regularization;
   for (size_t i = 0; i < pushes->count; i++) {

@@ -27,7 +27,7 @@ static size_t search_work_count(void) {
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return search_work_count() + 3 * settlement_value_count(switches) + switches->condition_count +
+  return search_work_count() + 4 * settlement_value_count(switches) + switches->condition_count +
          indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
          rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
 }
@@ -38,7 +38,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   struct Settlement settlement = {.instance = instance, .switches = switches};
   settlement.value = instance->switching_work + search_work_count();
   settlement.noise = settlement.value + values;
-  settlement.largest = settlement.noise + values;
+  settlement.rounded_value = settlement.noise + values;
+  settlement.largest = settlement.rounded_value + values;
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
@@ -95,15 +96,21 @@ bool settlement_evaluate(struct Settlement *settlement) {
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
   switching_round(settlement->state, false, settlement->rounded);
   if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
+  switching_round(settlement->state, true, settlement->rounded);
+  if (!settlement_values(settlement, settlement->rounded, settlement->rounded_value)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {
-    double noise = 8.0 * fabs(settlement->noise[i] - settlement->value[i]);
+    double one = fabs(settlement->noise[i] - settlement->value[i]),
+           other = fabs(settlement->rounded_value[i] - settlement->value[i]), noise = 8.0 * fmax(one, other);
     settlement->noise[i] = isfinite(noise) ? noise : 0.0;
   }
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
     measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
-  for (size_t i = 0; i < settlement->switches->friction_count; i++)
-    measure_velocity(settlement, friction_place(settlement, i, FRICTION_VELOCITY));
+  for (size_t i = 0; i < settlement->switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
+    measure_velocity(settlement, velocity);
+    settlement->largest[rate] = fmax(settlement->largest[rate], fabs(settlement->value[rate]));
+  }
   return true;
 }
 

@@ -16,7 +16,8 @@ struct Settlement {
   enum Occasion occasion;
   size_t indicator;           /* for AT_EVENT */
   double *value, *noise;      /* value[], and what rounding may make of it */
-  double *largest;            /* of each velocity in value[], since the start of the event */
+  double *rounded_value;      /* at another state that rounding does not tell from this one */
+  double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
   double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
