@@ -141,7 +141,6 @@ bool solver_take_state(struct Instance *instance, double time) {
 /* Where a mechanism comes to its limit, its user looks for the part that holds it. */
 static void log_weakest(struct Instance *instance, double time) {
   const struct Switching *switcher = lagrangian.switching;
-  if (switcher != NULL && switcher->explain_stop(instance, time)) return;
   const char *name = lagrangian.projection->weakest(instance, time, instance->state);
   if (name != NULL && (switcher == NULL || !switcher->holds_at_times(name)))
     log_message(

@@ -61,8 +61,6 @@ struct Switching {
   /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
-  /* Logs what contacts and frictions have to do with a stop of the solver at a time; false where that is nothing. */
-  bool (*explain_stop)(struct Instance *instance, double time);
   /* Whether the constraint is that of a contact or a friction, whose events tell by themselves where they end. */
   bool (*holds_at_times)(const char *constraint);
   /* The indicators at the situation as an importer is told them; false where there are no accelerations. */

@@ -305,19 +305,3 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   free_resting(settlement, &resting);
   return problem;
 }
-
-bool contact_forces_explain(struct Settlement *settlement) {
-  struct RestingContacts resting;
-  if (!choose_resting(settlement) || !create_resting(settlement, &resting)) return false;
-  size_t contact = find_locked(&resting);
-  bool locks = resting.s[contact * resting.count + contact] < locking_share;
-  if (locks)
-    log_message(
-        settlement->instance, STATUS_DISCARD,
-        "time %g: the force of the contact '%s' grows beyond all bounds, as the friction '%s' slides and presses "
-        "it together (Painleve's paradox); expected less friction, or another position",
-        settlement->time, settlement->switches->contacts[resting.pushes.member[contact]].name,
-        locking_friction(settlement, &resting.pushes, contact));
-  free_resting(settlement, &resting);
-  return locks;
-}

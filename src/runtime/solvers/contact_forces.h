@@ -10,7 +10,4 @@
  */
 const char *contact_forces_settle(struct Settlement *settlement, bool *again);
 
-/* Logs a contact whose friction has nearly locked it, so that its force grows beyond all bounds. False where there is none. */
-bool contact_forces_explain(struct Settlement *settlement);
-
 #endif

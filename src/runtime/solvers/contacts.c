@@ -288,8 +288,5 @@ static const char *check_gaps(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {.act = act_once,
-                                         .settle_forces = contact_forces_settle,
-                                         .release = release,
-                                         .check_gaps = check_gaps,
-                                         .explain = contact_forces_explain};
+const struct ContactLaws contact_laws = {
+    .act = act_once, .settle_forces = contact_forces_settle, .release = release, .check_gaps = check_gaps};

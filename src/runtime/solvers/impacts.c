@@ -17,13 +17,16 @@
 #include "complementarity.h"
 #include "pushes.h"
 
-enum { HALVINGS = 52, SOLUTIONS = 4 };
+enum { HALVINGS = 52, SOLUTIONS = 50 };
 
 /* Less energy than this share may be gained by rounding. */
 static const double least_gain = 1e-13;
 
-/* Keeps impulses small where they are not determined; each further solution removes what it does to them. */
-static const double regularization = 1e-8;
+/*
+ * What is added to the mobilities keeps impulses small where they are not determined; further solutions remove what it does
+ * to them. Where rounding leads the way of the first astray, the next is tried.
+ */
+static const double regularizations[] = {1e-8, 1e-6, 1e-10, 1e-7};
 
 /*
  * In units in which the mobility of each push by itself is 1. Rows of the problem: the impulses of contacts, those of
@@ -110,24 +113,42 @@ static double fill_rates(const struct Settlement *settlement, struct ImpactProbl
   return largest;
 }
 
+/* Whether the next solution differs from the one before by more than rounding. */
+static bool take_next(struct ImpactProblem *problem, double regularization) {
+  double change = 0.0, size = 0.0;
+  for (size_t i = 0; i < problem->count; i++) {
+    change = fmax(change, fabs(problem->next[i] - problem->z[i]));
+    size = fmax(size, fabs(problem->next[i]));
+  }
+  memcpy(problem->z, problem->next, problem->count * sizeof *problem->z);
+  return regularization * change > 0.1 * DBL_EPSILON * size;
+}
+
+/* Solves the problem until the regularization has no part in it any more. False where that cannot be. */
+static bool solve_regularized(struct ImpactProblem *problem, double regularization) {
+  size_t n = problem->count, regular = first_row(problem, 3);
+  bool is_solved = true, changes = true;
+  memset(problem->z, 0, n * sizeof *problem->z);
+  for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] += regularization;
+  for (int count = 0; count < SOLUTIONS && is_solved && changes; count++) {
+    for (size_t i = 0; i < n; i++)
+      problem->q[i] = problem->rate[i] - (i < regular ? regularization * problem->z[i] : 0.0);
+    is_solved = complementarity_solve(n, problem->matrix, problem->q, problem->next, problem->work);
+    if (is_solved) changes = take_next(problem, regularization);
+  }
+  for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] -= regularization;
+  return is_solved;
+}
+
 /* The impulses with a share of the restitutions. False where there are none. */
 static bool find_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
-  size_t n = problem->count, regular = first_row(problem, 3), frictions = pushes->friction_count;
   double scale = fill_rates(settlement, problem, share);
-  memset(problem->z, 0, n * sizeof *problem->z);
-  for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] += regularization;
-  bool is_solved = false, improves = true;
-  for (int count = 0; count < SOLUTIONS && improves; count++) {
-    for (size_t i = 0; i < n; i++)
-      problem->q[i] = problem->rate[i] - (i < regular ? regularization * problem->z[i] : 0.0);
-    improves = complementarity_solve(n, problem->matrix, problem->q, problem->next, problem->work);
-    if (improves) memcpy(problem->z, problem->next, n * sizeof *problem->z);
-    is_solved |= improves;
-  }
-  for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] -= regularization;
+  bool is_solved = false;
+  for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
+    is_solved = solve_regularized(problem, regularizations[i]);
   for (size_t i = 0; i < pushes->count; i++) {
-    double against = i < pushes->contact_count ? 0.0 : problem->z[i + frictions];
+    double against = i < pushes->contact_count ? 0.0 : problem->z[i + pushes->friction_count];
     problem->impulse[i] = (problem->z[i] - against) * problem->unit[i] * scale;
   }
   return is_solved;

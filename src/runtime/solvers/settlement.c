@@ -85,10 +85,12 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
   return true;
 }
 
-/* What a jump leaves of a velocity is rounded as what it had before. */
+/* What a jump leaves of a velocity is rounded as what it had before, in a system of equations that may be nearly singular. */
+static const double rounding_of_jumps = 1e-11;
+
 static void measure_velocity(struct Settlement *settlement, size_t place) {
   settlement->largest[place] = fmax(settlement->largest[place], fabs(settlement->value[place]));
-  settlement->noise[place] = fmax(settlement->noise[place], 8.0 * DBL_EPSILON * settlement->largest[place]);
+  settlement->noise[place] = fmax(settlement->noise[place], rounding_of_jumps * settlement->largest[place]);
 }
 
 bool settlement_evaluate(struct Settlement *settlement) {

@@ -49,8 +49,6 @@ struct ContactLaws {
   bool (*release)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
-  /* Logs a contact whose force grows beyond all bounds; false where there is none. */
-  bool (*explain)(struct Settlement *settlement);
 };
 
 /* What frictions do; FMUs without any do not hold it. */

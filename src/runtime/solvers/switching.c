@@ -274,13 +274,6 @@ static bool is_due(struct Instance *instance) {
   return due;
 }
 
-static bool explain_stop(struct Instance *instance, double time) {
-  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
-  if (laws == NULL) return false;
-  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  return settlement_evaluate(&settlement) && laws->explain(&settlement);
-}
-
 static bool holds_at_times(const char *constraint) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_held = false;
@@ -299,7 +292,6 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
-                                    .explain_stop = explain_stop,
                                     .holds_at_times = holds_at_times,
                                     .indicators = told_indicators,
                                     .is_due = is_due};
