@@ -285,6 +285,12 @@ struct Lagrangian {
    */
   int (*correct_positions)(const struct Point *point, const struct Seed *seed, double *correction);
   int (*correct_velocities)(const struct Point *point, double *correction);
+  /*
+   * What impulses of contacts and frictions do while the constraints hold: impulse[n + m] has them at the places of their
+   * forces; response[2 n] holds the changes of the velocities, and then the impulses along the coordinates. A contact
+   * pushes along its gap, a friction along its velocity. NULL without contacts.
+   */
+  int (*respond)(const struct Point *point, const double *impulse, double *response);
   /* The same for start values, where fixed coordinates and their velocities stay; NULL where none is fixed. */
   int (*start_positions)(const struct Point *point, const struct Seed *seed, double *correction);
   int (*start_velocities)(const struct Point *point, double *correction);

@@ -170,8 +170,9 @@ bool solver_take_state(struct Instance *instance, double time) {
 
 /* Where a mechanism comes to its limit, its user looks for the part that holds it. */
 static void log_weakest(struct Instance *instance, double time) {
+  const struct Switching *switcher = lagrangian.switching;
   const char *name = lagrangian.projection->weakest(instance, time, instance->state);
-  if (name != NULL)
+  if (name != NULL && (switcher == NULL || !switcher->holds_at_times(name)))
     log_message(
         instance, STATUS_DISCARD,
         "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "

@@ -62,6 +62,8 @@ struct Switching {
   /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
+  /* Whether the constraint is that of a contact or a friction, whose events tell by themselves where they end. */
+  bool (*holds_at_times)(const char *constraint);
   /* The indicators at the situation as an importer is told them; false where there are no accelerations. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* Whether an indicator has a sign at the situation that its mode does not allow. */

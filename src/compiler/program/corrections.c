@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "memory.h"
+#include "saddle.h"
 
 static Place target(size_t index) {
   return place_in(SPACE_TARGET, index);
@@ -23,25 +24,57 @@ static void weigh_fixed(const struct Program *program, struct Values *values, co
   }
 }
 
+/* Forces that follow from others have no part in a correction, nor in what an impulse does by itself. */
+static void leave_oblique_out(struct Values *values, const struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count]);
+  for (size_t i = 0; i < block->force_count * block->count; i++)
+    values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
+}
+
+/* Solves a block with its right sides; starting: fixed coordinates stay. */
+static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *side,
+                          bool starting) {
+  const struct LoopedBlock *looped = &program->blocks.items[number];
+  const struct InertiaBlock *block = looped->block;
+  Node *right_side = allocate(block->count, sizeof *right_side);
+  for (size_t i = 0; i < block->count; i++) right_side[i] = side[block->coordinates[i]];
+  append_masses(values, looped);
+  leave_oblique_out(values, looped);
+  if (starting) weigh_fixed(program, values, looped);
+  append_factor(values, &program->blocks, number);
+  append_solution(values, &program->blocks, number, right_side);
+  free(right_side);
+}
+
 /* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */
 static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *side,
                          bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   const struct InertiaBlock *block = looped->block;
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
-  Node *right_side = allocate(block->count, sizeof *right_side);
-  for (size_t i = 0; i < block->count; i++) right_side[i] = side[block->coordinates[i]];
-  append_masses(values, looped);
-  if (starting) weigh_fixed(program, values, looped);
-  append_factor(values, &program->blocks, number);
-  append_solution(values, &program->blocks, number, right_side);
+  append_solved(program, values, number, side, starting);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     Place pivot = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
     if (row < n) routine_append(values->routine, COPY, target(row), place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
     else routine_append(values->routine, COPY, target(row + constraints), pivot, 0, 0);
   }
-  free(right_side);
+}
+
+/* Computes the elements of the blocks that constraints hold, their right sides, and further nodes. */
+static void compute_blocks(const struct Program *program, struct Values *values, const Node *side, const Node *further,
+                           size_t further_count) {
+  struct NodeList targets = {0};
+  append_nodes(&targets, further, further_count);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct InertiaBlock *block = program->blocks.items[b].block;
+    if (block->constraint_count == 0) continue;
+    append_elements(&targets, block);
+    for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
+  }
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
 }
 
 /* side: a right side for each row. */
@@ -51,16 +84,7 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   const struct Equations *equations = program->equations;
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
-  struct NodeList targets = {0};
-  append_nodes(&targets, slope, constraints);
-  for (size_t b = 0; b < program->blocks.count; b++) {
-    const struct InertiaBlock *block = program->blocks.items[b].block;
-    if (block->constraint_count == 0) continue;
-    append_elements(&targets, block);
-    for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
-  }
-  values_compute(values, targets.nodes, targets.count, false);
-  free(targets.nodes);
+  compute_blocks(program, values, side, slope, constraints);
   for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
   for (size_t j = 0; j < constraints; j++) {
     values_copy(values, target(n + j), side[n + j]);
@@ -77,4 +101,24 @@ struct Routine *correct_positions_routine(const struct Program *program, struct 
 
 struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values, bool starting) {
   return correction_routine(program, values, program->expressions->corrections.velocity, starting);
+}
+
+struct Routine *responses_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  const Node *push = program->expressions->corrections.push;
+  size_t n = program->equations->count;
+  compute_blocks(program, values, push, push, n);
+  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target(n + i), push[i]);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct LoopedBlock *looped = &program->blocks.items[b];
+    const struct InertiaBlock *block = looped->block;
+    if (block->constraint_count == 0) continue;
+    append_solved(program, values, b, push, false);
+    for (size_t i = 0; i < block->count; i++)
+      if (block->coordinates[i] < n)
+        routine_append(values->routine, COPY, target(block->coordinates[i]),
+                       place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  }
+  return routine;
 }

@@ -8,4 +8,7 @@
 struct Routine *correct_positions_routine(const struct Program *program, struct Values *values, bool starting);
 struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values, bool starting);
 
+/* What impulses of contacts and frictions do: see respond in include/lagrangian.h. */
+struct Routine *responses_routine(const struct Program *program, struct Values *values);
+
 #endif

@@ -71,6 +71,39 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
   free(moved);
 }
 
+static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
+  return seeds[graph->vertices[symbol].left];
+}
+
+/* Adds what a push along a gap, or a velocity, does along the coordinates. */
+static void add_push(const struct Model *model, Node along, enum SymbolKind kind, Node seed, Node *push) {
+  struct Graph *graph = model->graph;
+  struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
+  for (size_t i = 0; i < gradient.count; i++) {
+    size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
+    if (model->drives[coordinate].given) continue;
+    push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
+  }
+  gradient_free(&gradient);
+}
+
+/* Contacts push along their gaps, frictions along their velocities. */
+static void create_pushes(struct Expressions *expressions, const Node *seeds) {
+  const struct Model *model = expressions->model;
+  const struct Switches *switches = &model->switches;
+  Node *push = expressions->corrections.push = allocate(row_count(expressions->equations), sizeof(Node));
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const struct Contact *contact = &switches->contacts[i];
+    Node seed = seed_of(model->graph, seeds, model->constraint_forces[contact->constraint]);
+    add_push(model, contact->gap, COORDINATE, seed, push);
+  }
+  for (size_t i = 0; i < switches->friction_count && switches->contact_count > 0; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node seed = seed_of(model->graph, seeds, model->constraint_forces[friction->constraint]);
+    add_push(model, friction->velocity, VELOCITY, seed, push);
+  }
+}
+
 static void without_accelerations(const struct Graph *graph, Node *seeds) {
   for (size_t i = 0; i < graph->symbol_count; i++)
     if (graph->symbols[i].kind == ACCELERATION) seeds[i] = ZERO;
@@ -114,6 +147,7 @@ static void create_directional(struct Expressions *expressions) {
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
+  if (expressions->equations->constraints->count > 0) create_pushes(expressions, seeds);
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
@@ -216,6 +250,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, expressions->corrections.position, row_count(equations));
     append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
+    append_nodes(&targets, expressions->corrections.push, equations->count);
   }
   if (expressions->equations->has_work)
     append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
@@ -258,6 +293,7 @@ void expressions_free(struct Expressions *expressions) {
   free(expressions->corrections.position);
   free(expressions->corrections.velocity);
   free(expressions->corrections.slope);
+  free(expressions->corrections.push);
   free(expressions->result);
   free(expressions->result_along);
   free(expressions);

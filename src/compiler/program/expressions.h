@@ -37,6 +37,7 @@ struct ConstraintSide {
 struct Corrections {
   Node *position, *velocity;
   Node *slope; /* of each constraint, see constraint_slopes() */
+  Node *push;  /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
 };
 
 struct Expressions {

@@ -267,9 +267,9 @@ size_t instruction_count(const struct Program *program) {
   size_t count = count_of(program->prepare) + count_of(program->derivatives) + count_of(program->directional) +
                  count_of(program->jacobian) + count_of(program->accelerations) +
                  count_of(program->accelerations_along) + count_of(program->correct_positions) +
-                 count_of(program->correct_velocities) + count_of(program->start_positions) +
-                 count_of(program->start_velocities) + count_of(program->initial) + count_of(program->initial_along) +
-                 count_of(program->indicators) + count_of(program->switching_values);
+                 count_of(program->correct_velocities) + count_of(program->responses) +
+                 count_of(program->start_positions) + count_of(program->start_velocities) + count_of(program->initial) +
+                 count_of(program->initial_along) + count_of(program->indicators) + count_of(program->switching_values);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series, program->watched_series};
@@ -310,6 +310,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
     program->correct_positions = correct_positions_routine(program, values, false);
     program->correct_velocities = correct_velocities_routine(program, values, false);
   }
+  if (program->model->switches.contact_count > 0) program->responses = responses_routine(program, values);
   if (expressions->equations->constraints->count > 0 && has_fixed_coordinates(program->model)) {
     program->start_positions = correct_positions_routine(program, values, true);
     program->start_velocities = correct_velocities_routine(program, values, true);
@@ -339,6 +340,7 @@ void program_free(struct Program *program) {
   routine_free(program->accelerations_along);
   routine_free(program->correct_positions);
   routine_free(program->correct_velocities);
+  routine_free(program->responses);
   routine_free(program->start_positions);
   routine_free(program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++) {

@@ -22,6 +22,7 @@ struct Program {
   struct Routine *jacobian, *linear;                      /* NULL unless the solver asks */
   struct Routine *accelerations, *accelerations_along;    /* of all rows of K; NULL without constraints, as are */
   struct Routine *correct_positions, *correct_velocities; /* corrections.h */
+  struct Routine *responses;                              /* NULL without contacts */
   struct Routine *start_positions, *start_velocities;     /* where some coordinates are fixed at the start */
   /* Of each result, or of it and those that it is continued by; along is NULL unless it is an output. */
   struct Routine **result, **result_along;

@@ -49,7 +49,13 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_source(file, "event_search.c");
     include_source(file, "event_passing.c");
   }
-  if (program->model->switches.contact_count > 0) include_source(file, "contacts.c");
+  if (program->model->switches.contact_count > 0) {
+    include_source(file, "complementarity.c");
+    include_source(file, "pushes.c");
+    include_source(file, "impacts.c");
+    include_source(file, "contact_forces.c");
+    include_source(file, "contacts.c");
+  }
   if (program->model->switches.friction_count > 0) include_source(file, "frictions.c");
   fputs("#endif\n", file);
 }
@@ -116,6 +122,7 @@ static void write_routines(FILE *file, const struct Program *program, const stru
                    {&accelerations_along_text, program->accelerations_along},
                    {&correct_positions_text, program->correct_positions},
                    {&correct_velocities_text, program->correct_velocities},
+                   {&respond_text, program->responses},
                    {&start_positions_text, program->start_positions},
                    {&start_velocities_text, program->start_velocities}};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {

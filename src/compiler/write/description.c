@@ -140,6 +140,7 @@ static void write_constraints(FILE *file, const struct Program *program) {
           "    .accelerations = accelerations,\n    .accelerations_along = accelerations_along,\n"
           "    .correct_positions = correct_positions,\n    .correct_velocities = correct_velocities,\n",
           program->model->constraints.count);
+  if (program->responses != NULL) fputs("    .respond = respond,\n", file);
   if (has_guides(program->model))
     fputs("    .constraint_inputs = constraint_inputs,\n    .guides = guides,\n"
           "    .guide_count = sizeof guides / sizeof *guides,\n",

@@ -65,6 +65,12 @@ const struct FunctionText correct_velocities_text = {"The same of the velocities
                                                      "correction",
                                                      RETURNS_STATUS,
                                                      IN_WORKSPACE};
+const struct FunctionText respond_text = {"What impulses of contacts and frictions do",
+                                          "respond",
+                                          "const struct Point *point, const double *da, double *response",
+                                          "response",
+                                          RETURNS_STATUS,
+                                          IN_WORKSPACE};
 const struct FunctionText start_positions_text = {
     "The same where fixed coordinates stay",
     "start_positions",

@@ -52,6 +52,7 @@ struct TableContext *table_context_create(const struct Program *program) {
   note(context, program->accelerations_along);
   note(context, program->correct_positions);
   note(context, program->correct_velocities);
+  note(context, program->responses);
   note(context, program->start_positions);
   note(context, program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++) {
@@ -91,6 +92,7 @@ static size_t local_count(const struct Program *program) {
   count = longest(longest(count, program->initial), program->initial_along);
   count = longest(longest(count, program->accelerations), program->accelerations_along);
   count = longest(longest(count, program->correct_positions), program->correct_velocities);
+  count = longest(count, program->responses);
   count = longest(longest(count, program->start_positions), program->start_velocities);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count = longest(longest(count, program->result[i]), program->result_along[i]);
@@ -219,6 +221,7 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
   }
   begin_frame(file, strstr(text->arguments, "*seed") != NULL);
   set_base(file, "TARGET", text->target);
+  if (text == &respond_text) set_base(file, "SEED_ACCELERATION", "(double *)da");
   if (text == &prepare_text) fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)
     fprintf(file, "  frame.base[SPACE_ACCELERATION] = %s + %zu;\n", text->target, program->equations->count);

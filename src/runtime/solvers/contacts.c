@@ -1,25 +1,30 @@
 /*
- * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, each by Newton's law of
- * restitution through M; what a contact beside would then have to take comes as an impact of its own, so that a row of
- * touching bodies hands a push on. Friction that rests on the force of a contact takes its part in the impact by Coulomb's
- * law.
+ * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, with all that are as fast;
+ * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
+ * on.
  */
+#include "contacts.h"
+
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
+#include "contact_forces.h"
+#include "impacts.h"
+#include "pushes.h"
 #include "settlement.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
 /* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
 static const double shortest_flight = 1000.0;
+/* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
+static const double equal_share = 1e-9;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
 static const char no_impact[] = "a contact cannot take an impact there";
 
-static bool is_touching(const struct Settlement *settlement, size_t contact) {
+bool is_touching(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement, contact, CONTACT_GAP);
   double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
   return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
@@ -47,101 +52,67 @@ static void open_all(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
 }
 
-/* Whether the friction follows from the force of the contact. */
-static bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
-  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
-}
-
-/* Frictions that slide before the impact, as they do then; others take no part, or stick. */
-static void set_frictions(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
-    double velocity = settlement->value[place], mode = velocity < 0.0 ? -1.0 : 1.0;
-    bool sticks = fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE);
-    bool takes_part = rests_on(switches, i, contact);
-    settlement_set_mode(settlement, switches->frictions[i].mode, !takes_part ? 1.0 : sticks ? 0.0 : mode);
-  }
-}
-
-/* The values behind a push; the noise of the present ones is not needed any more. */
-static const double *values_behind(struct Settlement *settlement) {
-  return settlement_values(settlement, settlement->state, settlement->noise) ? settlement->noise : NULL;
-}
-
-/* Lets those frictions stick whose velocity the push has turned round. Whether there are any, or were before. */
-static bool let_stick(struct Settlement *settlement, const double *value, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool any = false;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t mode = switches->frictions[i].mode, place = friction_place(settlement, i, FRICTION_VELOCITY);
-    if (!rests_on(switches, i, contact)) continue;
-    if (mode_of(settlement, mode) * value[place] < 0.0) settlement_set_mode(settlement, mode, 0.0);
-    any |= mode_of(settlement, mode) == 0.0;
-  }
-  return any;
-}
-
-/*
- * An impact with friction that sticks: first the friction alone, then both, so that what sticks stays and the contact parts
- * as fast as restitution says.
- */
-static bool push_sticking(struct Settlement *settlement, size_t contact, double restitution, double rate) {
-  const struct ContactFacts *facts = &settlement->switches->contacts[contact];
-  settlement_set_mode(settlement, facts->mode, 0.0);
-  const double *value = settlement_push(settlement, 1.0) ? values_behind(settlement) : NULL;
-  if (value == NULL) return false;
-  double closing = value[contact_place(settlement, contact, CONTACT_RATE)];
-  settlement_set_mode(settlement, facts->mode, 1.0);
-  return settlement_push(settlement, closing < 0.0 ? 1.0 + restitution * rate / closing : 1.0);
-}
-
-/* Newton's law for one contact by itself, with the frictions that rest on it. */
-static bool push(struct Settlement *settlement, size_t contact, double restitution) {
-  double rate = settlement->value[contact_place(settlement, contact, CONTACT_RATE)];
-  size_t bytes = lagrangian.coordinate_count * sizeof(double);
-  double *velocity = settlement->state + lagrangian.coordinate_count;
-  memcpy(settlement->kept_velocities, velocity, bytes);
-  if (!settlement_push(settlement, 1.0 + restitution)) return false;
-  if (settlement->switches->rests_on == NULL) return true;
-  const double *value = values_behind(settlement);
-  if (value == NULL) return false;
-  if (!let_stick(settlement, value, contact)) return true;
-  memcpy(velocity, settlement->kept_velocities, bytes);
-  return push_sticking(settlement, contact, restitution, rate);
-}
-
-static double *modes_of(const struct Settlement *settlement) {
-  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
-}
-
-static void keep_modes(struct Settlement *settlement) {
-  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
-}
-
-static void restore_modes(struct Settlement *settlement) {
-  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
-  settlement->instance->prepared_is_stale = true;
-}
-
-static bool take_impact(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
+/* Logs a restitution that is none. */
+static bool check_restitution(const struct Settlement *settlement, size_t contact) {
   double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
-  if (!(restitution >= 0.0 && restitution <= 1.0)) {
-    log_message(settlement->instance, STATUS_DISCARD,
-                "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
-                switches->contacts[contact].name, restitution);
-    return false;
+  if (restitution >= 0.0 && restitution <= 1.0) return true;
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
+              settlement->switches->contacts[contact].name, restitution);
+  return false;
+}
+
+/* The contacts that are hit as fast as one, but for rounding; where pushes go to and fro without end, all that touch. */
+static bool choose_hit(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t place = contact_place(settlement, contact, CONTACT_RATE);
+  double fastest = settlement->value[place], noise = settlement->noise[place];
+  bool bounces = settlement->impacts < IMPACT_LIMIT, is_fine = true;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    double slower = settlement->value[rate] - fastest;
+    bool is_tied = slower <= noise + settlement->noise[rate] - equal_share * fastest;
+    settlement->takes_part[i] = is_touching(settlement, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    if (settlement->takes_part[i] == 0.0) continue;
+    is_fine &= check_restitution(settlement, i);
+    settlement->was_opened[i] = 0.0;
   }
-  keep_modes(settlement);
-  set_frictions(settlement, contact);
+  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 1.0;
+  return is_fine;
+}
+
+/* A friction that rests on contacts, all of which are open, cannot stick. */
+static void let_go(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool rests = false, presses = false;
+    for (size_t k = 0; k < switches->contact_count; k++) {
+      if (!rests_on(switches, i, k)) continue;
+      rests = true;
+      presses |= mode_of(settlement, switches->contacts[k].mode) != 0.0;
+    }
+    if (!rests || presses || mode_of(settlement, switches->frictions[i].mode) != 0.0) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+  }
+}
+
+static void let_all_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+}
+
+/* An impact of a contact, and of those that are hit together with it. */
+static bool take_impact(struct Settlement *settlement, size_t contact) {
+  if (!choose_hit(settlement, contact)) return false;
+  settlement_keep_modes(settlement);
+  let_all_slide(settlement);
   open_all(settlement);
-  settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
-  bool done = push(settlement, contact, restitution);
-  restore_modes(settlement);
+  bool done = impacts_take(settlement, settlement->impacts < IMPACT_LIMIT);
+  settlement_restore_modes(settlement);
   open_all(settlement);
+  let_go(settlement);
   settlement->jumped = true;
-  settlement->was_opened[contact] = 0.0;
   settlement->impacts++;
   return done;
 }
@@ -162,6 +133,28 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
          rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
 }
 
+/* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */
+static void let_moving_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
+    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
+    double velocity = settlement->value[place];
+    bool sticks = mode_of(settlement, switches->frictions[i].mode) == 0.0;
+    if (!sticks || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE)) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, velocity < 0.0 ? -1.0 : 1.0);
+  }
+}
+
+/* What does not slide as a contact comes to rest sticks: else what rest takes from the gap would make it slide. */
+static void let_stick(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY);
+    bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
+    if (rests_on(switches, i, contact) && !slides) settlement_set_mode(settlement, switches->frictions[i].mode, 0.0);
+  }
+}
+
 /* Closes contacts that come to rest, all at once. */
 static bool close_contacts(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -170,8 +163,10 @@ static bool close_contacts(struct Settlement *settlement) {
     bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
     if (!is_open || !comes_to_rest(settlement, i)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    let_stick(settlement, i);
     closes = true;
   }
+  if (closes) let_moving_slide(settlement);
   return closes;
 }
 
@@ -222,7 +217,7 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   const struct SwitchTable *switches = settlement->switches;
   *lifts = false;
   if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
-  keep_modes(settlement);
+  settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
     double noise = settlement->noise[contact_place(settlement, i, CONTACT_GAP)];
@@ -234,7 +229,7 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   if (!*lifts) return true;
   settlement->lifts++;
   bool done = settlement_move(settlement);
-  restore_modes(settlement);
+  settlement_restore_modes(settlement);
   return done;
 }
 
@@ -263,14 +258,9 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = true;
   if ((settlement->moved || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
-  size_t contact = find_impact(settlement);
-  if (contact < switches->contact_count && settlement->impacts < IMPACT_LIMIT)
-    return take_impact(settlement, contact) ? NULL : no_impact;
-  if (contact < switches->contact_count) { /* a push that goes to and fro dies away */
-    settlement_set_mode(settlement, switches->contacts[contact].mode, 1.0);
-    return settlement_push(settlement, 1.0) ? NULL : no_impact;
-  }
-  if (close_contacts(settlement)) return settlement_push(settlement, 1.0) ? NULL : no_impact;
+  size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
+  if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
+  if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
   bool lifts;
   if (!lift(settlement, &lifts)) return no_impact;
   if (lifts) return NULL;
@@ -279,6 +269,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   if (!*again) return NULL;
   settlement->was_opened[pulling] = 1.0;
   settlement_set_mode(settlement, switches->contacts[pulling].mode, 0.0);
+  let_go(settlement);
   return NULL;
 }
 
@@ -297,4 +288,5 @@ static const char *check_gaps(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {.act = act_once, .release = release, .check_gaps = check_gaps};
+const struct ContactLaws contact_laws = {
+    .act = act_once, .settle_forces = contact_forces_settle, .release = release, .check_gaps = check_gaps};

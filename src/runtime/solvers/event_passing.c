@@ -106,6 +106,14 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   return false;
 }
 
+/* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
+static bool is_bounce(const struct Instance *instance, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t contact = indicator - switches->branch_count;
+  return indicator >= switches->branch_count && contact < switches->contact_count &&
+         instance->parameter[switches->contacts[contact].mode] == 0.0;
+}
+
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator;
@@ -113,7 +121,8 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
-  bool is_close = instance->was_at_zero || solver_rests(time, time - progress->searched);
+  bool is_close = (instance->was_at_zero && !is_bounce(instance, indicator)) ||
+                  solver_rests(time, time - progress->searched);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   progress->last = time - step->start;

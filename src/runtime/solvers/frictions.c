@@ -2,6 +2,7 @@
  * Dry friction: which slides, which sticks. Of frictions the first that cannot stay as it is switches, by Murty's least-index
  * method: it comes to an end, but the first ones may switch often where many act on one another.
  */
+#include <float.h>
 #include <math.h>
 
 #include "settlement.h"
@@ -13,19 +14,31 @@ static const double shortest_slip = 1e-4;
 
 static const char neither[] = "a friction changes to and fro there without end";
 
+/* Where there is no force, as of mu = 0, nothing sticks. */
+static double frictionless_mode(const struct Settlement *settlement, size_t place, double mode, bool is_moving) {
+  double velocity = settlement->value[place], rate = settlement->value[place + FRICTION_RATE];
+  double next = is_moving ? velocity : fabs(rate) > settlement->noise[place + FRICTION_RATE] ? rate : mode;
+  return next < 0.0 ? -1.0 : 1.0;
+}
+
 /* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
 static double friction_mode(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
   double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
-  double rate = settlement->value[place + FRICTION_RATE],
-         noise = settlement_noise(settlement, place, place + FRICTION_RATE);
+  double rate = settlement->value[place + FRICTION_RATE];
+  /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
+  double noise = settlement->noise[place] +
+                 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
   double flips = settlement->flips[indicator_of_friction(settlement, friction)];
   bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
   bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
   bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
   double direction = velocity > 0.0 ? 1.0 : -1.0;
+  bool is_absent =
+      settlement->value[place + FRICTION_STICTION] <= 0.0 && settlement->value[place + FRICTION_FORCE] <= 0.0;
+  if (is_absent) return frictionless_mode(settlement, place, mode, is_moving);
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
     double stiction = settlement->value[place + FRICTION_STICTION];
@@ -37,7 +50,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
     return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
   }
   bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
-  if (is_moving && settlement->jumped) return direction;
+  if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
   if (is_moving && !turns) return mode;
   if (is_first_of_all && is_first) return 0.0;
   double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;

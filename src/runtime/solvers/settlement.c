@@ -10,7 +10,7 @@
 /* A state is not told from others nearer than the last digit of this share of its nominal value. */
 static const double least_share = 0.1;
 
-static size_t decision_count(const struct SwitchTable *switches) {
+size_t settlement_value_count(const struct SwitchTable *switches) {
   return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
          FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count +
          switches->energy_count;
@@ -23,26 +23,27 @@ static size_t rows_of_matrix(void) {
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return switching_search_count() + 3 * decision_count(switches) + switches->condition_count + indicator_count(switches) +
-         switches->contact_count + switches->energy_count + rows_of_matrix() + switches->mode_count +
-         3 * lagrangian.state_count + corrections;
+  return switching_search_count() + 4 * settlement_value_count(switches) + switches->condition_count +
+         indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
+         rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t values = decision_count(switches), indicators = indicator_count(switches);
+  size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
   struct Settlement settlement = {.instance = instance, .switches = switches};
   settlement.value = instance->switching_work + switching_search_count();
   settlement.noise = settlement.value + values;
-  settlement.largest = settlement.noise + values;
+  settlement.rounded_value = settlement.noise + values;
+  settlement.largest = settlement.rounded_value + values;
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->condition_count;
   settlement.was_opened = settlement.flips + indicators;
-  settlement.energy = settlement.was_opened + switches->contact_count;
+  settlement.takes_part = settlement.was_opened + switches->contact_count;
+  settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
   settlement.acceleration = settlement.energy + switches->energy_count;
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
-  settlement.kept_velocities = settlement.kept_modes + switches->mode_count;
-  settlement.rounded = settlement.kept_velocities + lagrangian.state_count;
+  settlement.rounded = settlement.kept_modes + switches->mode_count;
   settlement.derivative = settlement.rounded + lagrangian.state_count;
   settlement.correction = settlement.derivative + lagrangian.state_count;
   memset(settlement.largest, 0, values * sizeof(double));
@@ -80,26 +81,34 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
   return true;
 }
 
-/* What a jump leaves of a velocity is rounded as what it had before. */
+/* What a jump leaves of a velocity is rounded as what it had before, in a system of equations that may be nearly singular. */
+static const double rounding_of_jumps = 1e-11;
+
 static void measure_velocity(struct Settlement *settlement, size_t place) {
   settlement->largest[place] = fmax(settlement->largest[place], fabs(settlement->value[place]));
-  settlement->noise[place] = fmax(settlement->noise[place], 8.0 * DBL_EPSILON * settlement->largest[place]);
+  settlement->noise[place] = fmax(settlement->noise[place], rounding_of_jumps * settlement->largest[place]);
 }
 
 bool settlement_evaluate(struct Settlement *settlement) {
-  size_t count = decision_count(settlement->switches);
+  size_t count = settlement_value_count(settlement->switches);
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
   switching_round(settlement->state, false, settlement->rounded);
   if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
+  switching_round(settlement->state, true, settlement->rounded);
+  if (!settlement_values(settlement, settlement->rounded, settlement->rounded_value)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {
-    double noise = 8.0 * fabs(settlement->noise[i] - settlement->value[i]);
+    double one = fabs(settlement->noise[i] - settlement->value[i]),
+           other = fabs(settlement->rounded_value[i] - settlement->value[i]), noise = 8.0 * fmax(one, other);
     settlement->noise[i] = isfinite(noise) ? noise : 0.0;
   }
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
     measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
-  for (size_t i = 0; i < settlement->switches->friction_count; i++)
-    measure_velocity(settlement, friction_place(settlement, i, FRICTION_VELOCITY));
+  for (size_t i = 0; i < settlement->switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
+    measure_velocity(settlement, velocity);
+    settlement->largest[rate] = fmax(settlement->largest[rate], fabs(settlement->value[rate]));
+  }
   return true;
 }
 
@@ -114,14 +123,27 @@ void settlement_set_mode(struct Settlement *settlement, size_t mode, double valu
   settlement->changed = true;
 }
 
-bool settlement_push(struct Settlement *settlement, double factor) {
+static double *modes_of(const struct Settlement *settlement) {
+  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
+}
+
+void settlement_keep_modes(struct Settlement *settlement) {
+  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
+}
+
+void settlement_restore_modes(struct Settlement *settlement) {
+  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
+  settlement->instance->prepared_is_stale = true;
+}
+
+bool settlement_push(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   double *velocity = settlement->state + lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
   instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += factor * settlement->correction[i];
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += settlement->correction[i];
   settlement->changed = true;
   return true;
 }

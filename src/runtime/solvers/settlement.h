@@ -16,11 +16,13 @@ struct Settlement {
   enum Occasion occasion;
   size_t indicator;           /* for AT_EVENT */
   double *value, *noise;      /* value[], and what rounding may make of it */
-  double *largest;            /* of each velocity in value[], since the start of the event */
+  double *rounded_value;      /* at another state that rounding does not tell from this one */
+  double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
   double *acceleration;       /* and forces of constraints */
-  double *kept_modes, *kept_velocities;
+  double *kept_modes;
   double *rounded, *derivative, *correction;
   const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
   double overshoot;                    /* in s: how long before its indicator was 0 */
@@ -38,6 +40,11 @@ struct ContactLaws {
    * motion cannot go on.
    */
   const char *(*act)(struct Settlement *settlement, bool *again);
+  /*
+   * Behind frictions: opens and closes contacts at rest as the only solution for their forces says. NULL, or the reason why
+   * there is none.
+   */
+  const char *(*settle_forces)(struct Settlement *settlement, bool *again);
   /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
   bool (*release)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
@@ -52,6 +59,9 @@ struct FrictionLaws {
   const char *(*check)(const struct Settlement *settlement);
 };
 
+/* The numbers in value[]. */
+size_t settlement_value_count(const struct SwitchTable *switches);
+
 /* Numbers of workspace, and where they are. */
 size_t settlement_work_count(void);
 struct Settlement settlement_of(struct Instance *instance);
@@ -65,11 +75,8 @@ bool settlement_evaluate(struct Settlement *settlement);
 /* The values at a state, without what rounding may make of them. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
 
-/*
- * Changes the velocities by a factor of the way to the constraints that hold, the least in the metric of M, and by what
- * friction adds to that. False where there is none.
- */
-bool settlement_push(struct Settlement *settlement, double factor);
+/* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
+bool settlement_push(struct Settlement *settlement);
 
 /* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
 bool settlement_move(struct Settlement *settlement);
@@ -119,6 +126,10 @@ const char *continuity_check(struct Settlement *settlement);
 extern const char constraints_not_kept[];
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
+
+/* What is tried out in between leaves no mode behind. */
+void settlement_keep_modes(struct Settlement *settlement);
+void settlement_restore_modes(struct Settlement *settlement);
 
 /* What rounding of the state and the time leaves of a value that changes at a rate. */
 double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate);

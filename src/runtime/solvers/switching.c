@@ -174,6 +174,9 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
+  if (settlement->switches->contact_laws != NULL)
+    problem = settlement->switches->contact_laws->settle_forces(settlement, again);
+  if (problem != NULL || *again) return problem;
   return happen(settlement, again);
 }
 
@@ -211,7 +214,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
     if (round == 0 && problem == NULL) copy_conditions(&settlement);
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
-  if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
+  if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement))
     problem = constraints_not_kept;
   if (problem == NULL) problem = continuity_check(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);
@@ -271,6 +274,14 @@ static bool is_due(struct Instance *instance) {
   return due;
 }
 
+static bool holds_at_times(const char *constraint) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_held = false;
+  for (size_t i = 0; i < switches->contact_count; i++) is_held |= strcmp(switches->contacts[i].name, constraint) == 0;
+  for (size_t i = 0; i < switches->friction_count; i++) is_held |= strcmp(switches->frictions[i].name, constraint) == 0;
+  return is_held;
+}
+
 const struct Switching switching = {.work_count = settlement_work_count,
                                     .settle = settle,
                                     .guess = guess,
@@ -281,5 +292,6 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
+                                    .holds_at_times = holds_at_times,
                                     .indicators = told_indicators,
                                     .is_due = is_due};

@@ -1,0 +1,483 @@
+"""Impacts with friction, forces of contacts that slide, and bounces until rest: by NumPy, SciPy and closed forms."""
+
+import itertools
+
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from scipy.integrate import solve_ivp
+
+from fmu import ERROR, build_systems
+from test_switching import events, to
+
+G = 9.81
+SIZE, CONTACTS = 8, 4  # coordinates and contacts of the random systems
+
+
+def random_system(name, order):
+    """A mass matrix, forces, gaps and frictions that are all parameters; the order of the elements is given."""
+    every = [(i, k) for i in range(SIZE) for k in range(SIZE)]
+    pairs = [(i, k) for i, k in every if i <= k]
+    lines = [f'<parameter name="m{i}{k}" start="{int(i == k)}"/>' for i, k in pairs]
+    lines += [f'<parameter name="f{i}" start="0"/>' for i in range(SIZE)]
+    for c in range(CONTACTS):
+        lines += [f'<parameter name="{p}{c}" start="0"/>' for p in ("gap", "e", "mu")]
+        lines += [f'<parameter name="{p}{c}{i}" start="{int(i == (2 * c + (p == "t")))}"/>' for p in "nt" for i in range(SIZE)]
+    lines += [f'<coordinate name="q{i}" velocity="v{i}"/>' for i in range(SIZE)]
+    kinetic = " + ".join(f"{1 if i != k else 0.5}*m{i}{k}*v{i}*v{k}" for i, k in pairs)
+    lines.append(f"<kinetic>{kinetic}</kinetic>")
+    lines += [f'<force coordinate="q{i}">f{i}</force>' for i in range(SIZE)]
+    for c in order:
+        row = lambda p, q: " + ".join(f"{p}{c}{i}*{q}{i}" for i in range(SIZE))
+        lines.append(f'<contact name="c{c}" gap="gap{c} + {row("n", "q")}" restitution="e{c}"/>')
+        lines.append(f'<friction name="r{c}" velocity="{row("t", "v")}" force="mu{c}*c{c}.force"/>')
+    text = "\n  ".join(lines)
+    return f'<system name="{name}" description="Random contacts with friction">\n  {text}\n  <experiment stopTime="1"/>\n</system>'
+
+
+def balls(name, order):
+    contacts = {
+        (i, k): f'<contact name="touch{i}{k}" gap="sqrt((x[{k}] - x[{i}])^2 + (y[{k}] - y[{i}])^2) - 1" restitution="e"/>'
+        for i, k in ((1, 2), (1, 3), (2, 3))
+    }
+    return f"""<system name="{name}" description="A ball that hits two others">
+  <parameter name="e" start="1"/>
+  <for index="i" from="1" to="3">
+    <coordinate name="x[i]" velocity="vx[i]"/><coordinate name="y[i]" velocity="vy[i]"/>
+    <particle mass="1" x="x[i]" y="y[i]"/>
+  </for>
+  {"".join(contacts[pair] for pair in order)}
+  <experiment stopTime="2"/>
+</system>"""
+
+
+ROD = """<system name="PainleveRod" description="Uniform rod that slides on its tip">
+  <parameter name="mu" start="2"/><parameter name="e" start="0"/><parameter name="theta0" start="1.2"/>
+  <coordinate name="x" velocity="vx" velocityStart="-1"/>
+  <coordinate name="y" velocity="vy" start="sin(theta0)"/>
+  <coordinate name="theta" velocity="w" start="theta0"/>
+  <body mass="1" x="x" y="y" inertia="1/3" angle="theta"/>
+  <potential>9.81*y</potential>
+  <contact name="tip" gap="y - sin(theta)" restitution="e"/>
+  <friction name="rub" velocity="vx + sin(theta)*w" force="mu*tip.force"/>
+  <experiment stopTime="1"/>
+</system>"""
+
+WEDGE = """<system name="Wedge" description="Ball that falls into a wedge of 60 degrees">
+  <parameter name="e" start="0.8"/><parameter name="mu" start="0"/><parameter name="r" start="0.1"/>
+  <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" start="1"/><coordinate name="phi" velocity="w"/>
+  <body mass="1" x="x" y="y" inertia="0.4*r^2" angle="phi"/>
+  <potential>9.81*y</potential>
+  <contact name="left" gap="y*sin(pi/6) + x*cos(pi/6)" restitution="e"/>
+  <contact name="right" gap="y*sin(pi/6) - x*cos(pi/6)" restitution="e"/>
+  <friction name="rubLeft" velocity="vx*sin(pi/6) - vy*cos(pi/6) + r*w" force="mu*left.force"/>
+  <friction name="rubRight" velocity="vx*sin(pi/6) + vy*cos(pi/6) + r*w" force="mu*right.force"/>
+  <experiment stopTime="2"/>
+</system>"""
+
+BLOCK = """<system name="RockingBlock" description="Slender block that rocks on two corners with friction">
+  <parameter name="b" start="0.1"/><parameter name="h" start="0.5"/><parameter name="mu" start="1"/>
+  <parameter name="theta0" start="0.1"/>
+  <coordinate name="x" velocity="vx"/>
+  <coordinate name="y" velocity="vy" start="h*cos(theta0) + b*abs(sin(theta0))"/>
+  <coordinate name="theta" velocity="w" start="theta0"/>
+  <body mass="1" x="x" y="y" inertia="(b^2 + h^2)/3" angle="theta"/>
+  <potential>9.81*y</potential>
+  <contact name="left" gap="y - b*sin(theta) - h*cos(theta)"/>
+  <contact name="right" gap="y + b*sin(theta) - h*cos(theta)"/>
+  <friction name="leftFoot" velocity="vx + (h*cos(theta) + b*sin(theta))*w" force="mu*left.force"/>
+  <friction name="rightFoot" velocity="vx + (h*cos(theta) - b*sin(theta))*w" force="mu*right.force"/>
+  <experiment stopTime="3"/>
+</system>"""
+
+INCLINE = """<system name="BallOnIncline" description="Ball that bounces down an incline with friction">
+  <parameter name="e" start="0.97"/><parameter name="mu" start="0.3"/><parameter name="a" start="0.2"/>
+  <coordinate name="s" velocity="vs"/><coordinate name="h" velocity="vh" start="0.1"/><coordinate name="phi" velocity="w"/>
+  <body mass="1" x="s" y="h" inertia="0.4*0.01" angle="phi"/>
+  <potential>9.81*(h*cos(a) - s*sin(a))</potential>
+  <contact name="plane" gap="h" restitution="e"/>
+  <friction name="rub" velocity="vs + 0.1*w" force="mu*plane.force"/>
+  <experiment stopTime="30"/>
+</system>"""
+
+TOWER = """<system name="BallOnBall" description="Two balls on top of each other that bounce on the ground">
+  <parameter name="e" start="0.97"/>
+  <coordinate name="a" velocity="va" start="0.1"/><coordinate name="b" velocity="vb" start="0.3"/>
+  <particle mass="1" y="a"/><particle mass="1" y="b"/><potential>9.81*(a + b)</potential>
+  <stop coordinate="a" min="0" restitution="e"/>
+  <contact name="touch" gap="b - a - 0.1" restitution="e"/>
+  <experiment stopTime="30"/>
+</system>"""
+
+PAIRS = [(1, 2), (1, 3), (2, 3)]
+SYSTEMS = {
+    "RandomContacts": random_system("RandomContacts", [0, 1, 2, 3]),
+    "RandomContactsTurned": random_system("RandomContactsTurned", [2, 3, 1, 0]),
+    "ThreeBalls": balls("ThreeBalls", PAIRS),
+    "ThreeBallsTurned": balls("ThreeBallsTurned", PAIRS[::-1]),
+    "PainleveRod": ROD,
+    "Wedge": WEDGE,
+    "RockingBlock": BLOCK,
+    "BallOnIncline": INCLINE,
+    "BallOnBall": TOWER,
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("impacts", SYSTEMS)
+
+
+# --- Random contacts with friction ---
+
+
+class Contacts:
+    """A random system; far contacts do not take part."""
+
+    def __init__(self, rng, largest_mu=3.0):
+        self.count = rng.integers(1, CONTACTS + 1)
+        a = rng.normal(size=(SIZE, SIZE))
+        self.mass = a @ a.T + 10 ** rng.uniform(-3, 0) * np.eye(SIZE)
+        self.n, self.t = rng.normal(size=(2, CONTACTS, SIZE))
+        self.force = rng.normal(size=SIZE)
+        self.v = rng.normal(size=SIZE)
+        self.e = rng.uniform(0, 1, CONTACTS) if rng.random() < 0.5 else np.full(CONTACTS, rng.choice([0.0, 1.0, 0.7]))
+        self.mu = rng.uniform(0, largest_mu, CONTACTS)
+        self.gap = np.where(np.arange(CONTACTS) < self.count, 0.0, 100.0)
+
+    def rows(self):
+        return np.vstack([self.n[: self.count], self.t[: self.count]])
+
+    def values(self):
+        numbers = {"gap": self.gap, "e": self.e, "mu": self.mu, "f": self.force, "v": self.v}
+        values = {f"{p}{i}": x for p, xs in numbers.items() for i, x in enumerate(xs)}
+        for p, matrix in (("m", self.mass), ("n", self.n), ("t", self.t)):
+            values |= {f"{p}{i}{k}": matrix[i, k] for i in range(len(matrix)) for k in range(SIZE) if p != "m" or k >= i}
+        return values
+
+    def start(self, instance):
+        instance.reset().initialize(self.values())
+        return np.array(instance.get(*[f"v{i}" for i in range(SIZE)]))
+
+
+@pytest.mark.parametrize("tied", [False, True])
+def test_random_impacts_obey_their_law(open_fmu, tied):
+    """One after the other, or all at once: then also Newton's law or less, and Coulomb's."""
+    instance, other = open_fmu("RandomContacts", logging=False), open_fmu("RandomContactsTurned", logging=False)
+    rng = np.random.default_rng(tied)
+    lessened = turned = 0
+    for _ in range(400):
+        case = Contacts(rng)
+        case.force[:] = 0.0  # nothing presses: what parts or touches stays as the impact leaves it
+        k = case.count
+        if tied:
+            case.v += np.linalg.pinv(case.n[:k]) @ (-1.0 - case.n[:k] @ case.v)
+        v = case.start(instance)
+        inverse = np.linalg.inv(case.mass)
+        rows, size = case.rows(), np.sqrt(case.v @ case.mass @ case.v)
+        impulse = np.linalg.lstsq(rows.T, case.mass @ (v - case.v), rcond=None)[0]
+        assert np.allclose(rows.T @ impulse, case.mass @ (v - case.v), atol=1e-9 * size * np.sqrt(np.linalg.norm(case.mass)))
+        unit = np.sqrt(np.diag(rows @ inverse @ rows.T))
+        normal, along = np.split(impulse, 2)
+        tiny = 1e-9 * size / unit
+        assert np.all(normal >= -tiny[:k])
+        assert np.all(abs(along) <= case.mu[:k] * normal + tiny[k:] + case.mu[:k] * tiny[:k])
+        assert v @ case.mass @ v <= size**2 * (1 + 1e-11)
+        rates = case.n[:k] @ v
+        assert np.all(rates >= -1e-9 * size * unit[:k])
+        if tied:
+            share = [1.0]
+            slip, limit = case.t[:k] @ v, case.mu[:k] * normal
+            pressed = normal > 1e-6 * size / unit[:k]
+            slides = pressed & (abs(slip) > 1e-9 * size * unit[k:])
+            assert np.all(abs(along + np.sign(slip) * limit)[slides] <= 1e-8 * size / unit[k:][slides] * (1 + case.mu[:k][slides]))
+            if np.all(case.e[:k] > 0.01) and pressed.any():
+                share = rates[pressed] / case.e[:k][pressed]
+                assert np.ptp(share) <= 1e-6 * max(1.0, size * unit.max()) and share[0] <= 1 + 1e-7
+            if share[0] < 1 - 1e-6:
+                lessened += 1
+                gains = impacts_by_trial(case)
+                assert len(gains) > 1 or np.all(np.array(gains) > 0)
+                assert k > 1 or v @ case.mass @ v >= size**2 * (1 - 1e-7)  # as little as keeps the energy from growing
+        swapped = case.start(other)
+        turned += np.allclose(v, swapped, atol=1e-8 * abs(v).max())
+    assert turned == 400
+    assert lessened > 10 or not tied
+
+
+def impacts_by_trial(case):
+    """Twice the energy that all solutions of the law without lessened restitution gain, by trying all modes out."""
+    k, gains = case.count, []
+    w = case.rows() @ np.linalg.inv(case.mass) @ case.rows().T
+    before = case.rows() @ case.v
+    target = -case.e[:k] * before[:k]
+    for modes in itertools.product(("open", "sticks", 1, -1), repeat=k):
+        a, b = np.zeros((2 * k, 2 * k)), np.zeros(2 * k)
+        for i, mode in enumerate(modes):
+            if mode == "open":
+                a[i, i] = a[k + i, k + i] = 1.0
+                continue
+            a[i], b[i] = w[i], target[i] - before[i]
+            if mode == "sticks":
+                a[k + i], b[k + i] = w[k + i], -before[k + i]
+            else:
+                a[k + i, k + i], a[k + i, i] = 1.0, mode * case.mu[i]
+        z = np.linalg.solve(a, b)
+        behind = before + w @ z
+        fits = np.all(z[:k] >= -1e-10) and np.all(abs(z[k:]) <= case.mu[:k] * z[:k] + 1e-10) and np.all(behind[:k] >= target - 1e-10)
+        if fits and all(behind[k + i] * mode >= 0 for i, mode in enumerate(modes) if mode in (1, -1)):
+            gains.append(z @ (before + behind))
+    return gains
+
+
+def motions(free, s):
+    """Accelerations of the gaps, and forces, for which each contact presses or parts: all, by trying each combination out."""
+    found = []
+    for closed in itertools.product([False, True], repeat=len(free)):
+        closed = np.array(closed)
+        force = np.zeros(len(free))
+        force[closed] = np.linalg.solve(s[np.ix_(closed, closed)], -free[closed])
+        rate = free + s @ force
+        if np.all(force >= -1e-12) and np.all(rate[~closed] >= -1e-12):
+            found.append(force)
+    return found
+
+
+def test_forces_of_sliding_contacts_are_the_only_ones_or_refused(open_fmu):
+    instance, other = open_fmu("RandomContacts"), open_fmu("RandomContactsTurned", logging=False)
+    rng = np.random.default_rng(3)
+    counts = {0: 0, 1: 0, 2: 0}
+    for _ in range(500):
+        case = Contacts(rng, 2.0)
+        k = case.count
+        for _ in range(3):
+            case.v -= np.linalg.pinv(case.n[:k]) @ (case.n[:k] @ case.v)
+        inverse = np.linalg.inv(case.mass)
+        pushes = case.n[:k].T - case.t[:k].T * (np.sign(case.t[:k] @ case.v) * case.mu[:k])
+        s, free = case.n[:k] @ inverse @ pushes, case.n[:k] @ inverse @ case.force
+        found = motions(free, s)
+        counts[min(len(found), 2)] += 1
+        try:
+            case.start(instance)
+            assert len(found) == 1
+        except FMICallException as error:
+            assert error.status == ERROR and len(found) != 1, found
+            words = "more than one" if found else "no"
+            text = instance.messages[-2][2]
+            assert f"has {words} solution" in text and "contact 'c" in text and "friction 'r" in text
+            instance.messages.clear()
+            with pytest.raises(FMICallException):
+                case.start(other)
+            continue
+        assert instance.get(*[f"c{i}.force" for i in range(k)]) == pytest.approx(found[0], rel=1e-7, abs=1e-9 * abs(found[0]).max())
+    assert min(counts.values()) > 20, counts
+
+
+# --- Painleve's rod ---
+
+
+def rod_pressure(theta, mu):
+    c, s = np.cos(theta), np.sin(theta)
+    return 1 + 3 * c * (c - mu * s)
+
+
+@pytest.mark.parametrize("w, words", [(0.0, "no solution"), (-4.0, "more than one solution")])
+def test_a_rod_that_locks_is_refused(open_fmu, w, words):
+    assert rod_pressure(1.2, 2) < 0
+    instance = open_fmu("PainleveRod")
+    with instance.fails(ERROR, rf"contact 'tip' has {words} .* friction 'rub'.*Painleve"):
+        instance.initialize({"w": w, "vy": np.cos(1.2) * w})
+
+
+def test_a_rod_parts_before_it_locks(open_fmu):
+    """p falls from 0.7 to 0, and so does the force with it (Genot and Brogliato); until then the motion is that of an ODE."""
+    mu, theta, w, slip = 1.5, 0.8, 1.0, -30.0
+
+    def rate(t, state):
+        theta, w, _ = state
+        force = (G - np.sin(theta) * w**2) / rod_pressure(theta, mu)
+        return [w, 3 * force * (mu * np.sin(theta) - np.cos(theta)), mu * force]
+
+    locks = lambda t, state: rod_pressure(state[0], mu) - 1e-6
+    locks.terminal = True
+    path = solve_ivp(rate, (0, 1), [theta, w, slip - np.sin(theta) * w], events=locks, rtol=1e-12, atol=1e-12, dense_output=True)
+    start = {"mu": mu, "theta0": theta, "w": w, "vy": np.cos(theta) * w, "vx": slip - np.sin(theta) * w}
+    instance = open_fmu("PainleveRod").initialize(start, tolerance=1e-11)
+    for share in (0.5, 0.9, 0.99):
+        to(instance, share * path.t[-1])
+        assert instance.get("theta", "w", "vx") == pytest.approx(path.sol(instance.time), rel=1e-8)
+    energy = instance.get("totalEnergy")
+    to(instance, 1.1 * path.t[-1])
+    assert instance.get("totalEnergy") <= energy and instance.get("tip.force") == 0 and events(instance) == 1
+    assert instance.get("y") > np.sin(instance.get("theta"))
+
+
+# --- Ties ---
+
+
+@pytest.mark.parametrize("name", ["ThreeBalls", "ThreeBallsTurned"])
+@pytest.mark.parametrize("angle", [0.0, 1.0])
+def test_a_ball_hits_two_at_once(open_fmu, name, angle):
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    start = [(-1, 0), (np.sqrt(3) / 2, 0.5), (np.sqrt(3) / 2, -0.5)]
+    expected = [(-0.2, 0), (0.6, np.sqrt(3) / 5), (0.6, -np.sqrt(3) / 5)]
+    values = {f"{q}[{i + 1}]": x for i, p in enumerate(start) for q, x in zip("xy", turn @ p)}
+    v = turn @ (1, 0)
+    instance = open_fmu(name).initialize({**values, "vx[1]": v[0], "vy[1]": v[1]})
+    instance.step(1.5)
+    for i, p in enumerate(expected):
+        assert instance.get(f"vx[{i + 1}]", f"vy[{i + 1}]") == pytest.approx(turn @ p, abs=1e-12)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.5])
+def test_a_ball_falls_into_a_wedge(open_fmu, mu):
+    """Straight up again: it closes both gaps with half its velocity, and friction has the same part on either side."""
+    instance = open_fmu("Wedge").initialize({"mu": mu})
+    to(instance, np.sqrt(2 / G) + 0.1)
+    speed = np.sqrt(2 * G)
+    # normal impulses p along (+-cos 30, sin 30): slides down both walls, as the stick impulse would be beyond mu
+    assert instance.get("x", "vx", "w") == pytest.approx([0, 0, 0], abs=1e-12)
+    assert instance.get("vy") == pytest.approx(0.8 * speed - G * 0.1, rel=1e-12)
+    assert events(instance) == 1
+
+
+# --- Bounces that take long to come to rest ---
+
+
+@pytest.mark.parametrize("e, steps", [(0.96, 1), (0.96, 2000), (0.99, 1), (0.999, 1)])
+def test_long_bounces_end_in_rest(open_fmu, e, steps):
+    """The ball on top is far away; then both fall on one another."""
+    instance = open_fmu("BallOnBall").initialize({"e": e, "a": 0.05, "b": 1e9})
+    rest = np.sqrt(2 * 0.05 / G) * (1 + e) / (1 - e)
+    before = 0.999 * rest
+    to(instance, before)
+    assert instance.get("a") > 0 or abs(instance.get("va")) > 0
+    start = instance.time
+    for k in range(1, steps + 1):
+        to(instance, start + k / steps * 0.0011 * rest)
+    assert instance.get("a", "va") == [0, 0]
+    assert events(instance) == pytest.approx(np.log(1e-7) / np.log(e), rel=0.3)
+
+
+@pytest.mark.parametrize("e", [0.93, 0.97, 0.99])
+def test_two_balls_bounce_until_both_rest(open_fmu, e):
+    instance = open_fmu("BallOnBall").initialize({"e": e})
+    energy = instance.get("totalEnergy")
+    for _ in range(60):
+        instance.step(1.0)
+        assert instance.get("totalEnergy") <= energy + 1e-12
+        energy = instance.get("totalEnergy")
+    assert instance.get("a", "b", "va", "vb") == pytest.approx([0, 0.1, 0, 0], abs=1e-12)
+    assert instance.get("a.min.force") == pytest.approx(2 * G)
+
+
+def incline(e, mu, a, t):
+    """Velocities along an incline, and of the spin: impact by impact, then by the friction of rolling or sliding."""
+    fall = G * np.cos(a)
+    vs = w = now = 0.0
+    flight, speed = np.sqrt(2 * 0.1 / fall), np.sqrt(2 * 0.1 * fall)
+    while flight > 1e-9:
+        if now + flight >= t:
+            return vs + G * np.sin(a) * (t - now), w
+        now += flight
+        vs += G * np.sin(a) * flight
+        slip = vs + 0.1 * w
+        push = -np.clip(slip / 3.5, -mu * (1 + e) * speed, mu * (1 + e) * speed)
+        vs, w = vs + push, w + push * 0.1 / 0.004
+        speed *= e
+        flight = 2 * speed / fall
+    if mu >= 2 / 7 * np.tan(a):  # it rolls in the end: the mean force of many small impacts is that of rest
+        slip = vs + 0.1 * w
+        rate = G * np.sin(a) - 3.5 * mu * fall
+        slides = max(0.0, min(t - now, -slip / rate)) if slip > 0 else 0.0
+        vs, w = vs + (G * np.sin(a) - mu * fall) * slides, w - mu * fall * 0.1 / 0.004 * slides
+        rest = 5 / 7 * G * np.sin(a) * (t - now - slides)
+        return vs + rest, w - rest / 0.1
+    return vs + (G * np.sin(a) - mu * fall) * (t - now), w - mu * fall * 0.1 / 0.004 * (t - now)
+
+
+@pytest.mark.parametrize("mu", [0.02, 0.3])
+def test_a_ball_bounces_down_an_incline(open_fmu, mu):
+    for e in (0.5, 0.96, 0.99):
+        instance = open_fmu("BallOnIncline").initialize({"e": e, "mu": mu})
+        for t in (0.5, 3.0, 10.0, 35.0):
+            to(instance, t)
+            assert instance.get("vs", "w") == pytest.approx(incline(e, mu, 0.2, t), rel=2e-6)
+    assert instance.get("h", "vh") == [0, 0]
+
+
+# --- The rocking block ---
+
+
+def housner(b, h, theta, count):
+    """Times of the changes of corner, and the angular velocities behind them, without slipping."""
+    slender, radius = np.arctan2(b, h), np.hypot(b, h)
+    factor = 1 - 1.5 * np.sin(slender) ** 2
+    lands = lambda t, y: y[0]
+    lands.terminal, lands.direction = True, -1
+    now, state, found = 0.0, [theta, 0.0], []
+    for _ in range(count):
+        path = solve_ivp(lambda t, y: [y[1], -3 * G / (4 * radius) * np.sin(slender - y[0])], (0, 10), state, events=lands, rtol=1e-12, atol=1e-14)
+        now += path.t[-1]
+        state = [0.0, -factor * path.y[1, -1]]
+        found.append((now, state[1]))
+    return found
+
+
+@pytest.mark.parametrize("mu", [1.0, 10.0])
+def test_a_block_rocks_by_housner(open_fmu, mu):
+    instance = open_fmu("RockingBlock").initialize({"mu": mu}, tolerance=1e-11)
+    sign = -1
+    for time, speed in housner(0.1, 0.5, 0.1, 12):
+        to(instance, time + 1e-8)
+        assert instance.get("w") == pytest.approx(sign * speed, abs=2e-7)
+        sign = -sign
+    to(instance, 15.0)
+    assert instance.get("theta", "vx", "vy", "w", "y") == pytest.approx([0, 0, 0, 0, 0.5], abs=1e-12)
+    assert instance.get("left.force") + instance.get("right.force") == pytest.approx(G)
+
+
+def frictionless_block(b, h, theta, times):
+    """Angle and velocity of a block whose feet slide freely: its centre moves up and down alone."""
+    inertia = (b**2 + h**2) / 3
+    now, state, side, found = 0.0, np.array([theta, 0.0]), np.sign(theta), []
+
+    def rate(t, y):
+        """y of the centre is side b sin(theta) + h cos(theta); Lagrange's equation for theta alone."""
+        first, second = side * b * np.cos(y[0]) - h * np.sin(y[0]), -side * b * np.sin(y[0]) - h * np.cos(y[0])
+        return [y[1], -first * (second * y[1] ** 2 + G) / (inertia + first**2)]
+
+    lands = lambda t, y: side * y[0]
+    lands.terminal, lands.direction = True, -1
+    for time in times:
+        while now < time:
+            path = solve_ivp(rate, (now, time), state, events=lands, rtol=1e-12, atol=1e-14)
+            now, state = path.t[-1], path.y[:, -1]
+            if len(path.t_events[0]):  # vertical impulse at the other corner, inelastic: its velocity is 0 behind
+                w, vy = state[1], side * b * state[1]
+                impulse = -(vy + side * b * w) / (1 + b**2 / inertia)
+                side, state = -side, np.array([0.0, w + side * b * impulse / inertia])
+        found.append(state)
+    return np.array(found)
+
+
+def test_a_block_without_friction_slides_on_its_feet(open_fmu):
+    instance = open_fmu("RockingBlock").initialize({"mu": 0.0}, tolerance=1e-11)
+    times = np.linspace(0.1, 1.1, 11)
+    for time, state in zip(times, frictionless_block(0.1, 0.5, 0.1, times)):
+        to(instance, time)
+        assert instance.get("theta", "w") == pytest.approx(state, abs=1e-8)
+        assert instance.get("vx") == pytest.approx(0, abs=1e-12)
+    to(instance, 5.0)
+    assert instance.get("w") == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.1, 0.15, 0.2, 0.25, 0.4, 3.0])
+def test_a_block_rests_for_every_friction(open_fmu, mu):
+    instance = open_fmu("RockingBlock").initialize({"mu": mu})
+    energy = instance.get("totalEnergy")
+    for _ in range(30):
+        instance.step(0.5)
+        assert instance.get("totalEnergy") <= energy + 1e-9
+        energy = instance.get("totalEnergy")
+    assert instance.get("theta", "vx", "w") == pytest.approx([0, 0, 0], abs=1e-12)
