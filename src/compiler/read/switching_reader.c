@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
@@ -14,15 +15,27 @@
 #include "read/elements.h"
 #include "read/forces.h"
 
-enum { IN_CONDITION = (IN_FORCE & ~KIND(DISPLACEMENT)), IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
+enum {
+  IN_CONDITION = (IN_FORCE & ~KIND(DISPLACEMENT)),
+  IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE,
+  IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY)
+};
 
 /* --- Declarations --- */
 
-/* Its name is that of the variable which tells it. */
 static Node new_mode(struct Reader *reader, const char *of, const char *what) {
   struct Switches *switches = &reader->model->switches;
   char *name = format_text("%s.%s", of, what);
-  Node mode = graph_symbol(reader->model->graph, MODE, (int)switches->mode_count++, name);
+  Node mode = graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  free(name);
+  return mode;
+}
+
+/* One that expressions of events know by the name of the variable which tells it. */
+static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
+  Node mode = new_mode(reader, constraint->name, what);
+  char *name = format_text("%s.%s", constraint->name, what);
+  scope_define(reader->scope, name, (struct Quantity){.node = mode, .dimension = dimension_one}, constraint->line);
   free(name);
   return mode;
 }
@@ -50,7 +63,7 @@ static size_t declare_held(struct Reader *reader, struct Variable constraint) {
 static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
   switches->contacts = reallocate(switches->contacts, switches->contact_count + 1, sizeof *switches->contacts);
-  switches->contacts[switches->contact_count++] = (struct Contact){.mode = new_mode(reader, constraint.name, "closed")};
+  switches->contacts[switches->contact_count++] = (struct Contact){.mode = new_told_mode(reader, &constraint, "closed")};
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
@@ -85,7 +98,8 @@ void declare_friction(struct Reader *reader, xmlNodePtr node) {
   struct Variable constraint = common_attributes(reader, node);
   switches->frictions = reallocate(switches->frictions, switches->friction_count + 1, sizeof *switches->frictions);
   switches->frictions[switches->friction_count++] =
-      (struct Friction){.mode = new_mode(reader, constraint.name, "sliding")};
+      (struct Friction){.mode = new_mode(reader, constraint.name, "mode"),
+                        .told = new_told_mode(reader, &constraint, "sliding")};
   switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
   reader->model->has_forces = true;
 }
@@ -236,6 +250,29 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   gradient_free(&levers);
 }
 
+void complete_friction_forces(struct Reader *reader) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Switches *switches = &model->switches;
+  if (switches->friction_count == 0) return;
+  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
+  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node force = model->constraint_forces[friction->constraint];
+    replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
+  }
+  for (size_t i = 0; i < switches->count; i++)
+    substitute(graph, &switches->items[i].indicator, 1, replacements, &switches->items[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
+      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
+                 &switches->events[i].assignments[j].value);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  free(replacements);
+}
+
 /* --- Branches --- */
 
 void undisplace_switches(struct Reader *reader) {
@@ -296,7 +333,7 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
 
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   Node symbol = target_of(reader, node);
-  struct Quantity value = expression_text_of(reader, node, "the value of <set>", IN_CONDITION);
+  struct Quantity value = expression_text_of(reader, node, "the value of <set>", IN_EVENT);
   if (symbol == ZERO || reader->diagnostics->errors > 0) return;
   check_target(reader, node, event, symbol);
   const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
@@ -310,37 +347,75 @@ static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event
 /* A condition that comes to hold, or an expression that passes 0 in a direction. */
 static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
   struct Graph *graph = reader->model->graph;
-  struct Place place = {.line = xmlGetLineNo(node), .what = "when", .kinds = IN_CONDITION};
+  struct Place place = {.line = xmlGetLineNo(node), .what = "when", .kinds = IN_EVENT};
   char *direction = attribute(node, "direction");
   Node value;
   if (parse_when(reader->scope, when, place, &value)) {
-    event->conditions[0] = value;
+    event->condition = value;
     if (direction != NULL)
       report_error(reader->diagnostics, xmlGetLineNo(node),
                    "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
                    "no direction");
   } else if (value != ZERO) {
-    Node sign = branch_of(reader->scope, value, "the event", xmlGetLineNo(node));
-    bool falls = direction == NULL || strcmp(direction, "rising") != 0;
-    event->conditions[0] = falls ? negate(graph, sign) : sign;
-    if (direction != NULL && strcmp(direction, "both") == 0) event->conditions[1] = sign;
+    event->condition = branch_of(reader->scope, value, "the event", xmlGetLineNo(node));
+    event->side = new_mode(reader, "side", when);
+    bool rises = direction != NULL && strcmp(direction, "rising") == 0;
+    bool is_both = direction != NULL && strcmp(direction, "both") == 0;
+    event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
   }
-  if (event->conditions[0] != ZERO && !graph_depends_on(graph, event->conditions[0], MODE))
+  if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
   free(direction);
+}
+
+/* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */
+static void collect_event(const struct Reader *reader, const struct Event *event) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Switches *switches = &reader->model->switches;
+  Node *roots = allocate(event->assignment_count + 1 + switches->count, sizeof *roots);
+  size_t count = 0, before = 0;
+  roots[count++] = event->condition;
+  for (size_t i = 0; i < event->assignment_count; i++) roots[count++] = event->assignments[i].value;
+  size_t first = count;
+  while (count > before) {
+    cone_collect(graph->cone, graph, roots, count, NULL);
+    before = count;
+    count = first;
+    for (size_t i = 0; i < switches->count; i++)
+      if (cone_has(graph->cone, switches->items[i].mode)) roots[count++] = switches->items[i].indicator;
+  }
+  free(roots);
+}
+
+/* Of accelerations, an event may look at the forces of contacts, frictions and constraints alone. */
+static void check_forces(const struct Reader *reader, struct Event *event, long line) {
+  const struct Model *model = reader->model;
+  unsigned kinds = kinds_that_decide(reader->scope, event->condition);
+  event->is_of_contacts = (kinds & (KIND(ACCELERATION) | CONTACT_STATE)) != 0;
+  for (size_t i = 0; i < event->assignment_count; i++)
+    kinds |= kinds_that_decide(reader->scope, event->assignments[i].value);
+  if ((kinds & KIND(ACCELERATION)) == 0) return;
+  collect_event(reader, event);
+  for (size_t i = 0; i < model->coordinates.count; i++)
+    if (cone_has(model->graph->cone, model->accelerations[i]))
+      report_error(reader->diagnostics, line,
+                   "an <event> cannot depend on accelerations, but this one does on '%s'; expected velocities, or the "
+                   "force of a contact, a friction or a constraint such as ground.force",
+                   graph_symbol_of(model->graph, model->accelerations[i])->name);
 }
 
 void read_event(struct Reader *reader, xmlNodePtr node) {
   struct Switches *switches = &reader->model->switches;
   char *when = attribute(node, "when");
   if (when == NULL) return;
-  struct Event event = {.conditions = {ZERO, ZERO}};
+  struct Event event = {.passage = PASSAGE_HOLDS};
   read_condition(reader, node, when, &event);
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
   if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
+  if (reader->diagnostics->errors == 0) check_forces(reader, &event, xmlGetLineNo(node));
   event.text = when;
   switches->events = reallocate(switches->events, switches->event_count + 1, sizeof *switches->events);
   switches->events[switches->event_count++] = event;

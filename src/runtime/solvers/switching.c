@@ -95,7 +95,7 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
 
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
-  const double *value = settlement->value + condition_place(settlement) + switches->condition_count;
+  const double *value = settlement->value + condition_place(settlement) + switches->event_count;
   for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
     const struct AssignmentFacts *facts = &switches->assignments[i];
     if (facts->kind == VARIABLE_MODE) {
@@ -111,15 +111,44 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
 
 static void copy_conditions(struct Settlement *settlement) {
   memcpy(settlement->condition, settlement->value + condition_place(settlement),
-         settlement->switches->condition_count * sizeof *settlement->condition);
+         settlement->switches->event_count * sizeof *settlement->condition);
 }
 
-static bool comes_to_hold(const struct Settlement *settlement, const struct EventFacts *event) {
-  const double *condition = settlement->value + condition_place(settlement);
-  bool happens = false;
-  for (size_t k = event->first_condition; k < event->first_condition + event->condition_count; k++)
-    happens |= condition[k] > 0.0 && !(settlement->condition[k] > 0.0);
-  return happens;
+/* The sides on which expressions of events are; one at 0 is still on the last. */
+static void note_sides(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double *side = &settlement->instance->parameter[event->side], sign = settlement->condition[i];
+    if (event->passage != PASSAGE_HOLDS && sign != 0.0) *side = sign;
+  }
+}
+
+/* Conditions and sides before the event. */
+static void begin_events(struct Settlement *settlement) {
+  copy_conditions(settlement);
+  note_sides(settlement);
+}
+
+/* What contacts and frictions come to at the start has held before. */
+static void note_start(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  if (settlement->occasion != AT_START || settlement->has_started) return;
+  settlement->has_started = true;
+  for (size_t i = 0; i < switches->event_count; i++)
+    if (switches->events[i].is_of_contacts)
+      settlement->condition[i] = settlement->value[condition_place(settlement) + i];
+  note_sides(settlement);
+}
+
+/* An expression that has only been at 0 passes nothing. */
+static bool happens(const struct Settlement *settlement, size_t event) {
+  const struct EventFacts *facts = &settlement->switches->events[event];
+  double condition = settlement->value[condition_place(settlement) + event];
+  if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(settlement->condition[event] > 0.0);
+  double side = mode_of(settlement, facts->side);
+  bool rises = condition > 0.0 && side < 0.0, falls = condition < 0.0 && side > 0.0;
+  return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
 }
 
 /* Whether two events set the same. */
@@ -137,7 +166,7 @@ static bool are_rivals(const struct SwitchTable *switches, const struct EventFac
 static bool find_rivals(const struct Settlement *settlement, size_t event) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t k = 0; k < event; k++) {
-    if (!comes_to_hold(settlement, &switches->events[k])) continue;
+    if (!happens(settlement, k)) continue;
     if (!are_rivals(switches, &switches->events[k], &switches->events[event])) continue;
     log_message(
         settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
@@ -153,13 +182,14 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
 static const char *happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
+  note_start(settlement);
   for (size_t i = 0; i < switches->event_count; i++) {
-    if (!comes_to_hold(settlement, &switches->events[i])) continue;
+    if (!happens(settlement, i)) continue;
     if (find_rivals(settlement, i)) return "two events contradict each other";
     assign(settlement, &switches->events[i]);
     *again = true;
   }
-  copy_conditions(settlement);
+  begin_events(settlement);
   return NULL;
 }
 
@@ -174,7 +204,9 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
-  return happen(settlement, again);
+  if (settlement->switches->friction_laws != NULL && !settlement->switches->friction_laws->tell(settlement, again))
+    return "there are no accelerations at an event";
+  return *again ? NULL : happen(settlement, again);
 }
 
 /* Modes as the signs of the start values say. */
@@ -194,7 +226,7 @@ static const char *begin_modes(struct Settlement *settlement) {
 static const char *check_laws(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   const char *problem = NULL;
-  if (switches->contact_laws != NULL && settlement->moved) problem = switches->contact_laws->check_gaps(settlement);
+  if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement))) problem = switches->contact_laws->check_gaps(settlement);
   if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(settlement);
   return problem;
 }
@@ -208,7 +240,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";
     else if (!settlement_evaluate(&settlement)) problem = "there are no accelerations at an event";
-    if (round == 0 && problem == NULL) copy_conditions(&settlement);
+    if (round == 0 && problem == NULL) begin_events(&settlement);
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement, 1.0))
@@ -229,7 +261,8 @@ static void guess(struct Instance *instance) {
   struct Point point = evaluate_point(instance);
   double *value = settlement_of(instance).value;
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++) instance->parameter[switches->frictions[i].mode] = 1.0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
   /* Of a mass that a sign decides on, 0 leaves nothing. */
   for (size_t i = 0; i < switches->branch_count; i++)
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
