@@ -109,45 +109,47 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
   }
 }
 
-static void copy_conditions(struct Settlement *settlement) {
-  memcpy(settlement->condition, settlement->value + condition_place(settlement),
-         settlement->switches->event_count * sizeof *settlement->condition);
-}
-
-/* The sides on which expressions of events are; one at 0 is still on the last. */
-static void note_sides(const struct Settlement *settlement) {
+/*
+ * Conditions as they are before events, all of them or those of contacts alone. Of an expression it is the side of 0 on which it
+ * was last.
+ */
+static void note_conditions(struct Settlement *settlement, bool all) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
-    double *side = &settlement->instance->parameter[event->side], sign = settlement->condition[i];
-    if (event->passage != PASSAGE_HOLDS && sign != 0.0) *side = sign;
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool stays = event->passage != PASSAGE_HOLDS && condition == 0.0;
+    if (!stays && (all || event->is_of_contacts)) settlement->condition[i] = condition;
   }
 }
 
-/* Conditions and sides before the event. */
+/* Conditions and sides from which the settlement sets out. */
 static void begin_events(struct Settlement *settlement) {
-  copy_conditions(settlement);
-  note_sides(settlement);
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool was_at_side = event->passage != PASSAGE_HOLDS && mode_of(settlement, event->side) != 0.0;
+    settlement->condition[i] = was_at_side ? mode_of(settlement, event->side) : condition;
+  }
 }
 
-/* What contacts and frictions come to at the start has held before. */
-static void note_start(struct Settlement *settlement) {
+/* An event may have turned an expression round before it came to the other side: that keeps its side. */
+static void keep_sides(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
-  if (settlement->occasion != AT_START || settlement->has_started) return;
-  settlement->has_started = true;
-  for (size_t i = 0; i < switches->event_count; i++)
-    if (switches->events[i].is_of_contacts)
-      settlement->condition[i] = settlement->value[condition_place(settlement) + i];
-  note_sides(settlement);
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double sign = settlement->value[condition_place(settlement) + i];
+    if (event->passage != PASSAGE_HOLDS && sign != 0.0) settlement->instance->parameter[event->side] = sign;
+  }
 }
 
 /* An expression that has only been at 0 passes nothing. */
 static bool happens(const struct Settlement *settlement, size_t event) {
   const struct EventFacts *facts = &settlement->switches->events[event];
-  double condition = settlement->value[condition_place(settlement) + event];
-  if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(settlement->condition[event] > 0.0);
-  double side = mode_of(settlement, facts->side);
-  bool rises = condition > 0.0 && side < 0.0, falls = condition < 0.0 && side > 0.0;
+  double condition = settlement->value[condition_place(settlement) + event], before = settlement->condition[event];
+  if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(before > 0.0);
+  bool rises = condition > 0.0 && before < 0.0, falls = condition < 0.0 && before > 0.0;
   return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
 }
 
@@ -182,14 +184,17 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
 static const char *happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
-  note_start(settlement);
+  /* What contacts and frictions come to at the start has held before. */
+  if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
+  settlement->has_started = true;
   for (size_t i = 0; i < switches->event_count; i++) {
     if (!happens(settlement, i)) continue;
     if (find_rivals(settlement, i)) return "two events contradict each other";
     assign(settlement, &switches->events[i]);
     *again = true;
   }
-  begin_events(settlement);
+  note_conditions(settlement, true);
+  if (!*again) keep_sides(settlement);
   return NULL;
 }
 
