@@ -106,14 +106,15 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
       lagrangian.max_steps);
 }
 
-/* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
-static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
+/* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
+static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
   const struct Span *last = &instance->situation->last_step;
   const struct Switching *switcher = lagrangian.switching;
   struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    *ends_at_event = problem != NULL;
     if (problem != NULL) return problem;
     bool is_inside = last->end > step->start && last->end < step->end;
     if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
@@ -149,22 +150,28 @@ static void log_weakest(struct Instance *instance, double time) {
         time, name);
 }
 
+/* What to do about a solver that stopped: no solver helps where an event has no end. */
+static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
+                     bool ends_at_event, double reached) {
+  const struct Solver *solver = lagrangian.solver;
+  const char *function = instance->limited_by, *others = ends_at_event ? NULL : solver->alternatives;
+  const char *remedy = ends_at_event ? "" : solver->remedy != NULL ? solver->remedy : usual_remedy;
+  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s%s%s%s%s", solver->name, reached,
+              step->end, reason, function != NULL && !ends_at_event ? ", by " : "",
+              function != NULL && !ends_at_event ? function : "", ends_at_event ? "" : "; ", remedy,
+              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
+}
+
 /* The state becomes that of the time which the solver came to, and says why it is not the end. */
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
-                            double reached) {
-  const struct Solver *solver = lagrangian.solver;
-  const char *function = instance->limited_by;
+                            bool ends_at_event, double reached) {
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   if (lagrangian.projection != NULL) log_weakest(instance, reached);
-  const char *others = solver->alternatives;
-  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s%s%s", solver->name, reached,
-              step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
-              solver->remedy != NULL ? solver->remedy : usual_remedy,
-              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
+  log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
 }
@@ -178,7 +185,8 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     *reached = step->start;
     return readiness;
   }
-  const char *problem = reach(instance, step);
+  bool ends_at_event = false;
+  const char *problem = reach(instance, step, &ends_at_event);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
@@ -187,7 +195,8 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   *reached = problem != NULL ? last->end : last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
-  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
+  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", ends_at_event,
+              *reached);
 }
 
 struct Advance {

@@ -21,6 +21,7 @@ struct CommunicationStep;
 struct EventProgress {
   double searched;  /* no event before this time is left */
   int gathered;     /* how many have come within the rounding of time, or of what they wait for */
+  int crowded;      /* how many of one indicator have come close together, without leaving 0 by more than rounding */
   double last;      /* event, from the start of the step on; 0 for none */
   double distance;  /* between the last two; 0 for none */
   long count;       /* of all in the step */

@@ -12,6 +12,9 @@ enum { EVENT_LIMIT = 30 };
 /* So many windows in a communication step that may hide something have no end. */
 enum { UNSURE_LIMIT = 1000 };
 
+/* Events of the same indicator that come nearer than this share of the time may gather. */
+static const double crowding_share = 1e-6;
+
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
 
@@ -114,13 +117,16 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   if (!is_found) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
   bool is_close = instance->was_at_zero || solver_rests(time, time - progress->searched);
+  bool is_crowded = instance->was_at_zero && indicator == progress->indicator && progress->count > 0 &&
+                    time - (step->start + progress->last) <= crowding_share * fabs(time);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
+  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
   progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
   progress->searched = time;
-  if (progress->gathered >= EVENT_LIMIT) return gathering;
+  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT) return gathering;
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
   return pass_event(instance, step, time, indicator);
