@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "foresight.h"
 #include "initial_state.h"
 
 /* A direction and what follows from it; the arrays are parts of instance->work. */
@@ -77,9 +78,9 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
   return STATUS_DONE;
 }
 
-enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                   const unsigned *known, size_t known_count, const double *seed, double *value,
-                                   const char *function) {
+static enum Status derivative_along_seed(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                         const unsigned *known, size_t known_count, const double *seed, double *value,
+                                         const char *function) {
   struct Direction direction = direction_create(instance);
   for (size_t i = 0; i < known_count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL, function);
@@ -96,6 +97,16 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
   return read_along(instance, &point, &direction, unknown, unknown_count, value, function);
+}
+
+enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                   const unsigned *known, size_t known_count, const double *seed, double *value,
+                                   const char *function) {
+  foresight_begin(instance);
+  enum Status status =
+      derivative_along_seed(instance, unknown, unknown_count, known, known_count, seed, value, function);
+  foresight_end(instance);
+  return status;
 }
 
 /* The derivatives of all unknowns by one known, each times its seed, in the workspace column[unknown_count]. */

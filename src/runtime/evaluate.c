@@ -99,7 +99,7 @@ void evaluate_advance_inputs(struct Instance *instance, double end) {
     derivative[0] = coefficient[1];
     derivative[n] = 2.0 * coefficient[2];
   }
-  instance->situation->changed = CHANGED_VALUES;
+  instance->situation->changed = CHANGED_COURSE;
 }
 
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {

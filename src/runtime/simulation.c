@@ -47,6 +47,7 @@ enum Status simulation_start(struct Instance *instance, const char *function) {
     return log_error(instance, "%s: the system has no acceleration at its start values", function);
   }
   instance->situation->mode = instance->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP_COMPLETE;
+  instance->situation->changed = CHANGED_COURSE;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);
   return STATUS_DONE;
 }

@@ -69,8 +69,8 @@ bool solver_rests(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
 
-/* Constraints and modes for a state and parameters that were set. False after logging why the step is discarded. */
-static bool settle_what_was_set(struct Instance *instance, double time) {
+bool communication_settle(struct Instance *instance) {
+  double time = instance->situation->time;
   if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
   if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
   return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
@@ -88,7 +88,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set, unless an event has settled all. */
     bool is_settled = situation->changed == CHANGED_BY_EVENT;
-    if (!is_settled && !settle_what_was_set(instance, step->start)) return STEP_PARTIAL;
+    if (!is_settled && !communication_settle(instance)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -267,6 +267,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (evaluate_prepare(instance) != STATUS_DONE)
     return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
   situation->time = time;
+  instance->foresight = FORESIGHT_STALE;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   guides_begin_step(instance);

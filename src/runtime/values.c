@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "foresight.h"
 #include "initial_state.h"
 
 static enum Status worse(enum Status first, enum Status second) {
@@ -15,12 +16,22 @@ static enum Status worse(enum Status first, enum Status second) {
 enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                        const char *function) {
   enum Status status = STATUS_DONE;
-  for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_REAL, function);
-    if (variable == NULL) return STATUS_ERROR;
-    status = worse(status, evaluate_variable(instance, variable, &value[i]));
-  }
+  for (size_t i = 0; i < count; i++)
+    if (check_reference(instance, reference[i], TYPE_REAL, function) == NULL) return STATUS_ERROR;
+  foresight_begin(instance);
+  for (size_t i = 0; i < count; i++)
+    status = worse(status, evaluate_variable(instance, &lagrangian.variables[reference[i]], &value[i]));
+  foresight_end(instance);
   return status;
+}
+
+/* The mode of a contact or a friction. */
+static int contact_mode(struct Instance *instance, const struct ScalarVariable *variable) {
+  foresight_begin(instance);
+  evaluate_prepare(instance); /* before the start it follows from the state */
+  int mode = (int)instance->parameter[variable->index];
+  foresight_end(instance);
+  return mode;
 }
 
 enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
@@ -28,13 +39,12 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
-    if (variable->kind == VARIABLE_CONTACT) evaluate_prepare(instance); /* before the start it follows from the state */
-    if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_CONTACT) {
-      value[i] = (int)instance->parameter[variable->index];
-      continue;
+    if (variable->kind == VARIABLE_CONTACT) value[i] = contact_mode(instance, variable);
+    else if (variable->kind == VARIABLE_PARAMETER) value[i] = (int)instance->parameter[variable->index];
+    else {
+      int64_t statistic = instance->situation->statistics[variable->index];
+      value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
     }
-    int64_t statistic = instance->situation->statistics[variable->index];
-    value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
   }
   return STATUS_DONE;
 }
@@ -106,6 +116,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->situation->changed = CHANGED_VALUES;
+  instance->foresight = FORESIGHT_STALE;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 
