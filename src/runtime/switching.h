@@ -63,6 +63,11 @@ struct Switching {
   /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
+  /*
+   * Moves a point at which an importer tries a piece beyond its end to that end, by the velocities there; its state is then in
+   * workspace. False where there is none, or where it does not help.
+   */
+  bool (*come_back)(struct Instance *instance, struct Point *point);
   /* The indicators at the situation as an importer is told them; false where there are no accelerations. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* Whether an indicator has a sign at the situation that its mode does not allow. */

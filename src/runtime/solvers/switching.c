@@ -285,6 +285,19 @@ static void guess(struct Instance *instance) {
   }
 }
 
+/* Those that have no value beyond the end of a piece have that of its end. */
+static void complete_indicators(struct Instance *instance, double *value) {
+  size_t count = indicator_count(lagrangian.switches);
+  double *completed = instance->switching_work + count; /* the first so many may be the values */
+  struct Point point = evaluate_point(instance);
+  bool lacks = false;
+  for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
+  if (!lacks || !switching_come_back(instance, &point)) return;
+  if (!switching_indicators(instance, point.time, point.state, completed)) return;
+  for (size_t i = 0; i < count; i++)
+    if (isnan(value[i])) value[i] = completed[i];
+}
+
 /*
  * What an importer is told keeps its sign until the indicator is a little beyond 0, so that it is not 0 behind an event
  * (FMI 2.0, section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 leaves it on either side.
@@ -293,6 +306,7 @@ static bool told_indicators(struct Instance *instance, double *value) {
   static const double shift = 1e-11;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   if (!switching_indicators(instance, instance->situation->time, instance->state, value)) return false;
+  complete_indicators(instance, value);
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
     double sign = switching_sign(instance, i);
     value[i] = sign == 0.0 ? shift - fabs(value[i]) : value[i] + sign * shift;
@@ -319,5 +333,6 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
+                                    .come_back = switching_come_back,
                                     .indicators = told_indicators,
                                     .is_due = is_due};
