@@ -170,7 +170,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  if (lagrangian.projection != NULL) log_weakest(instance, reached);
+  if (lagrangian.projection != NULL && !ends_at_event) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
@@ -186,15 +186,18 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     return readiness;
   }
   bool ends_at_event = false;
+  const char *law = NULL; /* that does not hold at the end */
   const char *problem = reach(instance, step, &ends_at_event);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
-    if (problem == NULL) return STEP_DONE;
+    if (problem == NULL && lagrangian.switching != NULL) law = lagrangian.switching->check(instance, step->end);
+    if (problem == NULL && law == NULL) return STEP_DONE;
   }
   *reached = problem != NULL ? last->end : last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
+  if (law != NULL) return stop(instance, step, law, true, *reached);
   return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", ends_at_event,
               *reached);
 }

@@ -57,6 +57,8 @@ struct Switching {
   const char *(*update)(struct Instance *instance, bool *changed);
   /* Goes through the next event of the solver's last step. NULL, or the reason why the motion ends there. */
   const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
+  /* What must hold where a communication step ends. NULL, or the reason why it does not, after logging what is to blame. */
+  const char *(*check)(struct Instance *instance, double time);
   /* Where the solver cannot go on: a zero that it cannot reach may be next to it. The problem, or NULL. */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);

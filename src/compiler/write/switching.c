@@ -60,6 +60,14 @@ static bool turns_by_forces(const struct Program *program) {
   return turns;
 }
 
+static bool friction_varies(const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  bool varies = false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    varies |= !graph_is_constant_in_time(program->model->graph, switches->frictions[i].sliding);
+  return varies;
+}
+
 /* Whether the friction follows from the force of the contact. */
 static bool rests_on(const struct Program *program, size_t friction, size_t contact) {
   const struct Model *model = program->model;
@@ -143,6 +151,7 @@ void switching_write(FILE *file, const struct Program *program) {
             "    .watched_limit = watched_limit,\n",
             program->watched_series->row_count, program->watched_series->acceleration_row,
             program->watched_series->acceleration_count);
+  if (friction_varies(program)) fputs("    .friction_varies = true,\n", file);
   if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (any_rests(program)) fputs("    .rests_on = rests_on,\n", file);

@@ -143,6 +143,17 @@ const char *switching_pass_barrier(struct Instance *instance, struct Communicati
   return pass_event(instance, step, time, indicator);
 }
 
+const char *switching_check(struct Instance *instance, double time) {
+  const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
+  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
+  bool pushes = false;
+  for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
+    pushes |= settlement.value[friction_place(&settlement, i, FRICTION_FORCE)] < 0.0;
+  return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
+}
+
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
                        const struct EventProgress *progress) {
   const struct SwitchTable *switches = lagrangian.switches;

@@ -333,6 +333,7 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass = switching_pass,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
+                                    .check = switching_check,
                                     .come_back = switching_come_back,
                                     .indicators = told_indicators,
                                     .is_due = is_due};
