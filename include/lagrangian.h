@@ -169,8 +169,8 @@ struct FrictionLaws;
 struct SwitchTable {
   size_t mode_count; /* of the last parameters */
   size_t branch_count, contact_count, friction_count, event_count, assignment_count;
-  size_t energy_count; /* of energies and momenta, where branches hold them; else 0 */
-  bool feels_forces;   /* a branch turns by the force of a constraint */
+  size_t energy_count;  /* of energies and momenta, where branches hold them; else 0 */
+  bool feels_forces;    /* a branch turns by the force of a constraint */
   bool friction_varies; /* the force of a friction does between events */
   const struct BranchFacts *branches;
   const struct ContactFacts *contacts;

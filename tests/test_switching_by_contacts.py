@@ -35,7 +35,7 @@ YARD = """<system name="{name}">
   <!-- A latch that opens at a force of 5. -->
   <coordinate name="l" velocity="lv"/><particle mass="1" z="l"/><force coordinate="l">10*time</force>
   <mode name="latched" start="1"/><mode name="broke"/><constraint name="latch">if(latched, l, 0)</constraint>
-  <event when="latch.force - 5" direction="rising"><set mode="latched">0</set><set mode="broke">latch.force + time</set></event>
+  <event when="latch.force - 2.5 - 5*time" direction="rising"><set mode="latched">0</set><set mode="broke">latch.force + time</set></event>
   <!-- A block on a spring that is drawn: what it slips at, and how often. -->
   <coordinate name="b" velocity="bv"/><particle mass="1" z="b"/><potential>10*(b - 0.5*time)^2/2</potential>
   <friction name="rub" coordinate="b" force="1" stiction="2"/>

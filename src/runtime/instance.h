@@ -73,9 +73,10 @@ struct Instance {
   struct Log log;
   enum Kind kind;
   struct Situation *situation;
-  struct Situation *foreseen; /* the other one of the two in foresight.h; NULL in FMUs that do not switch, and of exchange */
+  struct Situation
+      *foreseen; /* the other one of the two in foresight.h; NULL in FMUs that do not switch, and of exchange */
   enum Foresight foresight;
-  bool is_foreseeing; /* the two are exchanged */
+  bool is_foreseeing;                                                    /* the two are exchanged */
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;

@@ -41,8 +41,8 @@ struct Assignment {
 
 struct Event {
   enum Passage passage;
-  Node condition; /* a function of modes alone: positive where it holds, or the sign of the expression */
-  Node side;      /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
+  Node condition;      /* a function of modes alone: positive where it holds, or the sign of the expression */
+  Node side;           /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
   bool is_of_contacts; /* contacts, frictions and forces decide on the condition */
   struct Assignment *assignments;
   size_t assignment_count;

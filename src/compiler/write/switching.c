@@ -41,13 +41,11 @@ static void write_contacts(FILE *file, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   if (switches->contact_count > 0) fputs("extern const struct ContactLaws contact_laws;\n\n", file);
   if (switches->contact_count > 0) fputs("static const struct ContactFacts contact_facts[] = {", file);
-  for (size_t i = 0; i < switches->contact_count; i++)
-    write_contact_facts(file, program, &switches->contacts[i]);
+  for (size_t i = 0; i < switches->contact_count; i++) write_contact_facts(file, program, &switches->contacts[i]);
   if (switches->contact_count > 0) fputs("};\n\n", file);
   if (switches->friction_count > 0) fputs("extern const struct FrictionLaws friction_laws;\n\n", file);
   if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
-  for (size_t i = 0; i < switches->friction_count; i++)
-    write_friction_facts(file, program, &switches->frictions[i]);
+  for (size_t i = 0; i < switches->friction_count; i++) write_friction_facts(file, program, &switches->frictions[i]);
   if (switches->friction_count > 0) fputs("};\n\n", file);
 }
 

@@ -281,16 +281,17 @@ static const char *check_gaps(const struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
     if (gap >= -allowed) continue;
-    log_message(settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
-                "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
-                settlement->time, switches->contacts[i].name,
-                starts  ? "the start"
-                : moved ? "an event that sets coordinates"
-                        : "an event that switches the gap",
-                gap,
-                starts  ? "start values or parameters"
-                : moved ? "values of <set>"
-                        : "conditions and modes");
+    log_message(
+        settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
+        settlement->time, switches->contacts[i].name,
+        starts  ? "the start"
+        : moved ? "an event that sets coordinates"
+                : "an event that switches the gap",
+        gap,
+        starts  ? "start values or parameters"
+        : moved ? "values of <set>"
+                : "conditions and modes");
     return "a contact is penetrated";
   }
   return NULL;

@@ -28,7 +28,7 @@ struct Settlement {
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, set_mode;                /* an event has set coordinates; a mode */
-  bool has_started; /* contacts and frictions are as they start, for AT_START */
+  bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   int impacts, lifts;
 };
 

@@ -231,7 +231,8 @@ static const char *begin_modes(struct Settlement *settlement) {
 static const char *check_laws(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   const char *problem = NULL;
-  if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement))) problem = switches->contact_laws->check_gaps(settlement);
+  if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement)))
+    problem = switches->contact_laws->check_gaps(settlement);
   if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(settlement);
   return problem;
 }
