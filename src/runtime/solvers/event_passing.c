@@ -111,7 +111,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
 
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
-  size_t indicator;
+  size_t indicator = 0;
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
