@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "arithmetic.h"
+#include "passage.h"
 #include "series.h"
 #include "series_limit.h"
 #include "variable_type.h"
@@ -148,6 +149,7 @@ struct ContactFacts {
 
 struct FrictionFacts {
   size_t mode;       /* the sign of the velocity while it slides, 0 while it sticks */
+  size_t told;       /* the mode that is told: 0 also where others hold the velocity at 0 */
   size_t constraint; /* which holds while it sticks */
   const char *name;
 };
@@ -159,7 +161,10 @@ struct AssignmentFacts {
 };
 
 struct EventFacts {
-  size_t first_condition, condition_count, first_assignment, assignment_count;
+  enum Passage passage;
+  size_t side;         /* the mode that keeps the last sign other than 0; of PASSAGE_HOLDS without meaning */
+  bool is_of_contacts; /* contacts, frictions and forces decide on the condition */
+  size_t first_assignment, assignment_count;
   const char *when; /* as written */
 };
 
@@ -168,9 +173,10 @@ struct FrictionLaws;
 
 struct SwitchTable {
   size_t mode_count; /* of the last parameters */
-  size_t branch_count, contact_count, friction_count, event_count, condition_count, assignment_count;
-  size_t energy_count; /* of energies and momenta, where branches hold them; else 0 */
-  bool feels_forces;   /* a branch turns by the force of a constraint */
+  size_t branch_count, contact_count, friction_count, event_count, assignment_count;
+  size_t energy_count;  /* of energies and momenta, where branches hold them; else 0 */
+  bool feels_forces;    /* a branch turns by the force of a constraint */
+  bool friction_varies; /* the force of a friction does between events */
   const struct BranchFacts *branches;
   const struct ContactFacts *contacts;
   const struct FrictionFacts *frictions;

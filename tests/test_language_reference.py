@@ -186,6 +186,7 @@ MOTIONS = {
     "SlidingBlock": (block, 1e-12),
     "DroppedBall": (dropped_ball, 1e-12),
     "Thermostat": (thermostat, 1e-9),
+    "Latch": (lambda t: {"x": (10 * t**3 - 1.25) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0}, 1e-12),
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),
     "Swing": (swing, 0.0),

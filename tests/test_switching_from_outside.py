@@ -163,6 +163,7 @@ def test_a_branch_without_a_value_in_a_closed_piece(open_fmu):
     force = lambda t, y: [y[1], -9.81 + 1e5 * max(-y[0], 0) ** 1.5]
     expected = solve_ivp(force, (0, 2), [1, 0], method="DOP853", rtol=1e-11, atol=1e-13, max_step=1e-3).y[:, -1]
     assert instance.get("h", "v") == pytest.approx(expected, abs=1e-5)
+    assert exchanged("HertzInside", 2, 0.1, "h")["h"][-1] == pytest.approx(expected[0], abs=1e-4)
 
 
 def test_events_of_an_included_system(open_fmu):

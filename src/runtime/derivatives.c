@@ -5,8 +5,8 @@
 
 #include "check.h"
 #include "evaluate.h"
+#include "reading.h"
 #include "initial_state.h"
-#include "start.h"
 
 /* A direction and what follows from it; the arrays are parts of instance->work. */
 struct Direction {
@@ -78,9 +78,9 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
   return STATUS_DONE;
 }
 
-static enum Status derivative_along(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                    const unsigned *known, size_t known_count, const double *seed, double *value,
-                                    const char *function) {
+static enum Status derivative_along_seed(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                         const unsigned *known, size_t known_count, const double *seed, double *value,
+                                         const char *function) {
   struct Direction direction = direction_create(instance);
   for (size_t i = 0; i < known_count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL, function);
@@ -102,9 +102,10 @@ static enum Status derivative_along(struct Instance *instance, const unsigned *u
 enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                    const unsigned *known, size_t known_count, const double *seed, double *value,
                                    const char *function) {
-  start_show(instance, function);
-  enum Status status = derivative_along(instance, unknown, unknown_count, known, known_count, seed, value, function);
-  start_hide(instance);
+  reading_begin(instance, function);
+  enum Status status =
+      derivative_along_seed(instance, unknown, unknown_count, known, known_count, seed, value, function);
+  reading_end(instance);
   return status;
 }
 

@@ -63,11 +63,18 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   return are_finite(derivative, lagrangian.state_count);
 }
 
+/* For a point without a value: the end of the piece beyond which an importer tries it. False for none. */
+static bool come_back(struct Instance *instance, struct Point *point) {
+  bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
+  return tries && lagrangian.switching != NULL && lagrangian.switching->come_back(instance, point);
+}
+
 enum Status evaluate_situation(struct Instance *instance, double *derivative) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
   if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  if (come_back(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
   return discard_for_singularity(instance);
 }
 
@@ -99,7 +106,7 @@ void evaluate_advance_inputs(struct Instance *instance, double end) {
     derivative[0] = coefficient[1];
     derivative[n] = 2.0 * coefficient[2];
   }
-  instance->situation->changed = CHANGED_VALUES;
+  instance->situation->changed = CHANGED_COURSE;
 }
 
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
@@ -116,15 +123,26 @@ const double *evaluate_accelerations_along(struct Instance *instance, const stru
   return instance->singular == 0 ? along : NULL;
 }
 
+/* The result at a point whose prepared values are up to date; false where there are no accelerations that it needs. */
+static bool evaluate_result_at(struct Instance *instance, const struct Point *point, size_t result, double *value) {
+  const double *acceleration = NULL;
+  if (lagrangian.result_uses_acceleration[result]) {
+    if (!evaluate_derivatives(instance, point, instance->work)) return false;
+    acceleration = evaluate_accelerations(instance, point, instance->work);
+    if (acceleration == NULL) return false;
+  }
+  *value = lagrangian.result(point, acceleration, result);
+  return true;
+}
+
 static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
-  bool uses_acceleration = lagrangian.result_uses_acceleration[variable->index];
-  enum Status status = uses_acceleration ? evaluate_situation(instance, instance->work) : evaluate_prepare(instance);
+  enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
-  const double *acceleration = uses_acceleration ? evaluate_accelerations(instance, &point, instance->work) : NULL;
-  if (uses_acceleration && acceleration == NULL) return discard_for_singularity(instance);
-  *value = lagrangian.result(&point, acceleration, variable->index);
-  return STATUS_DONE;
+  bool has_value = evaluate_result_at(instance, &point, variable->index, value);
+  if (!(has_value && isfinite(*value)) && come_back(instance, &point))
+    has_value = evaluate_result_at(instance, &point, variable->index, value);
+  return has_value ? STATUS_DONE : discard_for_singularity(instance);
 }
 
 /* Those of the coordinates are the velocities, also where there are no accelerations. */

@@ -45,6 +45,7 @@ void instance_reset(struct Instance *instance) {
   instance->situation->changed = CHANGED_VALUES;
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_early_reading = instance->told_impossible_start = false;
+  instance->foresight = FORESIGHT_STALE;
   instance->told_singularity = 0;
 }
 
@@ -63,14 +64,18 @@ static size_t evaluation_count(void) {
          lagrangian.parameter_count + 1;
 }
 
-/* Divides the blocks of memory among the arrays. */
-static void lay_out(struct Instance *instance, double *evaluation) {
+void instance_use(struct Instance *instance, struct Situation *situation) {
+  instance->situation = situation;
   instance->state = instance->situation->values;
   instance->input = instance->state + lagrangian.state_count;
   instance->parameter = instance->input + lagrangian.input_count;
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
   instance->state_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
   instance->saved = instance->state_was_set + set_count();
+}
+
+/* Divides a block of memory among the arrays. */
+static void lay_out(struct Instance *instance, double *evaluation) {
   instance->prepared = evaluation;
   instance->point_work = instance->prepared + lagrangian.prepared_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;
@@ -84,15 +89,19 @@ static void lay_out(struct Instance *instance, double *evaluation) {
 
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
+  bool foresees = lagrangian.switching != NULL && kind == KIND_CO_SIMULATION;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
-  instance->situation = memory->allocate(1, situation_size());
-  if (instance->situation != NULL && evaluation != NULL) {
+  struct Situation *situation = memory->allocate(1, situation_size());
+  if (foresees) instance->foreseen = memory->allocate(1, situation_size());
+  if (situation != NULL && evaluation != NULL && (!foresees || instance->foreseen != NULL)) {
+    instance_use(instance, situation);
     lay_out(instance, evaluation);
     instance_reset(instance);
     return true;
   }
-  if (instance->situation != NULL) memory->free(instance->situation);
+  if (situation != NULL) memory->free(situation);
   if (evaluation != NULL) memory->free(evaluation);
+  if (instance->foreseen != NULL) memory->free(instance->foreseen);
   return false;
 }
 
@@ -100,11 +109,13 @@ void instance_destroy(struct Instance *instance) {
   if (instance->solver_memory != NULL) lagrangian.solver->destroy(instance);
   instance->memory.free(instance->prepared);
   instance->memory.free(instance->situation);
+  if (instance->foreseen != NULL) instance->memory.free(instance->foreseen);
 }
 
 void instance_restore(struct Instance *instance, const void *situation) {
   memcpy(instance->situation, situation, situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->foresight = FORESIGHT_STALE;
   instance->told_singularity = 0;
 }
 

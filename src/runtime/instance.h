@@ -26,8 +26,14 @@ enum Mode {
   MODE_COUNT
 };
 
-/* Since the last step: nothing; state, inputs or parameters; or the modes and the state by an event, which agree. */
-enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT };
+/*
+ * Since the last step: nothing; state, inputs or parameters; the modes and the state by an event, which agree; or what makes
+ * the solver start anew without a value that was set, as at the start and where the polynomials of inputs end.
+ */
+enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT, CHANGED_COURSE };
+
+/* What the next step begins with, see foresight.h: to be found; known; or the present situation. */
+enum Foresight { FORESIGHT_STALE, FORESIGHT_READY, FORESIGHT_NONE };
 
 /* From one time to a later one. */
 struct Span {
@@ -67,6 +73,10 @@ struct Instance {
   struct Log log;
   enum Kind kind;
   struct Situation *situation;
+  struct Situation
+      *foreseen; /* the other one of the two in foresight.h; NULL in FMUs that do not switch, and of exchange */
+  enum Foresight foresight;
+  bool is_foreseeing;                                                    /* the two are exchanged */
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
@@ -100,6 +110,9 @@ struct Instance {
 /* False, and nothing is allocated, where there is no memory. Logs nothing. */
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log);
 void instance_destroy(struct Instance *instance);
+
+/* Lets a block of situation_size() bytes be the situation. */
+void instance_use(struct Instance *instance, struct Situation *situation);
 
 /* As after creation: start values, nothing defined. */
 void instance_reset(struct Instance *instance);

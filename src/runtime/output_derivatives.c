@@ -4,6 +4,7 @@
 #include "check.h"
 #include "derivatives.h"
 #include "evaluate.h"
+#include "reading.h"
 
 /* Series about the present time; the rows are parts of one block. */
 struct Expansion {
@@ -109,8 +110,12 @@ enum Status output_derivatives(struct Instance *instance, const unsigned *refere
                                double *value, const char *function) {
   for (size_t i = 0; i < count; i++)
     if (check_output_derivative(instance, reference[i], order[i], function) != STATUS_DONE) return STATUS_ERROR;
+  reading_begin(instance, function);
   enum Status status = evaluate_prepare(instance);
-  if (status != STATUS_DONE) return status;
-  return lagrangian.output_derivative_order == 1 ? derivatives_in_time(instance, reference, count, value, function)
-                                                 : read_from_series(instance, reference, count, order, value, function);
+  if (status == STATUS_DONE)
+    status = lagrangian.output_derivative_order == 1
+                 ? derivatives_in_time(instance, reference, count, value, function)
+                 : read_from_series(instance, reference, count, order, value, function);
+  reading_end(instance);
+  return status;
 }

@@ -73,8 +73,8 @@ bool solver_rests(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
 
-/* Constraints and modes for a state and parameters that were set. False after logging why the step is discarded. */
-static bool settle_what_was_set(struct Instance *instance, double time) {
+bool communication_settle(struct Instance *instance) {
+  double time = instance->situation->time;
   if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
   if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
   return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
@@ -92,7 +92,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set, unless an event has settled all. */
     bool is_settled = situation->changed == CHANGED_BY_EVENT;
-    if (!is_settled && !settle_what_was_set(instance, step->start)) return STEP_PARTIAL;
+    if (!is_settled && !communication_settle(instance)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -130,8 +130,8 @@ static const char *excess(const struct CommunicationStep *step, double work) {
              : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
 }
 
-/* Makes steps until the last one reaches the end; NULL, or the reason why none does. */
-static const char *reach(struct Instance *instance, struct CommunicationStep *step) {
+/* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
+static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
   const struct Span *last = &instance->situation->last_step;
   const struct Switching *switcher = lagrangian.switching;
   struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
@@ -141,6 +141,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    *ends_at_event = problem != NULL;
     if (problem != NULL) return problem;
     bool is_inside = last->end > step->start && last->end < step->end;
     if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
@@ -180,22 +181,28 @@ static void log_weakest(struct Instance *instance, double time) {
         time, name);
 }
 
+/* What to do about a solver that stopped: no solver helps where an event has no end. */
+static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
+                     bool ends_at_event, double reached) {
+  const struct Solver *solver = lagrangian.solver;
+  const char *function = instance->limited_by, *others = ends_at_event ? NULL : solver->alternatives;
+  const char *remedy = ends_at_event ? "" : solver->remedy != NULL ? solver->remedy : usual_remedy;
+  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s%s%s%s%s", solver->name, reached,
+              step->end, reason, function != NULL && !ends_at_event ? ", by " : "",
+              function != NULL && !ends_at_event ? function : "", ends_at_event ? "" : "; ", remedy,
+              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
+}
+
 /* The state becomes that of the time which the solver came to, and says why it is not the end. */
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
-                            double reached) {
-  const struct Solver *solver = lagrangian.solver;
-  const char *function = instance->limited_by;
+                            bool ends_at_event, double reached) {
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  if (lagrangian.projection != NULL) log_weakest(instance, reached);
-  const char *others = solver->alternatives;
-  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s; %s%s%s", solver->name, reached,
-              step->end, reason, function != NULL ? ", by " : "", function != NULL ? function : "",
-              solver->remedy != NULL ? solver->remedy : usual_remedy,
-              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
+  if (lagrangian.projection != NULL && !ends_at_event) log_weakest(instance, reached);
+  log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
 }
@@ -209,16 +216,21 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     *reached = step->start;
     return readiness;
   }
-  const char *problem = reach(instance, step);
+  bool ends_at_event = false;
+  const char *law = NULL; /* that does not hold at the end */
+  const char *problem = reach(instance, step, &ends_at_event);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
-    if (problem == NULL) return STEP_DONE;
+    if (problem == NULL && lagrangian.switching != NULL) law = lagrangian.switching->check(instance, step->end);
+    if (problem == NULL && law == NULL) return STEP_DONE;
   }
   *reached = problem != NULL ? last->end : last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
-  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", *reached);
+  if (law != NULL) return stop(instance, step, law, true, *reached);
+  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", ends_at_event,
+              *reached);
 }
 
 struct Advance {
@@ -289,6 +301,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (evaluate_prepare(instance) != STATUS_DONE)
     return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
   situation->time = time;
+  instance->foresight = FORESIGHT_STALE;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   guides_begin_step(instance);

@@ -21,6 +21,7 @@ struct CommunicationStep;
 struct EventProgress {
   double searched;  /* no event before this time is left */
   int gathered;     /* how many have come within the rounding of time, or of what they wait for */
+  int crowded;      /* how many of one indicator have come close together, without leaving 0 by more than rounding */
   double last;      /* event, from the start of the step on; 0 for none */
   double distance;  /* between the last two; 0 for none */
   long count;       /* of all in the step */
@@ -56,6 +57,8 @@ struct Switching {
   const char *(*update)(struct Instance *instance, bool *changed);
   /* Goes through the next event of the solver's last step. NULL, or the reason why the motion ends there. */
   const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
+  /* What must hold where a communication step ends. NULL, or the reason why it does not, after logging what is to blame. */
+  const char *(*check)(struct Instance *instance, double time);
   /* Where the solver cannot go on: a zero that it cannot reach may be next to it. The problem, or NULL. */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);
@@ -64,6 +67,11 @@ struct Switching {
                   const struct EventProgress *progress);
   /* Whether the constraint is that of a contact or a friction, whose events tell by themselves where they end. */
   bool (*holds_at_times)(const char *constraint);
+  /*
+   * Moves a point at which an importer tries a piece beyond its end to that end, by the velocities there; its state is then in
+   * workspace. False where there is none, or where it does not help.
+   */
+  bool (*come_back)(struct Instance *instance, struct Point *point);
   /* The indicators at the situation as an importer is told them; false where there are no accelerations. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* Whether an indicator has a sign at the situation that its mode does not allow. */

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "evaluate.h"
 #include "initial_state.h"
-#include "start.h"
+#include "reading.h"
 
 static enum Status worse(enum Status first, enum Status second) {
   return first > second ? first : second;
@@ -20,29 +20,28 @@ static bool follows_start(unsigned reference) {
   return kind != VARIABLE_TIME && kind != VARIABLE_INPUT && kind != VARIABLE_PARAMETER && kind != VARIABLE_STATISTIC;
 }
 
-/* Lets the variables be read, up to start_hide(). */
-static void show_for(struct Instance *instance, const unsigned *reference, size_t count, const char *function) {
+/* Lets the variables be read, up to reading_end(). */
+static void begin_reading(struct Instance *instance, const unsigned *reference, size_t count, const char *function) {
   bool any = false;
   for (size_t i = 0; i < count; i++) any |= follows_start(reference[i]);
-  if (any) start_show(instance, function);
+  if (any) reading_begin(instance, function);
 }
 
 static enum Status get_values(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                               const char *function) {
   enum Status status = STATUS_DONE;
-  for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_REAL, function);
-    if (variable == NULL) return STATUS_ERROR;
-    status = worse(status, evaluate_variable(instance, variable, &value[i]));
-  }
+  for (size_t i = 0; i < count; i++)
+    if (check_reference(instance, reference[i], TYPE_REAL, function) == NULL) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++)
+    status = worse(status, evaluate_variable(instance, &lagrangian.variables[reference[i]], &value[i]));
   return status;
 }
 
 enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                        const char *function) {
-  show_for(instance, reference, count, function);
+  begin_reading(instance, reference, count, function);
   enum Status status = get_values(instance, reference, count, value, function);
-  start_hide(instance);
+  reading_end(instance);
   return status;
 }
 
@@ -51,22 +50,22 @@ static enum Status get_whole_values(struct Instance *instance, const unsigned *r
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
     if (variable == NULL) return STATUS_ERROR;
-    if (variable->kind == VARIABLE_CONTACT) evaluate_prepare(instance); /* before the start it follows from the state */
-    if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_CONTACT) {
-      value[i] = (int)instance->parameter[variable->index];
-      continue;
+    bool is_contact = variable->kind == VARIABLE_CONTACT;
+    if (is_contact) evaluate_prepare(instance); /* before the start it follows from the state */
+    if (is_contact || variable->kind == VARIABLE_PARAMETER) value[i] = (int)instance->parameter[variable->index];
+    else {
+      int64_t statistic = instance->situation->statistics[variable->index];
+      value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
     }
-    int64_t statistic = instance->situation->statistics[variable->index];
-    value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
   }
   return STATUS_DONE;
 }
 
 enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
                              enum VariableType type, const char *function) {
-  show_for(instance, reference, count, function);
+  begin_reading(instance, reference, count, function);
   enum Status status = get_whole_values(instance, reference, count, value, type, function);
-  start_hide(instance);
+  reading_end(instance);
   return status;
 }
 
@@ -137,6 +136,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->situation->changed = CHANGED_VALUES;
+  instance->foresight = FORESIGHT_STALE;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 

@@ -113,13 +113,9 @@ static void append_reactions(struct Interface *interface, const struct Model *mo
 
 /* That of a friction which slides belongs to no constraint. */
 static Node whole_force(const struct Model *model, size_t constraint, Node force) {
-  struct Graph *graph = model->graph;
-  for (size_t i = 0; i < model->switches.friction_count; i++) {
-    const struct Friction *friction = &model->switches.frictions[i];
-    if (friction->constraint != constraint) continue;
-    Node sliding = multiply(graph, friction->mode, friction->sliding);
-    return choose_node(graph, power_number(graph, friction->mode, 2.0), sliding, force);
-  }
+  for (size_t i = 0; i < model->switches.friction_count; i++)
+    if (model->switches.frictions[i].constraint == constraint)
+      return friction_force(model->graph, &model->switches.frictions[i], force);
   return force;
 }
 
@@ -168,7 +164,7 @@ static void append_modes(struct Interface *interface, const struct Model *model)
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
-    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].mode, name,
+    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
                 "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
     free(name);
   }

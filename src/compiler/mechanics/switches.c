@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/simplify.h"
 #include "memory.h"
 
 void append_switch(struct Switches *switches, struct Switch item) {
@@ -11,6 +12,11 @@ void append_switch(struct Switches *switches, struct Switch item) {
 
 bool has_switches(const struct Switches *switches) {
   return switches->count + switches->contact_count + switches->friction_count > 0;
+}
+
+Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
+  Node sliding = multiply(graph, friction->mode, friction->sliding);
+  return choose_node(graph, power_number(graph, friction->mode, 2.0), sliding, force);
 }
 
 void switches_clear(struct Switches *switches) {

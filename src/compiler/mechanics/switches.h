@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "algebra/graph.h"
+#include "passage.h"
 
 /* Its mode is the sign of its indicator, -1, 0 or 1; at a zero the mode changes. */
 struct Switch {
@@ -25,11 +26,12 @@ struct Contact {
 
 /*
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, 0 while it sticks: then a constraint
- * holds the velocity at 0 with a force of at most stiction.
+ * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
+ * where others hold the velocity at 0: the told mode is 0 then.
  */
 struct Friction {
   size_t constraint; /* among the model's */
-  Node mode, velocity, sliding, stiction;
+  Node mode, told, velocity, sliding, stiction;
 };
 
 /* What a variable becomes at an event: a coordinate, a velocity or a mode. */
@@ -37,9 +39,11 @@ struct Assignment {
   Node symbol, value;
 };
 
-/* Happens where its condition becomes positive: a function of modes alone. */
 struct Event {
-  Node conditions[2]; /* of a zero that is passed in both directions there are two; else the second is ZERO */
+  enum Passage passage;
+  Node condition;      /* a function of modes alone: positive where it holds, or the sign of the expression */
+  Node side;           /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
+  bool is_of_contacts; /* contacts, frictions and forces decide on the condition */
   struct Assignment *assignments;
   size_t assignment_count;
   char *text; /* for messages */
@@ -62,6 +66,9 @@ void append_switch(struct Switches *switches, struct Switch item);
 
 /* Whether anything may happen along the motion. */
 bool has_switches(const struct Switches *switches);
+
+/* The force of a friction, from that of its constraint: while it slides it belongs to none. */
+Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);
 
 /* Frees what the switches own. */
 void switches_clear(struct Switches *switches);

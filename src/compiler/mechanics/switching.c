@@ -35,8 +35,7 @@ static struct List roots_of(const struct Model *model, const struct Equations *e
   }
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct Event *event = &switches->events[i];
-    append(&roots, event->conditions[0]);
-    append(&roots, event->conditions[1]);
+    append(&roots, event->condition);
     for (size_t j = 0; j < event->assignment_count; j++) append(&roots, event->assignments[j].value);
   }
   return roots;
@@ -86,7 +85,9 @@ static void find_branches(const struct Model *model, struct List *roots, struct 
   free(is_used);
 }
 
+/* Forces have no rate that is known here. */
 static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
+  if (graph_depends_on(model->graph, node, ACCELERATION)) return ZERO;
   Node rate;
   derivative_along(model->graph, &node, 1, seeds, &rate);
   return rate;
@@ -163,12 +164,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
     append(list, friction->stiction);
     append(list, friction->sliding);
   }
-  for (size_t i = 0; i < switches->event_count; i++)
-    for (int k = 0; k < 2; k++) {
-      if (switches->events[i].conditions[k] == ZERO) continue;
-      append(list, switches->events[i].conditions[k]);
-      switching->condition_count++;
-    }
+  for (size_t i = 0; i < switches->event_count; i++) append(list, switches->events[i].condition);
   for (size_t i = 0; i < switches->event_count; i++)
     for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
       append(list, switches->events[i].assignments[j].value);

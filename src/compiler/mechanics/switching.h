@@ -7,7 +7,7 @@
 struct SwitchingExpressions {
   const struct Switch **branches; /* those that the motion rests on */
   bool *holds_energy; /* of each branch: whether the state decides by it on an energy, which must not jump there */
-  size_t branch_count, condition_count, assignment_count;
+  size_t branch_count, assignment_count;
   size_t energy_count; /* where a branch holds any: kinetic, potential, and momenta where it holds the first; else 0 */
   /*
    * Each changes its sign where a mode may change: of branches, then of contacts, the gap while they are open and the force

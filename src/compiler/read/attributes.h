@@ -4,6 +4,7 @@
 
 #include <libxml/tree.h>
 
+#include "read/branches.h"
 #include "read/parser.h"
 #include "read/reader.h"
 
@@ -51,7 +52,7 @@ enum {
   IN_CONSTRAINT =
       KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT) | WITH_RATES,
   IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
-  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION) | CONTACT_STATE,
 };
 
 /* Whether the element has this name, and whether it has an attribute of this name. */

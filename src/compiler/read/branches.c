@@ -11,6 +11,13 @@
 /* Indicators that are compared in a step of work. */
 enum { COMPARISONS = 8 };
 
+static bool tells_of_contacts(const struct Switches *switches, const struct Cone *cone) {
+  bool tells = false;
+  for (size_t i = 0; i < switches->contact_count; i++) tells |= cone_has(cone, switches->contacts[i].mode);
+  for (size_t i = 0; i < switches->friction_count; i++) tells |= cone_has(cone, switches->frictions[i].told);
+  return tells;
+}
+
 unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;
   unsigned kinds = graph->vertices[node].kinds;
@@ -20,6 +27,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
     const struct Switch *item = &scope->switches->items[i];
     if (cone_has(graph->cone, item->mode)) kinds |= item->kinds;
   }
+  if (tells_of_contacts(scope->switches, graph->cone)) kinds |= CONTACT_STATE;
   return kinds;
 }
 

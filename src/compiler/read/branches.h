@@ -13,7 +13,10 @@
  */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
-/* The kinds of symbols that a node rests on, also by what decides on its pieces. */
+/* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
+enum { CONTACT_STATE = 1 << 29 };
+
+/* The kinds of symbols that a node rests on, also by what decides on its pieces; CONTACT_STATE among them. */
 unsigned kinds_that_decide(const struct Scope *scope, Node node);
 
 /* abs, sign, min or max of nodes, by their pieces. */

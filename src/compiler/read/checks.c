@@ -24,11 +24,6 @@ static void check_content(const struct Reader *reader) {
     report_error(reader->diagnostics, model->work_line,
                  "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
                  model->drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
-  if (model->work_line > 0 && model->switches.contact_count + model->switches.event_count > 0)
-    report_error(
-        reader->diagnostics, model->work_line,
-        "<work/> does not count what impacts and events take; expected it in a system without <contact>, <stop> "
-        "and <event>");
   if (model->work_line > 0 && model->moving_constraint != NULL)
     report_error(reader->diagnostics, model->work_line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "

@@ -211,6 +211,12 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
            is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, parser->place.kinds));
+  if ((surplus & CONTACT_STATE) != 0)
+    FAIL(
+        parser,
+        "%s cannot depend on whether contacts are closed and frictions slide, but '%s' does; expected it in an <event> "
+        "or an <output>, such as an <event> that sets a <mode>",
+        parser->place.what, name);
   require_input_derivatives(parser, quantity->node, name);
   return *quantity;
 }

@@ -221,6 +221,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   evaluate_start_expressions(reader);
   read_children(reader, root, EXPRESSIONS);
   undisplace_switches(reader);
+  complete_friction_forces(reader);
   reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
   if (reader->diagnostics->errors == 0) hold_massless_coordinates(reader->model);

@@ -8,21 +8,27 @@
 #include "algebra/rational.h"
 #include "algebra/simplify.h"
 #include "memory.h"
-#include "read/branches.h"
-#include "read/conditions.h"
 #include "read/constraint_reader.h"
 #include "read/elements.h"
 #include "read/forces.h"
 
-enum { IN_CONDITION = (IN_FORCE & ~KIND(DISPLACEMENT)), IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
+enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 
 /* --- Declarations --- */
 
-/* Its name is that of the variable which tells it. */
-static Node new_mode(struct Reader *reader, const char *of, const char *what) {
+Node new_mode(struct Reader *reader, const char *of, const char *what) {
   struct Switches *switches = &reader->model->switches;
   char *name = format_text("%s.%s", of, what);
-  Node mode = graph_symbol(reader->model->graph, MODE, (int)switches->mode_count++, name);
+  Node mode = graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  free(name);
+  return mode;
+}
+
+/* One that expressions of events know by the name of the variable which tells it. */
+static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
+  Node mode = new_mode(reader, constraint->name, what);
+  char *name = format_text("%s.%s", constraint->name, what);
+  scope_define(reader->scope, name, (struct Quantity){.node = mode, .dimension = dimension_one}, constraint->line);
   free(name);
   return mode;
 }
@@ -50,7 +56,8 @@ static size_t declare_held(struct Reader *reader, struct Variable constraint) {
 static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
   switches->contacts = reallocate(switches->contacts, switches->contact_count + 1, sizeof *switches->contacts);
-  switches->contacts[switches->contact_count++] = (struct Contact){.mode = new_mode(reader, constraint.name, "closed")};
+  switches->contacts[switches->contact_count++] =
+      (struct Contact){.mode = new_told_mode(reader, &constraint, "closed")};
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
@@ -84,8 +91,8 @@ void declare_friction(struct Reader *reader, xmlNodePtr node) {
   struct Switches *switches = &reader->model->switches;
   struct Variable constraint = common_attributes(reader, node);
   switches->frictions = reallocate(switches->frictions, switches->friction_count + 1, sizeof *switches->frictions);
-  switches->frictions[switches->friction_count++] =
-      (struct Friction){.mode = new_mode(reader, constraint.name, "sliding")};
+  switches->frictions[switches->friction_count++] = (struct Friction){
+      .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
   switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
   reader->model->has_forces = true;
 }
@@ -236,6 +243,29 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   gradient_free(&levers);
 }
 
+void complete_friction_forces(struct Reader *reader) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Switches *switches = &model->switches;
+  if (switches->friction_count == 0) return;
+  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
+  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node force = model->constraint_forces[friction->constraint];
+    replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
+  }
+  for (size_t i = 0; i < switches->count; i++)
+    substitute(graph, &switches->items[i].indicator, 1, replacements, &switches->items[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
+      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
+                 &switches->events[i].assignments[j].value);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  free(replacements);
+}
+
 /* --- Branches --- */
 
 void undisplace_switches(struct Reader *reader) {
@@ -251,97 +281,4 @@ void undisplace_switches(struct Reader *reader) {
                    "it to turn elsewhere",
                    item->function);
   }
-}
-
-/* --- Events --- */
-
-/* What <set> changes: the symbol of a coordinate, velocity or mode. */
-static Node target_of(struct Reader *reader, xmlNodePtr node) {
-  static const struct {
-    const char *attribute;
-    enum SymbolKind kind;
-  } targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"mode", MODE}};
-  size_t given = 0;
-  Node symbol = ZERO;
-  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-    if (!has_attribute(node, targets[i].attribute)) continue;
-    given++;
-    char *name = reference_attribute(reader, node, targets[i].attribute);
-    const struct Quantity *quantity = name != NULL ? scope_find(reader->scope, name) : NULL;
-    const struct Graph *graph = reader->model->graph;
-    bool fits = quantity != NULL && graph->vertices[quantity->node].operation == SYMBOL &&
-                graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
-    if (fits) symbol = quantity->node;
-    else
-      report_error(reader->diagnostics, xmlGetLineNo(node), "<set %s=\"%s\">: there is no %s of this name",
-                   targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
-    free(name);
-  }
-  if (given != 1)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a <set> needs one of velocity, coordinate and mode");
-  return symbol;
-}
-
-static void check_target(struct Reader *reader, xmlNodePtr node, const struct Event *event, Node symbol) {
-  const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
-  bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
-  if (is_state && reader->model->drives[target->index].given)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "<set> of '%s', which is driven; expected another one",
-                 target->name);
-  for (size_t i = 0; i < event->assignment_count; i++)
-    if (event->assignments[i].symbol == symbol)
-      report_error(reader->diagnostics, xmlGetLineNo(node), "a second <set> of '%s' in one <event>; expected one",
-                   target->name);
-}
-
-static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
-  Node symbol = target_of(reader, node);
-  struct Quantity value = expression_text_of(reader, node, "the value of <set>", IN_CONDITION);
-  if (symbol == ZERO || reader->diagnostics->errors > 0) return;
-  check_target(reader, node, event, symbol);
-  const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
-  const struct Quantity *target = scope_find(reader->scope, name);
-  if (target != NULL && target->dimension.known)
-    require_unit(reader, xmlGetLineNo(node), "the value of <set>", value, target->dimension);
-  event->assignments = reallocate(event->assignments, event->assignment_count + 1, sizeof *event->assignments);
-  event->assignments[event->assignment_count++] = (struct Assignment){symbol, value.node};
-}
-
-/* A condition that comes to hold, or an expression that passes 0 in a direction. */
-static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
-  struct Graph *graph = reader->model->graph;
-  struct Place place = {.line = xmlGetLineNo(node), .what = "when", .kinds = IN_CONDITION};
-  char *direction = attribute(node, "direction");
-  Node value;
-  if (parse_when(reader->scope, when, place, &value)) {
-    event->conditions[0] = value;
-    if (direction != NULL)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
-                   "no direction");
-  } else if (value != ZERO) {
-    Node sign = branch_of(reader->scope, value, "the event", xmlGetLineNo(node));
-    bool falls = direction == NULL || strcmp(direction, "rising") != 0;
-    event->conditions[0] = falls ? negate(graph, sign) : sign;
-    if (direction != NULL && strcmp(direction, "both") == 0) event->conditions[1] = sign;
-  }
-  if (event->conditions[0] != ZERO && !graph_depends_on(graph, event->conditions[0], MODE))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
-  free(direction);
-}
-
-void read_event(struct Reader *reader, xmlNodePtr node) {
-  struct Switches *switches = &reader->model->switches;
-  char *when = attribute(node, "when");
-  if (when == NULL) return;
-  struct Event event = {.conditions = {ZERO, ZERO}};
-  read_condition(reader, node, when, &event);
-  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
-    if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
-  if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
-  event.text = when;
-  switches->events = reallocate(switches->events, switches->event_count + 1, sizeof *switches->events);
-  switches->events[switches->event_count++] = event;
 }

@@ -21,23 +21,31 @@ static void write_branches(FILE *file, const struct Program *program) {
   fputs("};\n\n", file);
 }
 
-static void write_held(FILE *file, const struct Program *program, size_t constraint, Node mode) {
-  fprintf(file, "{%d, %zu, ", mode_index(program, mode), constraint);
+static void write_name(FILE *file, const struct Program *program, size_t constraint) {
   write_c_string(file, program->model->constraints.items[constraint].name);
   fputs("}, ", file);
+}
+
+static void write_contact_facts(FILE *file, const struct Program *program, const struct Contact *contact) {
+  fprintf(file, "{%d, %zu, ", mode_index(program, contact->mode), contact->constraint);
+  write_name(file, program, contact->constraint);
+}
+
+static void write_friction_facts(FILE *file, const struct Program *program, const struct Friction *friction) {
+  fprintf(file, "{%d, %d, %zu, ", mode_index(program, friction->mode), mode_index(program, friction->told),
+          friction->constraint);
+  write_name(file, program, friction->constraint);
 }
 
 static void write_contacts(FILE *file, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   if (switches->contact_count > 0) fputs("extern const struct ContactLaws contact_laws;\n\n", file);
   if (switches->contact_count > 0) fputs("static const struct ContactFacts contact_facts[] = {", file);
-  for (size_t i = 0; i < switches->contact_count; i++)
-    write_held(file, program, switches->contacts[i].constraint, switches->contacts[i].mode);
+  for (size_t i = 0; i < switches->contact_count; i++) write_contact_facts(file, program, &switches->contacts[i]);
   if (switches->contact_count > 0) fputs("};\n\n", file);
   if (switches->friction_count > 0) fputs("extern const struct FrictionLaws friction_laws;\n\n", file);
   if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
-  for (size_t i = 0; i < switches->friction_count; i++)
-    write_held(file, program, switches->frictions[i].constraint, switches->frictions[i].mode);
+  for (size_t i = 0; i < switches->friction_count; i++) write_friction_facts(file, program, &switches->frictions[i]);
   if (switches->friction_count > 0) fputs("};\n\n", file);
 }
 
@@ -48,6 +56,14 @@ static bool turns_by_forces(const struct Program *program) {
   for (size_t i = 0; i < switching->branch_count; i++)
     turns |= graph_depends_on(program->model->graph, switching->branches[i]->indicator, ACCELERATION);
   return turns;
+}
+
+static bool friction_varies(const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  bool varies = false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    varies |= !graph_is_constant_in_time(program->model->graph, switches->frictions[i].sliding);
+  return varies;
 }
 
 /* Whether the friction follows from the force of the contact. */
@@ -85,19 +101,23 @@ static void write_assignments(FILE *file, const struct Program *program, const s
 }
 
 static void write_events(FILE *file, const struct Program *program) {
+  static const char *const passages[] = {[PASSAGE_HOLDS] = "PASSAGE_HOLDS",
+                                         [PASSAGE_RISES] = "PASSAGE_RISES",
+                                         [PASSAGE_FALLS] = "PASSAGE_FALLS",
+                                         [PASSAGE_BOTH] = "PASSAGE_BOTH"};
   const struct Switches *switches = &program->model->switches;
   if (switches->event_count == 0) return;
   fputs("static const struct AssignmentFacts assignment_facts[] = {", file);
   for (size_t i = 0; i < switches->event_count; i++) write_assignments(file, program, &switches->events[i]);
   fputs("};\n\nstatic const struct EventFacts event_facts[] = {", file);
-  size_t condition = 0, assignment = 0;
+  size_t assignment = 0;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct Event *event = &switches->events[i];
-    size_t conditions = event->conditions[1] == ZERO ? 1 : 2;
-    fprintf(file, "{%zu, %zu, %zu, %zu, ", condition, conditions, assignment, event->assignment_count);
+    int side = event->side != ZERO ? mode_index(program, event->side) : 0;
+    fprintf(file, "{%s, %d, %s, %zu, %zu, ", passages[event->passage], side, event->is_of_contacts ? "true" : "false",
+            assignment, event->assignment_count);
     write_c_string(file, event->text);
     fputs("}, ", file);
-    condition += conditions;
     assignment += event->assignment_count;
   }
   fputs("};\n\n", file);
@@ -118,11 +138,10 @@ void switching_write(FILE *file, const struct Program *program) {
   fprintf(file,
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
-          "    .condition_count = %zu,\n    .assignment_count = %zu,\n    .energy_count = %zu,\n    .indicators = "
-          "indicators,\n"
+          "    .assignment_count = %zu,\n    .energy_count = %zu,\n    .indicators = indicators,\n"
           "    .values = switching_values,\n",
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
-          switches->event_count, switching->condition_count, switching->assignment_count, switching->energy_count);
+          switches->event_count, switching->assignment_count, switching->energy_count);
   if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
   if (program->watched_series != NULL)
     fprintf(file,
@@ -130,6 +149,7 @@ void switching_write(FILE *file, const struct Program *program) {
             "    .watched_limit = watched_limit,\n",
             program->watched_series->row_count, program->watched_series->acceleration_row,
             program->watched_series->acceleration_count);
+  if (friction_varies(program)) fputs("    .friction_varies = true,\n", file);
   if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (any_rests(program)) fputs("    .rests_on = rests,\n", file);

@@ -192,6 +192,21 @@ static bool open_lifted(struct Settlement *settlement) {
   return opens;
 }
 
+/* Opens contacts whose gap has just turned away, as at an edge. Whether there were any. */
+static bool open_turned(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  double least = continuity_allowed_share(settlement) * settlement_velocity_scale(settlement);
+  bool opens = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double rate = settlement->value[contact_place(settlement, i, CONTACT_RATE)];
+    if (mode_of(settlement, switches->contacts[i].mode) == 0.0 || !(rate > least)) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    settlement->was_opened[i] = 1.0;
+    opens = true;
+  }
+  return opens;
+}
+
 static bool release(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   open_lifted(settlement);
@@ -254,10 +269,37 @@ static size_t find_pulling(const struct Settlement *settlement) {
   return found;
 }
 
+static const char *check_gaps(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool starts = settlement->occasion == AT_START, moved = settlement->moved;
+  double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    if (gap >= -allowed) continue;
+    log_message(
+        settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
+        settlement->time, switches->contacts[i].name,
+        starts  ? "the start"
+        : moved ? "an event that sets coordinates"
+                : "an event that switches the gap",
+        gap,
+        starts  ? "start values or parameters"
+        : moved ? "values of <set>"
+                : "conditions and modes");
+    return "a contact is penetrated";
+  }
+  return NULL;
+}
+
 static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
+  bool may_turn = may_turn_gaps(settlement) && settlement->occasion != AT_START;
   *again = true;
-  if ((settlement->moved || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
+  if ((settlement->moved || may_turn || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
+  const char *problem = may_turn && !settlement->jumped ? check_gaps(settlement) : NULL;
+  if (problem != NULL) return problem;
+  if (may_turn && !settlement->jumped && open_turned(settlement)) return NULL;
   size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
   if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
   if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
@@ -270,21 +312,6 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   settlement->was_opened[pulling] = 1.0;
   settlement_set_mode(settlement, switches->contacts[pulling].mode, 0.0);
   let_go(settlement);
-  return NULL;
-}
-
-static const char *check_gaps(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool starts = settlement->occasion == AT_START;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
-    if (gap >= -largest_penetration) continue;
-    log_message(settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
-                "the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
-                switches->contacts[i].name, starts ? "the start" : "an event that sets coordinates", gap,
-                starts ? "start values or parameters" : "values of <set>");
-    return "a contact is penetrated";
-  }
   return NULL;
 }
 

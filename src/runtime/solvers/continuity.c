@@ -36,8 +36,7 @@ void continuity_note(struct Settlement *settlement, size_t branch) {
   memcpy(settlement->energy, settlement->value + energy_place(settlement), switches->energy_count * sizeof(double));
 }
 
-/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
-static double allowed_share(const struct Settlement *settlement) {
+double continuity_allowed_share(const struct Settlement *settlement) {
   double change = 0.0;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     size_t velocity = lagrangian.coordinate_count + i;
@@ -67,7 +66,7 @@ static const char *check_energy(const struct Settlement *settlement) {
   if (settlement->energetic == NULL || by_events || settlement->occasion == AT_START) return NULL;
   size_t count = settlement->switches->energy_count;
   double jump = fmax(share_of_jump(settlement, 0, 2), share_of_jump(settlement, 2, count - 2));
-  if (!(jump > allowed_share(settlement))) return NULL;
+  if (!(jump > continuity_allowed_share(settlement))) return NULL;
   log_message(
       settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
       "time %g: %s, line %ld of system.xml, jumps there in an energy or a position, by a share of %.2g, for which no "
@@ -85,7 +84,7 @@ static const char *check_constraints(struct Settlement *settlement) {
   bool starts = settlement->occasion == AT_START;
   double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
                         : lagrangian.projection->project(instance, settlement->time, settlement->state);
-  if (moved <= allowed_share(settlement)) return NULL;
+  if (moved <= continuity_allowed_share(settlement)) return NULL;
   enum Status status = starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
   if (settlement->set_mode || settlement->moved)
     log_message(instance, status,

@@ -12,6 +12,9 @@ enum { EVENT_LIMIT = 30 };
 /* So many windows in a communication step that may hide something have no end. */
 enum { UNSURE_LIMIT = 1000 };
 
+/* Events of the same indicator that come nearer than this share of the time may gather. */
+static const double crowding_share = 1e-6;
+
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
 
@@ -116,20 +119,23 @@ static bool is_bounce(const struct Instance *instance, size_t indicator) {
 
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
-  size_t indicator;
+  size_t indicator = 0;
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
-  bool is_close = (instance->was_at_zero && !is_bounce(instance, indicator)) ||
-                  solver_rests(time, time - progress->searched);
+  bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
+  bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
+  bool is_crowded = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
+                    time - (step->start + progress->last) <= crowding_share * fabs(time);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
+  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
   progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
   progress->searched = time;
-  if (progress->gathered >= EVENT_LIMIT) return gathering;
+  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT) return gathering;
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
   return pass_event(instance, step, time, indicator);
@@ -144,6 +150,17 @@ const char *switching_pass_barrier(struct Instance *instance, struct Communicati
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator);
+}
+
+const char *switching_check(struct Instance *instance, double time) {
+  const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
+  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
+  bool pushes = false;
+  for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
+    pushes |= settlement.value[friction_place(&settlement, i, FRICTION_FORCE)] < 0.0;
+  return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
 }
 
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,

@@ -11,7 +11,13 @@
 #include "solver.h"
 #include "switching_parts.h"
 
-enum { DEGREE = CHEBYSHEV_DEGREE, SEARCH_NODES = CHEBYSHEV_NODES, DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
+enum {
+  DEGREE = CHEBYSHEV_DEGREE,
+  SEARCH_NODES = CHEBYSHEV_NODES,
+  DEPTH_LIMIT = 48,
+  WINDOW_LIMIT = 5000,
+  REFINEMENT_LIMIT = 200
+};
 
 /* What the last coefficients may have of all, for a polynomial that is the function. */
 static const double resolved = 1e-4;
@@ -242,7 +248,8 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
-  for (int k = 0; k < SEARCH_NODES; k++) sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
+  for (int k = 0; k < SEARCH_NODES; k++)
+    sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double f[SEARCH_NODES], sign = switching_sign(instance, i);

@@ -76,8 +76,8 @@ static double sure_half(const struct Window *window) {
   for (size_t i = 0; i < states && is_resolved; i++)
     is_resolved = expand(window, window->states, states, i, lagrangian.nominal[i], window->x[i]);
   for (size_t i = 0; i < forces && is_resolved; i++)
-    is_resolved = expand(window, window->accelerations, forces, i, 0.0,
-                         window->work[switches->watched_acceleration_row + i]);
+    is_resolved =
+        expand(window, window->accelerations, forces, i, 0.0, window->work[switches->watched_acceleration_row + i]);
   if (!is_resolved) return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(window->input[i], 0, sizeof(Series));

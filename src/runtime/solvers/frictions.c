@@ -4,8 +4,11 @@
  */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 
+#include "evaluate.h"
 #include "settlement.h"
+#include "solver.h"
 
 enum { FRICTION_FLIP_LIMIT = 500 };
 
@@ -80,6 +83,53 @@ static const char *act_once_on_friction(struct Settlement *settlement, bool *swi
   return NULL;
 }
 
+/* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
+static size_t count_redundant(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  if (instance->singular != 0) return SIZE_MAX;
+  const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraint_count;
+  const double *slope = pivot + lagrangian.constraint_count;
+  size_t count = 0;
+  for (size_t j = 0; j < lagrangian.constraint_count; j++) count += isinf(pivot[j]) && slope[j] > 0.0;
+  return count;
+}
+
+/* Whether a friction that counts as sliding has a velocity that others hold: *held. False where that cannot be told. */
+static bool find_held(struct Settlement *settlement, const struct FrictionFacts *facts, bool *held) {
+  double *mode = &settlement->instance->parameter[facts->mode], kept = *mode;
+  size_t without = count_redundant(settlement);
+  *mode = 0.0;
+  settlement->instance->prepared_is_stale = true;
+  size_t with = count_redundant(settlement);
+  *mode = kept;
+  settlement->instance->prepared_is_stale = true;
+  *held = with > without;
+  return with != SIZE_MAX && without != SIZE_MAX;
+}
+
+/* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
+static bool tell_frictions(struct Settlement *settlement, bool *again) {
+  const struct SwitchTable *switches = settlement->switches;
+  double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
+  double slowest = share * settlement_velocity_scale(settlement);
+  *again = false;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct FrictionFacts *facts = &switches->frictions[i];
+    double mode = mode_of(settlement, facts->mode);
+    double velocity = settlement->value[friction_place(settlement, i, FRICTION_VELOCITY)];
+    bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraint_count > 1;
+    if (may_rest && !find_held(settlement, facts, &held)) return false;
+    if (held) mode = 0.0;
+    if (mode == mode_of(settlement, facts->told)) continue;
+    settlement_set_mode(settlement, facts->told, mode);
+    *again = true;
+  }
+  return true;
+}
+
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
 static const char *check_frictions(const struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
@@ -95,4 +145,5 @@ static const char *check_frictions(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct FrictionLaws friction_laws = {.act = act_once_on_friction, .check = check_frictions};
+const struct FrictionLaws friction_laws = {
+    .act = act_once_on_friction, .tell = tell_frictions, .check = check_frictions};

@@ -12,7 +12,7 @@ static const double least_share = 0.1;
 
 size_t settlement_value_count(const struct SwitchTable *switches) {
   return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
-         FRICTION_VALUES * switches->friction_count + switches->condition_count + switches->assignment_count +
+         FRICTION_VALUES * switches->friction_count + switches->event_count + switches->assignment_count +
          switches->energy_count;
 }
 
@@ -23,7 +23,7 @@ static size_t rows_of_matrix(void) {
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
-  return switching_search_count() + 4 * settlement_value_count(switches) + switches->condition_count +
+  return switching_search_count() + 4 * settlement_value_count(switches) + switches->event_count +
          indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
          rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
 }
@@ -37,7 +37,7 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.rounded_value = settlement.noise + values;
   settlement.largest = settlement.rounded_value + values;
   settlement.condition = settlement.largest + values;
-  settlement.flips = settlement.condition + switches->condition_count;
+  settlement.flips = settlement.condition + switches->event_count;
   settlement.was_opened = settlement.flips + indicators;
   settlement.takes_part = settlement.was_opened + switches->contact_count;
   settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
@@ -115,6 +115,13 @@ bool settlement_evaluate(struct Settlement *settlement) {
 double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate) {
   double change = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->value[rate]);
   return settlement->noise[place] + (isfinite(change) ? change : 0.0);
+}
+
+double settlement_velocity_scale(const struct Settlement *settlement) {
+  double scale = 0.0;
+  for (size_t i = lagrangian.coordinate_count; i < 2 * lagrangian.coordinate_count; i++)
+    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
+  return scale;
 }
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value) {

@@ -30,6 +30,7 @@ struct Settlement {
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, set_mode;                /* an event has set coordinates; a mode */
+  bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   int impacts, lifts;
 };
 
@@ -55,6 +56,8 @@ struct ContactLaws {
 struct FrictionLaws {
   /* One friction that begins to stick or to slide; *again where there was any. NULL, or the reason why there is no mode. */
   const char *(*act)(struct Settlement *settlement, bool *again);
+  /* Brings the modes that are told up to date; *again where that changed any. False where there are no accelerations. */
+  bool (*tell)(struct Settlement *settlement, bool *again);
   /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
   const char *(*check)(const struct Settlement *settlement);
 };
@@ -95,7 +98,7 @@ static inline size_t condition_place(const struct Settlement *settlement) {
 
 /* Of the kinetic energy, before the potential one and the momenta. */
 static inline size_t energy_place(const struct Settlement *settlement) {
-  return condition_place(settlement) + settlement->switches->condition_count + settlement->switches->assignment_count;
+  return condition_place(settlement) + settlement->switches->event_count + settlement->switches->assignment_count;
 }
 
 static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {
@@ -110,6 +113,11 @@ static inline bool is_hit(const struct Settlement *settlement, size_t indicator)
   return settlement->occasion == AT_EVENT && settlement->indicator == indicator;
 }
 
+/* Whether gaps may have jumped or turned, by a branch or a mode. */
+static inline bool may_turn_gaps(const struct Settlement *settlement) {
+  return settlement->switched != NULL || settlement->set_mode;
+}
+
 static inline double mode_of(const struct Settlement *settlement, size_t mode) {
   return settlement->instance->parameter[mode];
 }
@@ -122,6 +130,12 @@ void continuity_note(struct Settlement *settlement, size_t branch);
 
 /* Behind all: whether branches, or events that set modes or coordinates, have left things in their places. */
 const char *continuity_check(struct Settlement *settlement);
+
+/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
+double continuity_allowed_share(const struct Settlement *settlement);
+
+/* The largest scale among the velocities. */
+double settlement_velocity_scale(const struct Settlement *settlement);
 
 extern const char constraints_not_kept[];
 

@@ -95,7 +95,7 @@ static const char *switch_branches(struct Settlement *settlement, bool *switched
 
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
-  const double *value = settlement->value + condition_place(settlement) + switches->condition_count;
+  const double *value = settlement->value + condition_place(settlement) + switches->event_count;
   for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
     const struct AssignmentFacts *facts = &switches->assignments[i];
     if (facts->kind == VARIABLE_MODE) {
@@ -109,17 +109,48 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
   }
 }
 
-static void copy_conditions(struct Settlement *settlement) {
-  memcpy(settlement->condition, settlement->value + condition_place(settlement),
-         settlement->switches->condition_count * sizeof *settlement->condition);
+/*
+ * Conditions as they are before events, all of them or those of contacts alone. Of an expression it is the side of 0 on which it
+ * was last.
+ */
+static void note_conditions(struct Settlement *settlement, bool all) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool stays = event->passage != PASSAGE_HOLDS && condition == 0.0;
+    if (!stays && (all || event->is_of_contacts)) settlement->condition[i] = condition;
+  }
 }
 
-static bool comes_to_hold(const struct Settlement *settlement, const struct EventFacts *event) {
-  const double *condition = settlement->value + condition_place(settlement);
-  bool happens = false;
-  for (size_t k = event->first_condition; k < event->first_condition + event->condition_count; k++)
-    happens |= condition[k] > 0.0 && !(settlement->condition[k] > 0.0);
-  return happens;
+/* Conditions and sides from which the settlement sets out. */
+static void begin_events(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool was_at_side = event->passage != PASSAGE_HOLDS && mode_of(settlement, event->side) != 0.0;
+    settlement->condition[i] = was_at_side ? mode_of(settlement, event->side) : condition;
+  }
+}
+
+/* An event may have turned an expression round before it came to the other side: that keeps its side. */
+static void keep_sides(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double sign = settlement->value[condition_place(settlement) + i];
+    if (event->passage != PASSAGE_HOLDS && sign != 0.0) settlement->instance->parameter[event->side] = sign;
+  }
+}
+
+/* An expression that has only been at 0 passes nothing. */
+static bool happens(const struct Settlement *settlement, size_t event) {
+  const struct EventFacts *facts = &settlement->switches->events[event];
+  double condition = settlement->value[condition_place(settlement) + event], before = settlement->condition[event];
+  if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(before > 0.0);
+  bool rises = condition > 0.0 && before < 0.0, falls = condition < 0.0 && before > 0.0;
+  return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
 }
 
 /* Whether two events set the same. */
@@ -137,7 +168,7 @@ static bool are_rivals(const struct SwitchTable *switches, const struct EventFac
 static bool find_rivals(const struct Settlement *settlement, size_t event) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t k = 0; k < event; k++) {
-    if (!comes_to_hold(settlement, &switches->events[k])) continue;
+    if (!happens(settlement, k)) continue;
     if (!are_rivals(switches, &switches->events[k], &switches->events[event])) continue;
     log_message(
         settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
@@ -153,13 +184,17 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
 static const char *happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
+  /* What contacts and frictions come to at the start has held before. */
+  if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
+  settlement->has_started = true;
   for (size_t i = 0; i < switches->event_count; i++) {
-    if (!comes_to_hold(settlement, &switches->events[i])) continue;
+    if (!happens(settlement, i)) continue;
     if (find_rivals(settlement, i)) return "two events contradict each other";
     assign(settlement, &switches->events[i]);
     *again = true;
   }
-  copy_conditions(settlement);
+  note_conditions(settlement, true);
+  if (!*again) keep_sides(settlement);
   return NULL;
 }
 
@@ -177,7 +212,9 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (settlement->switches->contact_laws != NULL)
     problem = settlement->switches->contact_laws->settle_forces(settlement, again);
   if (problem != NULL || *again) return problem;
-  return happen(settlement, again);
+  if (settlement->switches->friction_laws != NULL && !settlement->switches->friction_laws->tell(settlement, again))
+    return "there are no accelerations at an event";
+  return *again ? NULL : happen(settlement, again);
 }
 
 /* Modes as the signs of the start values say. */
@@ -197,7 +234,8 @@ static const char *begin_modes(struct Settlement *settlement) {
 static const char *check_laws(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   const char *problem = NULL;
-  if (switches->contact_laws != NULL && settlement->moved) problem = switches->contact_laws->check_gaps(settlement);
+  if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement)))
+    problem = switches->contact_laws->check_gaps(settlement);
   if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(settlement);
   return problem;
 }
@@ -211,7 +249,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) problem = "events follow one another there without end";
     else if (!settlement_evaluate(&settlement)) problem = "there are no accelerations at an event";
-    if (round == 0 && problem == NULL) copy_conditions(&settlement);
+    if (round == 0 && problem == NULL) begin_events(&settlement);
     if (problem == NULL) problem = settle_once(&settlement, &again);
   }
   if (problem == NULL && settlement.jumped && lagrangian.projection != NULL && !settlement_push(&settlement))
@@ -232,7 +270,8 @@ static void guess(struct Instance *instance) {
   struct Point point = evaluate_point(instance);
   double *value = settlement_of(instance).value;
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++) instance->parameter[switches->frictions[i].mode] = 1.0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
   /* Of a mass that a sign decides on, 0 leaves nothing. */
   for (size_t i = 0; i < switches->branch_count; i++)
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
@@ -250,6 +289,19 @@ static void guess(struct Instance *instance) {
   }
 }
 
+/* Those that have no value beyond the end of a piece have that of its end. */
+static void complete_indicators(struct Instance *instance, double *value) {
+  size_t count = indicator_count(lagrangian.switches);
+  double *completed = instance->switching_work + count; /* the first so many may be the values */
+  struct Point point = evaluate_point(instance);
+  bool lacks = false;
+  for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
+  if (!lacks || !switching_come_back(instance, &point)) return;
+  if (!switching_indicators(instance, point.time, point.state, completed)) return;
+  for (size_t i = 0; i < count; i++)
+    if (isnan(value[i])) value[i] = completed[i];
+}
+
 /*
  * What an importer is told keeps its sign until the indicator is a little beyond 0, so that it is not 0 behind an event
  * (FMI 2.0, section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 leaves it on either side.
@@ -258,6 +310,7 @@ static bool told_indicators(struct Instance *instance, double *value) {
   static const double shift = 1e-11;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   if (!switching_indicators(instance, instance->situation->time, instance->state, value)) return false;
+  complete_indicators(instance, value);
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
     double sign = switching_sign(instance, i);
     value[i] = sign == 0.0 ? shift - fabs(value[i]) : value[i] + sign * shift;
@@ -293,5 +346,7 @@ const struct Switching switching = {.work_count = settlement_work_count,
                                     .pass_barrier = switching_pass_barrier,
                                     .explain = switching_explain,
                                     .holds_at_times = holds_at_times,
+                                    .check = switching_check,
+                                    .come_back = switching_come_back,
                                     .indicators = told_indicators,
                                     .is_due = is_due};

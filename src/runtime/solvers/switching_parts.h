@@ -37,6 +37,8 @@ bool switching_jump(struct Instance *instance, double *time, double *state, size
 bool switching_start(struct Instance *instance, const char *function);
 bool switching_release(struct Instance *instance, double time);
 bool switching_resume(struct Instance *instance, double time);
+const char *switching_check(struct Instance *instance, double time);
+bool switching_come_back(struct Instance *instance, struct Point *point);
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
                        const struct EventProgress *progress);
 const char *switching_update(struct Instance *instance, bool *changed);
