@@ -21,8 +21,9 @@ struct FunctionText {
 
 extern const struct FunctionText prepare_text, initial_state_text, initial_state_along_text, derivatives_text,
     directional_text, jacobian_text, linear_text, accelerations_text, accelerations_along_text, correct_positions_text,
-    correct_velocities_text, respond_text, start_positions_text, start_velocities_text, start_text, result_text, results_text,
-    result_along_text, indicators_text, switching_values_text, series_text, output_series_text, limit_text;
+    correct_velocities_text, respond_text, start_positions_text, start_velocities_text, start_text, result_text,
+    results_text, result_along_text, indicators_text, switching_values_text, series_text, output_series_text,
+    limit_text;
 
 /* The comment and the head of a function, up to its brace; suffix belongs to the name. */
 void write_head(FILE *file, const struct FunctionText *text, const char *suffix, size_t operations);
