@@ -325,7 +325,7 @@ def test_forged_choices_are_refused(open_fmu):
             refuses(instance, data, "=d", place, value)
     for place in (work, trial_work):
         refuses(instance, data, "=d", place, 1e300)  # as operations, whole numbers could not hold them
-    large = forged(data, "=q", windows, 2**62)
+    large = forged(data, "=q", windows, 2**62 - 1)
     instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(large))
     instance.step(10.0)
 
