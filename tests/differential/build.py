@@ -71,10 +71,13 @@ def compile_system(system, folder):
 
 def pack(system, folder, library):
     """As users get it: packed, and unpacked by FMPy."""
-    archive = folder / f"{system.name}.fmu"
-    words = ["cmake", "-D", f"FOLDER={folder / 'fmu'}", "-D", f"LIBRARY={library}", "-D", f"FMU={archive}", "-D", f"SOURCE={ROOT}", "-D", f"NAMES={BUILD / 'global_names'}",
-             "-D", f"ICON={BUILD / 'bin' / 'icon'}", "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
-    result = run(words, "pack.cmake")
-    if result.returncode != 0:
-        raise Wrong(f"pack.cmake: {result.stderr[:1000]}")
+    archive, content = folder / f"{system.name}.fmu", folder / "fmu"
+    icon = [BUILD / "bin" / "icon", library, content / "modelDescription.xml", content / "model.png"]
+    settings = {"FOLDER": content, "LIBRARIES": library, "FMU": archive, "VERSION": 2, "SYSTEM": folder / "system.xml", "SOURCE": ROOT,
+                "NAMES": BUILD / "global_names", "ZIP": shutil.which("zip")}  # fmt: skip
+    words = ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
+    for command, what in ((icon, "icon"), (words, "pack.cmake")):
+        result = run(command, what)
+        if result.returncode != 0:
+            raise Wrong(f"{what}: {result.stderr[:1000]}")
     return fmpy.extract(str(archive), str(folder / "unpacked"))
