@@ -18,7 +18,7 @@ TEXT = """<system name="Forms">
   <particle mass="1" x="r*cos(phi)" y="r*sin(phi)"/>
   <kinetic>k*v^2/2 + cos(x)*u*v/4 + u^2/2 + r^2*u^2/8 + (0.005 + sin(phi)^2)*s^2/2</kinetic>
   <potential>3*(r - 1)^2 + sign(p)*x^2 + sign(n)*y + max(p, 0.3)*y^2 + 2*abs(p)*x^4</potential>
-  <force coordinate="x">-tanh(20*(x - 0.1)) + atan2(y, x + 0.5) + max(x, y) - min(0.2, phi)</force>
+  <force coordinate="x">-tanh(200*(x - 0.1)) + atan2(0.01, 20*(x + 0.05)) + max(x, y) - min(0.2, phi)</force>
   <force coordinate="y">-abs(y)*u + if(x > 0.1, sqrt(x - 0.05), 0) + exp(-(y/0.05)^2)</force>
   <output name="far">atan2(x, p) + max(x, y)</output>
   <output name="push">der(v)*x</output>
