@@ -14,12 +14,14 @@ TEXT = """<system name="Forms">
   <coordinate name="phi" velocity="w" start="0.5" velocityStart="1"/>
   <coordinate name="x" velocity="v" start="0.3" velocityStart="-0.7"/>
   <coordinate name="y" velocity="u" start="-0.2" velocityStart="0.5"/>
+  <coordinate name="z" velocity="s" velocityStart="0.4"/>
   <particle mass="1" x="r*cos(phi)" y="r*sin(phi)"/>
-  <kinetic>k*v^2/2 + cos(x)*u*v/4 + u^2/2 + r^2*u^2/8</kinetic>
+  <kinetic>k*v^2/2 + cos(x)*u*v/4 + u^2/2 + r^2*u^2/8 + (0.005 + sin(phi)^2)*s^2/2</kinetic>
   <potential>3*(r - 1)^2 + sign(p)*x^2 + sign(n)*y + max(p, 0.3)*y^2 + 2*abs(p)*x^4</potential>
-  <force coordinate="x">-tanh(20*(x - 0.1)) + atan2(y, x + 0.5) + max(x, y) - min(0.2, phi)</force>
+  <force coordinate="x">-tanh(200*(x - 0.1)) + atan2(0.01, 20*(x + 0.05)) + max(x, y) - min(0.2, phi)</force>
   <force coordinate="y">-abs(y)*u + if(x > 0.1, sqrt(x - 0.05), 0) + exp(-(y/0.05)^2)</force>
   <output name="far">atan2(x, p) + max(x, y)</output>
+  <output name="push">der(v)*x</output>
   <solver method="taylor" tolerance="1e-9"/>
 </system>"""
 RESULTS = ["r", "phi", "x", "y", "vr", "w", "v", "u", "far", "der(v)", "totalEnergy"]
@@ -35,8 +37,9 @@ def motion_and_messages(form, folder):
         rows = [row[1:] for row in instance.run(2.0, 0.25, *RESULTS)]
         steps = instance.fmu.getInteger(instance.vr("solverSteps", "derivativeEvaluations", "events"))
         along = instance.fmu.getDirectionalDerivative(instance.vr("far", "der(v)"), instance.vr("x", "p", "y"), [0.3, 0.7, -0.4])
+        along += instance.fmu.getRealOutputDerivatives(instance.vr("far", "push"), [1, 1])
         told = []
-        for values in ({"r": 0.0}, {"k": 0.0, "x": 0.0}, {"k": 1e-9, "r": 1e-9}):
+        for values in ({"r": 0.0}, {"k": 0.0, "x": 0.0}, {"k": 0.05 * (1 + 3e-15), "x": 0.0, "r": 1.0}):
             instance.reset()
             instance.fmu.setupExperiment(startTime=0.0)
             instance.set(values)

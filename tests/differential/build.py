@@ -72,17 +72,17 @@ def compile_system(system, folder):
 
 def pack(system, folder, library):
     """As users get it: packed, and unpacked by FMPy."""
-    archive = folder / f"{system.name}.fmu"
-    target = folder / "fmu"
-    drawn = run([BUILD / "bin" / "icon", library, target / "modelDescription.xml", target / "model.png"], "icon")
-    words = ["cmake", "-D", f"FOLDER={target}", "-D", f"LIBRARIES={library}", "-D", f"FMU={archive}", "-D", "VERSION=2",
-             "-D", f"SYSTEM={folder / 'system.xml'}", "-D", f"SOURCE={ROOT}", "-D", f"NAMES={BUILD / 'global_names'}",
-             "-D", f"ZIP={shutil.which('zip')}", "-P", ROOT / "scripts" / "pack.cmake"]  # fmt: skip
-    result = run(words, "pack.cmake")
-    if drawn.returncode != 0 or result.returncode != 0:
-        raise Wrong(f"icon or pack.cmake: {drawn.stderr[:500]}{result.stderr[:1000]}")
+    archive, content = folder / f"{system.name}.fmu", folder / "fmu"
+    icon = [BUILD / "bin" / "icon", library, content / "modelDescription.xml", content / "model.png"]
+    settings = {"FOLDER": content, "LIBRARIES": library, "FMU": archive, "VERSION": 2, "SYSTEM": folder / "system.xml", "SOURCE": ROOT,
+                "NAMES": BUILD / "global_names", "ZIP": shutil.which("zip")}  # fmt: skip
+    words = ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
+    for command, what in ((icon, "icon"), (words, "pack.cmake")):
+        result = run(command, what)
+        if result.returncode != 0:
+            raise Wrong(f"{what}: {result.stderr[:1000]}")
     unpacked = fmpy.extract(str(archive), str(folder / "unpacked"))
     source = Path(unpacked) / "sources" / f"{system.name}.c"
-    if source.exists() and fmu.complaints_about(source, system.plan.compiler):
-        raise Wrong(f"one file that {system.plan.compiler} refuses: {fmu.complaints_about(source, system.plan.compiler)[:1000]}")
+    if source.exists() and (complaints := fmu.complaints_about(source, system.plan.compiler)):
+        raise Wrong(f"one file that {system.plan.compiler} refuses: {complaints[:1000]}")
     return unpacked

@@ -20,9 +20,15 @@ enum {
 static const int holder[] = HOLDERS;
 static const real rounding = 1e-16L, least_jump = 1e-9L;
 
-static const real *closed_of(const real *k) { return k + FIRST_MODE; }
-static const real *sliding_of(const real *k) { return k + FIRST_MODE + CONTACTS; }
-static const real *held_of(const real *k) { return k + FIRST_MODE + CONTACTS + FRICTIONS; }
+static const real *closed_of(const real *k) {
+  return k + FIRST_MODE;
+}
+static const real *sliding_of(const real *k) {
+  return k + FIRST_MODE + CONTACTS;
+}
+static const real *held_of(const real *k) {
+  return k + FIRST_MODE + CONTACTS + FRICTIONS;
+}
 
 /* M a = h + G^T l - W^T f, with rows for the forces l of contacts and f of frictions. */
 static void solve_forces(const real *p, const real *k, real *x) {
@@ -99,8 +105,8 @@ static bool has_changed(real t, const real *y, const real *k) {
 }
 
 /* The state within a step by Hermite's cubic, which is to tell signs alone. */
-static void interpolate(const real *before, const real *rate_before, const real *behind, const real *rate_behind, real h,
-                        real share, real *state) {
+static void interpolate(const real *before, const real *rate_before, const real *behind, const real *rate_behind,
+                        real h, real share, real *state) {
   real s = share, r = 1 - share;
   for (int i = 0; i < 2 * N; i++)
     state[i] = r * r * (1 + 2 * s) * before[i] + s * s * (1 + 2 * r) * behind[i] +
@@ -134,10 +140,17 @@ static real find_change(struct Run *run, real time, real h, const real *before, 
 }
 
 /* For Python: as integrate(), up to the first change of a mode; *changed, and the time in *reached. */
-int advance(int columns, double tolerance, double fraction, double longest, const real *time, const real *end, real *state,
-            const real *constant, real *step, long *evaluations, long limit, real *reached, int *changed) {
-  struct Run run = {.right = right, .states = 2 * N, .guards = GUARDS_HERE, .columns = columns, .tolerance = tolerance,
-                    .fraction = fraction, .longest = longest, .evaluations = *evaluations, .limit = limit,
+int advance(int columns, double tolerance, double fraction, double longest, const real *time, const real *end,
+            real *state, const real *constant, real *step, long *evaluations, long limit, real *reached, int *changed) {
+  struct Run run = {.right = right,
+                    .states = 2 * N,
+                    .guards = GUARDS_HERE,
+                    .columns = columns,
+                    .tolerance = tolerance,
+                    .fraction = fraction,
+                    .longest = longest,
+                    .evaluations = *evaluations,
+                    .limit = limit,
                     .constant = constant};
   enum Outcome outcome = DONE;
   *reached = *time;
