@@ -37,7 +37,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
   double direction = velocity > 0.0 ? 1.0 : -1.0;
   bool is_absent =
-      settlement->value[place + FRICTION_STICTION] <= 0.0 && settlement->value[place + FRICTION_FORCE] <= 0.0;
+      settlement->value[place + FRICTION_STICTION] == 0.0 && settlement->value[place + FRICTION_FORCE] == 0.0;
   if (is_absent) return frictionless_mode(settlement, place, mode, is_moving);
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
