@@ -294,13 +294,12 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
 const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   struct RestingContacts resting;
   *again = false;
-  bool slides = choose_resting(settlement), is_wrong = sinks(settlement);
-  if (!(slides || is_wrong) || !create_resting(settlement, &resting)) return NULL;
+  if (!choose_resting(settlement) || !create_resting(settlement, &resting)) return NULL;
   const char *problem = NULL;
-  if (resting.count <= COMBINED_LIMIT && (is_wrong || !is_surely_one(&resting))) {
+  if (resting.count <= COMBINED_LIMIT && (sinks(settlement) || !is_surely_one(&resting))) {
     int count = count_solutions(&resting);
     if (count == 1) *again = take_solution(settlement, &resting);
-    else if (slides) problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
+    else problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
   }
   free_resting(settlement, &resting);
   return problem;

@@ -17,7 +17,7 @@ static const double shortest_slip = 1e-4;
 
 static const char neither[] = "a friction changes to and fro there without end";
 
-/* Where there is no force, as of mu = 0, nothing sticks. */
+/* Where a contact gives no force, as of mu = 0, nothing sticks. */
 static double frictionless_mode(const struct Settlement *settlement, size_t place, double mode, bool is_moving) {
   double velocity = settlement->value[place], rate = settlement->value[place + FRICTION_RATE];
   double next = is_moving ? velocity : fabs(rate) > settlement->noise[place + FRICTION_RATE] ? rate : mode;
@@ -39,8 +39,8 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
   bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
   double direction = velocity > 0.0 ? 1.0 : -1.0;
-  bool is_absent =
-      settlement->value[place + FRICTION_STICTION] <= 0.0 && settlement->value[place + FRICTION_FORCE] <= 0.0;
+  bool is_absent = settlement->switches->rests_on != NULL && settlement->value[place + FRICTION_STICTION] == 0.0 &&
+                   settlement->value[place + FRICTION_FORCE] == 0.0;
   if (is_absent) return frictionless_mode(settlement, place, mode, is_moving);
   if (mode == 0.0) {
     double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
