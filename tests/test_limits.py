@@ -107,6 +107,14 @@ def test_files_that_include_each_other_twice(tmp_path):
     assert seconds_of_children() - before < MOST_SECONDS
 
 
+def test_files_that_include_each_other_in_a_row(tmp_path):
+    for k in range(150):
+        (tmp_path / f"link{k}.xml").write_text(f'<system name="Link"><include file="link{k + 1}.xml" as="a"/></system>')
+    result = compile_with('<include file="link0.xml" as="a"/>', tmp_path)
+    assert result.returncode == 1 and len(result.stderr) < 1500
+    assert "more than 100 files include each other in a row" in result.stderr
+
+
 def test_errors_without_end(tmp_path):
     """Of 38,000 wrong elements a hundred are told, in a time that does not grow as their square; long texts are cut."""
     before = seconds_of_children()

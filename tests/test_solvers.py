@@ -96,6 +96,12 @@ def test_much_work_is_told_of_on_the_way(open_fmu):
     assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 
 
+def test_a_step_to_the_end_of_all_numbers_ends(open_fmu):
+    instance = open_fmu("StickSlip").initialize()
+    with instance.fails(DISCARD, "stopped at time"):
+        instance.step(1e307)
+
+
 def collision_time(name, a):
     """From energy: v^2 = 2 (U(x0) - U(x)), to where the force has its pole."""
     start, pole, potential = {

@@ -66,6 +66,19 @@ char *path_beside(const struct Reader *reader, const char *file) {
   return path_beside_file(reader->source->file, file);
 }
 
+enum { DEPTH_LIMIT = 100 };
+
+/* Recursion is bounded here, so that no chain of files exhausts the stack. */
+static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
+  int depth = 0;
+  for (const struct Source *outer = source->outer; outer != NULL; outer = outer->outer) depth++;
+  if (depth <= DEPTH_LIMIT) return true;
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "more than %d files include each other in a row; expected fewer, some of them side by side",
+               DEPTH_LIMIT);
+  return false;
+}
+
 /* Whether the file is one of those that lead to it. */
 static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
   const struct Source *first = source->outer;
@@ -150,7 +163,8 @@ static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) 
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",
                  source->file, strerror(errno));
-  if (source->canonical_path == NULL || !check_circle(reader, node, source)) return;
+  if (source->canonical_path == NULL || !check_depth(reader, node, source) || !check_circle(reader, node, source))
+    return;
   xmlDocPtr document = document_of(reader, source);
   if (document != NULL) source->root = xmlDocGetRootElement(document);
   if (document != NULL) note_given(reader, source);

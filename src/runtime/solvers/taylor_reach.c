@@ -245,6 +245,7 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
       situation->stop_time_defined ? situation->stop_time - taylor->span->start : horizon * communication_step;
   double promised = promised_step(taylor), step = promised;
   if (rest < communication_step) rest = communication_step;
+  rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* no shorter step ends the search from an infinite one */
   if (rest < step) step = rest;
   if (lagrangian.max_step < step) step = lagrangian.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
