@@ -11,7 +11,7 @@ from differential.system import Action, Plan, System
 TEXT = """<system name="Forms">
   <parameter name="p" start="-0.4"/><parameter name="k" start="1" min="0"/><parameter name="n" start="0"/>
   <coordinate name="r" velocity="vr" start="1" velocityStart="-0.3"/>
-  <coordinate name="phi" velocity="w" start="0.5" velocityStart="1"/>
+  <coordinate name="phi" velocity="w" start="0.01" velocityStart="1"/>
   <coordinate name="x" velocity="v" start="0.3" velocityStart="-0.7"/>
   <coordinate name="y" velocity="u" start="-0.2" velocityStart="0.5"/>
   <coordinate name="z" velocity="s" velocityStart="0.4"/>
