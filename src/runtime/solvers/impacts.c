@@ -184,16 +184,35 @@ static bool find_fine_impulses(const struct Settlement *settlement, struct Impac
   return find_impulses(settlement, problem, fine);
 }
 
+static void add_impulses(struct Settlement *settlement, const struct Pushes *pushes, const double *impulse) {
+  double *velocity = settlement->state + lagrangian.coordinate_count;
+  for (size_t i = 0; i < pushes->count; i++)
+    for (size_t k = 0; k < lagrangian.coordinate_count; k++)
+      velocity[k] += impulse[i] * pushes->velocities[i * lagrangian.coordinate_count + k];
+}
+
+/* A contact that is hit alone, without friction. */
+static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
+  double bounce = bounces ? settlement->value[contact_place(settlement, pushes->member[0], CONTACT_RESTITUTION)] : 0.0;
+  double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
+  if (!(pushes->mobility[0] > DBL_MIN)) return false;
+  add_impulses(settlement, pushes, &impulse);
+  return true;
+}
+
+static bool take_several(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
+  struct ImpactProblem problem;
+  bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
+  if (is_done) add_impulses(settlement, pushes, problem.impulse);
+  if (problem.block != NULL) settlement->instance->memory.free(problem.block);
+  return is_done;
+}
+
 bool impacts_take(struct Settlement *settlement, bool bounces) {
   struct Pushes pushes;
-  struct ImpactProblem problem;
-  double *velocity = settlement->state + lagrangian.coordinate_count;
   if (!pushes_create(settlement, &pushes)) return false;
-  bool is_done = create_problem(settlement, &pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
-  for (size_t i = 0; i < pushes.count && is_done; i++)
-    for (size_t k = 0; k < lagrangian.coordinate_count; k++)
-      velocity[k] += problem.impulse[i] * pushes.velocities[i * lagrangian.coordinate_count + k];
-  if (problem.block != NULL) settlement->instance->memory.free(problem.block);
+  bool is_done =
+      pushes.count == 1 ? take_one(settlement, &pushes, bounces) : take_several(settlement, &pushes, bounces);
   pushes_free(settlement, &pushes);
   settlement->changed = true;
   return is_done;
