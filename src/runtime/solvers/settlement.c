@@ -34,8 +34,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   struct Settlement settlement = {.instance = instance, .switches = switches};
   settlement.value = instance->switching_work + switching_search_count();
   settlement.noise = settlement.value + values;
-  settlement.rounded_value = settlement.noise + values;
-  settlement.largest = settlement.rounded_value + values;
+  settlement.other_noise = settlement.noise + values;
+  settlement.largest = settlement.other_noise + values;
   settlement.condition = settlement.largest + values;
   settlement.flips = settlement.condition + switches->event_count;
   settlement.was_opened = settlement.flips + indicators;
@@ -89,19 +89,26 @@ static void measure_velocity(struct Settlement *settlement, size_t place) {
   settlement->noise[place] = fmax(settlement->noise[place], rounding_of_jumps * settlement->largest[place]);
 }
 
+static bool values_rounded(struct Settlement *settlement, bool otherwise, double *value) {
+  switching_round(settlement->state, otherwise, settlement->rounded);
+  return settlement_values(settlement, settlement->rounded, value);
+}
+
+/* Rounding in one way may leave a difference as it is; what it does in another is measured at the begin of an event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
+  double *noise = settlement->noise, *other = settlement->other_noise;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
-  switching_round(settlement->state, false, settlement->rounded);
-  if (!settlement_values(settlement, settlement->rounded, settlement->noise)) return false;
-  switching_round(settlement->state, true, settlement->rounded);
-  if (!settlement_values(settlement, settlement->rounded, settlement->rounded_value)) return false;
+  if (!values_rounded(settlement, false, noise)) return false;
+  bool is_first = !settlement->is_evaluated;
+  if (is_first && !values_rounded(settlement, true, other)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {
-    double one = fabs(settlement->noise[i] - settlement->value[i]),
-           other = fabs(settlement->rounded_value[i] - settlement->value[i]), noise = 8.0 * fmax(one, other);
-    settlement->noise[i] = isfinite(noise) ? noise : 0.0;
+    if (is_first) other[i] = 8.0 * fabs(other[i] - settlement->value[i]);
+    double change = fmax(8.0 * fabs(noise[i] - settlement->value[i]), other[i]);
+    noise[i] = isfinite(change) ? change : 0.0;
   }
+  settlement->is_evaluated = true;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
     measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {

@@ -16,7 +16,7 @@ struct Settlement {
   enum Occasion occasion;
   size_t indicator;           /* for AT_EVENT */
   double *value, *noise;      /* value[], and what rounding may make of it */
-  double *rounded_value;      /* at another state that rounding does not tell from this one */
+  double *other_noise;        /* by rounding in another way, at the begin of the event */
   double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
@@ -30,6 +30,7 @@ struct Settlement {
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, set_mode;                /* an event has set coordinates; a mode */
+  bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   int impacts, lifts;
 };
