@@ -55,6 +55,8 @@ YARD = """<system name="{name}">
   <coordinate name="c" velocity="cv"/><particle mass="1" z="c"/><force coordinate="c">if(u > 0.7, 6, 2)</force>
   <friction name="brake" coordinate="c" force="if(u > 0.9, 1, 4)"/><output name="pace">der(cv)</output>
   <coordinate name="d" velocity="dv"/><particle mass="1" y="d"/><force coordinate="d">20*u</force><contact name="floor" gap="d"/>
+  <!-- A ball at rest that an event throws up. -->
+  <coordinate name="k" velocity="kv"/><particle mass="1" y="k"/><contact name="racket" gap="k"/><event when="time &gt; 0.4"><set velocity="kv">2</set></event>
   <gravity y="-10"/>
   <solver method="{method}" tolerance="1e-10"/>
 </system>"""
@@ -119,7 +121,8 @@ def expected(t):
     hits = np.sum(t > np.sqrt(0.2) * np.array([1, 2, 2.5]))
     l = 10 * (t**3 - 0.125) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0
     return dict(x=t, y=-5 * fall**2, vy=-10 * fall, rx=rx, ry=ry, sx=sx, sy=0.5 * abs(sx - 1), hits=hits, lands=0, weight=0, starts=0, l=l,
-                broke=5.5 if t > 0.5 else 0, slips=float(t > 0.4), pulled=0.3, q=0, touched=0, inflected=float(t > 1), over=0)  # fmt: skip
+                broke=5.5 if t > 0.5 else 0, slips=float(t > 0.4), pulled=0.3, q=0, touched=0, inflected=float(t > 1), over=0,
+                k=max(2 * (t - 0.4) - 5 * (t - 0.4) ** 2, 0) if t > 0.4 else 0)  # fmt: skip
 
 
 def run(kind, names, end, opened):

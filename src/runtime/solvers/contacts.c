@@ -192,13 +192,14 @@ static bool open_lifted(struct Settlement *settlement) {
   return opens;
 }
 
-/* Opens contacts whose gap has just turned away, as at an edge. Whether there were any. */
-static bool open_turned(struct Settlement *settlement) {
+/* Opens contacts whose gap has just turned away, as at an edge, or that an event throws apart. Whether there were any. */
+static bool open_parting(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
-  double least = continuity_allowed_share(settlement) * settlement_velocity_scale(settlement);
+  double drift = continuity_allowed_share(settlement) * settlement_velocity_scale(settlement);
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double rate = settlement->value[contact_place(settlement, i, CONTACT_RATE)];
+    size_t place = contact_place(settlement, i, CONTACT_RATE);
+    double rate = settlement->value[place], least = settlement->thrown ? settlement->noise[place] : drift;
     if (mode_of(settlement, switches->contacts[i].mode) == 0.0 || !(rate > least)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
     settlement->was_opened[i] = 1.0;
@@ -299,7 +300,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   if ((settlement->moved || may_turn || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
   const char *problem = may_turn && !settlement->jumped ? check_gaps(settlement) : NULL;
   if (problem != NULL) return problem;
-  if (may_turn && !settlement->jumped && open_turned(settlement)) return NULL;
+  if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
   size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
   if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
   if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;

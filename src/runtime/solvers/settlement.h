@@ -29,7 +29,7 @@ struct Settlement {
   const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
-  bool moved, set_mode;                /* an event has set coordinates; a mode */
+  bool moved, thrown, set_mode;        /* an event has set coordinates; coordinates or velocities; a mode */
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   int impacts, lifts;

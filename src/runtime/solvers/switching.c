@@ -103,7 +103,7 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
       settlement->set_mode = true;
     } else {
       settlement->state[facts->index] = value[i];
-      settlement->jumped = settlement->changed = true;
+      settlement->jumped = settlement->thrown = settlement->changed = true;
       settlement->moved |= facts->index < lagrangian.coordinate_count;
     }
   }
