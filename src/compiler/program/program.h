@@ -30,7 +30,7 @@ struct Program {
   struct Routine *indicators, *switching_values; /* NULL where nothing switches */
   struct SeriesProgram *series, *output_series;
   struct SeriesProgram *watched_series; /* NULL where events look at nothing that can hide */
-  bool is_table; /* as a whole too large for statements, which a C compiler takes long for */
+  bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */
   bool derivatives_are_table, series_is_table;
 };

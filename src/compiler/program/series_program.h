@@ -14,7 +14,7 @@ struct SeriesProgram {
   struct Routine *order;
   struct LimitChecks limit;
   size_t row_count;
-  size_t mass_row;    /* where the factors of large blocks begin */
+  size_t mass_row;         /* where the factors of large blocks begin */
   size_t acceleration_row; /* where those of accelerations begin, as many as acceleration_count */
   size_t acceleration_count;
   size_t recurrences; /* in an order */
