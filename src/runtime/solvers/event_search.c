@@ -1,8 +1,8 @@
 /*
- * Where an indicator leaves its sign. In a window of time that hides nothing (event_window.c) it is held
- * against its Chebyshev polynomial of degree 8: where
- * the coefficients say that it cannot come to 0, or falls throughout, that is known; else each half of the window is looked
- * at, with new values. So two zeros that lie close, or one at the very start, are found as well, whatever the solver.
+ * Where an indicator leaves its sign. In a window of time that hides nothing (event_window.c) it is held against its
+ * Chebyshev polynomial of degree 8: where the coefficients say that it cannot come to 0, or falls throughout, that is known;
+ * else each half of the window is looked at, with new values. So two zeros that lie close, or one at the very start, are
+ * found as well, whatever the solver.
  */
 #include <float.h>
 #include <math.h>
@@ -11,13 +11,7 @@
 #include "solver.h"
 #include "switching_parts.h"
 
-enum {
-  DEGREE = CHEBYSHEV_DEGREE,
-  SEARCH_NODES = CHEBYSHEV_NODES,
-  DEPTH_LIMIT = 48,
-  WINDOW_LIMIT = 5000,
-  REFINEMENT_LIMIT = 200
-};
+enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 
 /* What the last coefficients may have of all, for a polynomial that is the function. */
 static const double resolved = 1e-4;
@@ -26,7 +20,7 @@ struct Search {
   struct Instance *instance;
   double *state, *rounded; /* state_count each */
   double *values;          /* one a indicator */
-  double *samples;         /* SEARCH_NODES rows of them */
+  double *samples;         /* CHEBYSHEV_NODES rows of them */
   double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
   int windows;             /* that were looked at */
@@ -35,7 +29,7 @@ struct Search {
 };
 
 size_t switching_search_count(void) {
-  size_t samples = 2 * lagrangian.state_count + (SEARCH_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t samples = 2 * lagrangian.state_count + (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
   size_t window = switching_window_count();
   return samples > window ? samples : window;
 }
@@ -46,7 +40,7 @@ static struct Search search_of(struct Instance *instance) {
   search.rounded = search.state + lagrangian.state_count;
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
-  search.noise = search.samples + SEARCH_NODES * count;
+  search.noise = search.samples + CHEBYSHEV_NODES * count;
   search.exact = search.noise + count;
   return search;
 }
@@ -82,16 +76,16 @@ static void measure_noise(struct Search *search, double time) {
 
 /* The coefficients of its derivative, up to a factor. */
 static void differentiate(const double *c, double *d) {
-  d[DEGREE] = 0.0;
-  d[DEGREE - 1] = 2.0 * DEGREE * c[DEGREE];
-  for (int k = DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
+  d[CHEBYSHEV_DEGREE] = 0.0;
+  d[CHEBYSHEV_DEGREE - 1] = 2.0 * CHEBYSHEV_DEGREE * c[CHEBYSHEV_DEGREE];
+  for (int k = CHEBYSHEV_DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
   d[0] *= 0.5;
 }
 
 /* How far the polynomial may go from its first coefficient. */
 static double range_of_polynomial(const double *c) {
   double sum = 0.0;
-  for (int k = 1; k <= DEGREE; k++) sum += fabs(c[k]);
+  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
   return sum;
 }
 
@@ -99,21 +93,21 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
 static enum Verdict judge_signs(const double *f, double noise) {
-  double c[DEGREE + 1], d[DEGREE + 1], largest = 0.0;
+  double c[CHEBYSHEV_DEGREE + 1], d[CHEBYSHEV_DEGREE + 1], largest = 0.0;
   int missing = 0;
-  for (int k = 0; k <= DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
-  if (missing > DEGREE) return STAYS; /* a branch inside of a piece that is closed */
-  for (int k = 0; k <= DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
+  if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
   double reach = range_of_polynomial(c);
   if (reach <= noise) return STAYS; /* it does not fall, whatever it is */
-  double tail = fabs(c[DEGREE]) + fabs(c[DEGREE - 1]);
+  double tail = fabs(c[CHEBYSHEV_DEGREE]) + fabs(c[CHEBYSHEV_DEGREE - 1]);
   if (c[0] - reach > 2.0 * tail) return STAYS;
   if (tail > resolved * reach + noise) return UNKNOWN;
   differentiate(c, d);
-  double margin = 4.0 * DEGREE * DEGREE * tail;
+  double margin = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * tail;
   if (d[0] - range_of_polynomial(d) > margin) return STAYS; /* it rises */
   if (-d[0] - range_of_polynomial(d) > margin) return f[0] < -noise ? FALLS : STAYS;
   return UNKNOWN;
@@ -159,9 +153,9 @@ static double refine(struct Search *search, size_t indicator, double sign, doubl
  * not.
  */
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
-  double f[SEARCH_NODES];
+  double f[CHEBYSHEV_NODES];
   if (++search->windows > WINDOW_LIMIT) return INFINITY;
-  for (int k = 0; k < SEARCH_NODES; k++)
+  for (int k = 0; k < CHEBYSHEV_NODES; k++)
     f[k] = sign * value_at(search, indicator, chebyshev_time(from, to, k)) - search->floor;
   double noise = search->noise[indicator];
   enum Verdict verdict = judge_signs(f, noise);
@@ -169,7 +163,7 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
   if (verdict == FALLS) return refine(search, indicator, sign, from, to);
   double middle = 0.5 * (from + to);
   if (depth == 0 || !(middle > from && middle < to)) {
-    bool falls = f[DEGREE] >= -noise && f[0] < -noise;
+    bool falls = f[CHEBYSHEV_DEGREE] >= -noise && f[0] < -noise;
     return falls ? refine(search, indicator, sign, from, to) : INFINITY;
   }
   double first = first_fall(search, indicator, sign, from, middle, depth - 1);
@@ -182,11 +176,11 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
  */
 static double first_departure(struct Search *search, size_t indicator, double from, double to) {
   size_t count = indicator_count(lagrangian.switches);
-  for (int node = DEGREE; node >= 0; node--) {
+  for (int node = CHEBYSHEV_DEGREE; node >= 0; node--) {
     double value = search->samples[(size_t)node * count + indicator];
     if (!(fabs(value) > search->noise[indicator])) continue;
     search->departure = value > 0.0 ? 1.0 : -1.0;
-    return chebyshev_time(from, to, node == DEGREE ? DEGREE : node + 1);
+    return chebyshev_time(from, to, node == CHEBYSHEV_DEGREE ? CHEBYSHEV_DEGREE : node + 1);
   }
   return INFINITY;
 }
@@ -248,16 +242,16 @@ bool switching_find(struct Instance *instance, double from, double to, double *t
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
-  for (int k = 0; k < SEARCH_NODES; k++)
+  for (int k = 0; k < CHEBYSHEV_NODES; k++)
     sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
-    double f[SEARCH_NODES], sign = switching_sign(instance, i);
-    for (int k = 0; k < SEARCH_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
+    double f[CHEBYSHEV_NODES], sign = switching_sign(instance, i);
+    for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
-    double start = sign * search.samples[(size_t)DEGREE * count + i];
+    double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
     search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
     double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
                                                       : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);

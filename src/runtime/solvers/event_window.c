@@ -11,39 +11,37 @@
 #include "solver.h"
 #include "switching_parts.h"
 
-enum { DEGREE = CHEBYSHEV_DEGREE, NODES = CHEBYSHEV_NODES };
-
 /* What the last coefficients may have of all, for a polynomial that is the motion. */
-static const double resolved = 1e-3;
+static const double resolved_motion = 1e-3;
 
 struct Window {
   struct Instance *instance;
   double from, to;
-  double *states, *accelerations; /* NODES rows */
+  double *states, *accelerations; /* CHEBYSHEV_NODES rows */
   Series *x, *input, *work;
 };
 
 size_t switching_window_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches->watched_limit == NULL) return 0;
-  return NODES * (lagrangian.state_count + switches->watched_acceleration_count) +
+  return CHEBYSHEV_NODES * (lagrangian.state_count + switches->watched_acceleration_count) +
          SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
 }
 
 static struct Window window_of(struct Instance *instance, double from, double to) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Window window = {.instance = instance, .from = from, .to = to, .states = instance->switching_work};
-  window.accelerations = window.states + NODES * lagrangian.state_count;
-  window.x = (Series *)(window.accelerations + NODES * switches->watched_acceleration_count);
+  window.accelerations = window.states + CHEBYSHEV_NODES * lagrangian.state_count;
+  window.x = (Series *)(window.accelerations + CHEBYSHEV_NODES * switches->watched_acceleration_count);
   window.input = window.x + lagrangian.state_count;
   window.work = window.input + lagrangian.input_count;
   return window;
 }
 
 /* The states, and where they are looked at the accelerations and forces. False where there are none. */
-static bool sample(const struct Window *window) {
+static bool sample_window(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count;
-  for (int node = 0; node < NODES; node++) {
+  for (int node = 0; node < CHEBYSHEV_NODES; node++) {
     double time = chebyshev_time(window->from, window->to, node);
     double *state = window->states + (size_t)node * lagrangian.state_count;
     if (!lagrangian.solver->interpolate(window->instance, time, state)) return false;
@@ -56,37 +54,37 @@ static bool sample(const struct Window *window) {
 }
 
 /* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion. */
-static bool expand(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
-                   double *series) {
-  double f[NODES], c[NODES], sum = 0.0;
-  for (size_t node = 0; node < NODES; node++) f[node] = samples[node * count + i];
+static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
+                           double *series) {
+  double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES], sum = 0.0;
+  for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
   chebyshev_coefficients(f, c);
-  for (int k = 1; k <= DEGREE; k++) sum += fabs(c[k]);
+  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
   chebyshev_powers(c, 0.5 * (window->to - window->from), series);
   double rounding = 64.0 * DBL_EPSILON * fmax(fabs(c[0]), nominal);
-  return fabs(c[DEGREE - 1]) + fabs(c[DEGREE]) <= resolved * sum + rounding;
+  return fabs(c[CHEBYSHEV_DEGREE - 1]) + fabs(c[CHEBYSHEV_DEGREE]) <= resolved_motion * sum + rounding;
 }
 
 /* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
 static double sure_half(const struct Window *window) {
   const struct SwitchTable *switches = lagrangian.switches;
-  double middle = chebyshev_time(window->from, window->to, NODES / 2);
+  double middle = chebyshev_time(window->from, window->to, CHEBYSHEV_NODES / 2);
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
-  bool is_resolved = sample(window);
+  bool is_resolved = sample_window(window);
   for (size_t i = 0; i < states && is_resolved; i++)
-    is_resolved = expand(window, window->states, states, i, lagrangian.nominal[i], window->x[i]);
+    is_resolved = expand_sampled(window, window->states, states, i, lagrangian.nominal[i], window->x[i]);
   for (size_t i = 0; i < forces && is_resolved; i++)
-    is_resolved =
-        expand(window, window->accelerations, forces, i, 0.0, window->work[switches->watched_acceleration_row + i]);
+    is_resolved = expand_sampled(window, window->accelerations, forces, i, 0.0,
+                                 window->work[switches->watched_acceleration_row + i]);
   if (!is_resolved) return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(window->input[i], 0, sizeof(Series));
     expand_input(window->instance, i, middle, window->input[i]);
   }
-  struct Point point = solver_point(window->instance, middle, window->states + NODES / 2 * states);
+  struct Point point = solver_point(window->instance, middle, window->states + CHEBYSHEV_NODES / 2 * states);
   struct SeriesLimit limit = {
-      .order = DEGREE, .step = 0.5 * (window->to - window->from), .crosses = true, .surrounds = true};
-  switches->watched_limit(&point, window->accelerations + NODES / 2 * forces, (const Series *)window->input,
+      .order = CHEBYSHEV_DEGREE, .step = 0.5 * (window->to - window->from), .crosses = true, .surrounds = true};
+  switches->watched_limit(&point, window->accelerations + CHEBYSHEV_NODES / 2 * forces, (const Series *)window->input,
                           (const Series *)window->x, window->work, &limit);
   return limit.step;
 }
