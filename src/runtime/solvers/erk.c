@@ -27,6 +27,8 @@ static int keep_constraints(realtype time, N_Vector state, void *data) {
 
 static bool configure(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
+  /* The motion goes on from a state inside of a step where it switches; else such a state is only told. */
+  int degree = lagrangian.switching != NULL ? 5 : 3;
   SUNContext context = erk->sundials.context;
   erk->before = N_VClone(erk->sundials.state);
   erk->rate = N_VClone(erk->sundials.state);
@@ -44,7 +46,7 @@ static bool configure(struct Instance *instance) {
           sundials_succeeded(instance, ERKStepSetPostprocessStepFn(erk->arkode, keep_constraints),
                              "ERKStepSetPostprocessStepFn")) &&
          sundials_succeeded(instance, ERKStepSetMaxHnilWarns(erk->arkode, -1), "ERKStepSetMaxHnilWarns") &&
-         sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, 3), "ERKStepSetInterpolantDegree");
+         sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, degree), "ERKStepSetInterpolantDegree");
 }
 
 static bool create(struct Instance *instance) {
