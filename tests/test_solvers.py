@@ -9,8 +9,10 @@ import matplotlib.image
 import mpmath
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import fmu
 from fmu import DISCARD
@@ -178,3 +180,19 @@ def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
 def test_the_icon_of_a_fast_motion_is_no_block(open_fmu):
     """A hundred turns of a spiral would fill a disk of 8000 pixels; the first ones alone are drawn."""
     assert 300 < pixels("Spiral", BLUE) < 2500
+
+
+def test_events_cost_erk_no_digits():
+    """The state at an event lies inside of a step; a dense output of lower order than the step would lose hundreds of tolerances."""
+    system = (
+        '<system name="Kicked"><coordinate name="x" velocity="v" start="-0.2"/><kinetic>v^2/2</kinetic><force coordinate="x">3*sin(4*time)</force>'
+        '<event when="x" direction="rising"><set velocity="v">v + 1</set></event><solver method="erk"/></system>'
+    )
+    fmu.build_systems("kicked", {"Kicked": system})
+    # v = 3/4 (1 - cos(4 t)), from where x comes to 0 one more.
+    x = lambda t: -0.2 + 0.75 * (t - np.sin(4 * t) / 4)
+    event = brentq(x, 0, 1, xtol=1e-15)
+    for tolerance in (1e-8, 1e-10):
+        words = dict(stop_time=1.5, output_interval=1.5, relative_tolerance=tolerance, output=["x"])
+        result = simulate_fmu(fmu.archive("Kicked"), **words)["x"][-1]
+        assert result == pytest.approx(x(1.5) + 1.5 - event, abs=20 * tolerance), tolerance
