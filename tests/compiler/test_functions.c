@@ -56,7 +56,7 @@ static const struct Reference {
     {"sinh", "sinh", sinhl, NULL, "hyperbolic", NULL},
     {"cosh", "cosh", coshl, NULL, "hyperbolic", NULL},
     {"tanh", "tanh", tanhl, NULL, "tanh", NULL},
-    {"asinh", "asinh", asinhl, NULL, NULL, NULL},
+    {"asinh", "asinh", asinhl, NULL, NULL, "positive"},
     {"acosh", "acosh", acoshl, NULL, NULL, NULL},
     {"atanh", "atanh", atanhl, NULL, NULL, "positive"},
     {"exp", "exp", expl, NULL, "exponential", NULL},
