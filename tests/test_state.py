@@ -256,7 +256,7 @@ def test_forging_nothing_is_no_forgery(open_fmu):
 
 FORGERIES = [("=i", MODE, mode) for mode in (-1, 2, 3, 8, 2**31 - 1)]
 FORGERIES += [("=i", WAITING, number) for number in (-1, 1, 2**31 - 1)] + [("=i", WAITING + 4, number) for number in (-1, 1000)]
-FORGERIES += [("=i", place, value) for place in range(HEADER + 8, WAITING, 4) for value in (-1, 3)]
+FORGERIES += [("=i", place, value) for place in range(HEADER + 8, WAITING, 4) for value in (-1, 4)]
 FORGERIES += [("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
 FORGERIES += [("=d", TIME + 8 * i, value) for i in range(len(NUMBERS)) for value in (np.nan, np.inf)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("tolerance"), value) for value in (0.0, -1e-6, 1.0)]

@@ -83,7 +83,7 @@ static bool are_choices(const struct Situation *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (flags[i] != 0 && flags[i] != 1) return false;
-  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_BY_EVENT;
+  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE;
 }
 
 /* Whether the element of the parameters is a whole number in this range. */
