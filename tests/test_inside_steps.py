@@ -26,7 +26,7 @@ def test_steps(method, tmp_path):
     assert fmu.lagc("system.xml", "-o", "out", "--solver", method, cwd=tmp_path).returncode == 0
     program = tmp_path / "inside_steps"
     words = ["gcc", "-O1", f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", ROOT / "tests" / "c" / "inside_steps.c",
-             tmp_path / "out" / "system.c", *runtime(), "-o", program]  # fmt: skip
+             tmp_path / "out" / "system.c", *runtime(2), "-o", program]  # fmt: skip
     subprocess.run(list(map(str, words)), check=True)
     output = subprocess.run([program, str(END)], capture_output=True, text=True, check=True).stdout
     start, end, known_inside, inside, known, last = np.array([line.split() for line in output.splitlines()], float).T

@@ -70,7 +70,7 @@ def test_elements(name, tmp_path):
     """The derivatives along each state, which other tests hold against SymPy's, are those of the Jacobian."""
     source = fmu.archive(name).parent.parent / "systems" / name / "system.c"
     program = tmp_path / "jacobian"
-    words = ["gcc", "-O1", f"-I{ROOT}/include", ROOT / "tests" / "c" / "jacobian.c", source, *runtime(), "-o", program]
+    words = ["gcc", "-O1", f"-I{ROOT}/include", ROOT / "tests" / "c" / "jacobian.c", source, *runtime(2), "-o", program]
     subprocess.run(list(map(str, words)), check=True)
     states, elements, difference = subprocess.run([program], capture_output=True, text=True, check=True).stdout.split()
     assert (int(states), int(elements)) == (len(fmu.states_of(name)), ELEMENTS[name])
