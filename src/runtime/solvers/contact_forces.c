@@ -14,6 +14,7 @@
 
 #include "contacts.h"
 #include "pushes.h"
+#include "solver.h"
 
 /* Of so many contacts that act on one another all combinations are tried out. */
 enum { COMBINED_LIMIT = 12 };
@@ -26,6 +27,8 @@ static const double least_share_of_pivot = 1e-11;
 
 /* A contact whose friction leaves less of its mobility is about to lock. */
 static const double locking_share = 1e-3;
+
+static const char no_pushes[] = "the forces of contacts cannot be found there";
 
 /* In units in which the mobility of each contact by itself is 1. */
 struct RestingContacts {
@@ -129,14 +132,22 @@ static void free_resting(const struct Settlement *settlement, struct RestingCont
   pushes_free(settlement, &resting->pushes);
 }
 
-/* False where M is singular, a contact cannot be moved, or there is no memory. */
-static bool create_resting(struct Settlement *settlement, struct RestingContacts *resting) {
+/* False where a contact cannot be moved, and where there is a problem: M is singular, or there is no memory. */
+static bool create_resting(struct Settlement *settlement, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
-  if (!find_pushes(settlement, &resting->pushes)) return false;
+  *problem = NULL;
+  if (!find_pushes(settlement, &resting->pushes)) {
+    *problem = no_pushes;
+    return false;
+  }
   size_t n = resting->count = resting->pushes.contact_count;
   resting->block = settlement->instance->memory.allocate(2 * n * (n + 1) + 6 * n, sizeof(double));
   bool moves = true;
   for (size_t i = 0; i < n; i++) moves &= resting->pushes.mobility[i * resting->pushes.count + i] > DBL_MIN;
+  if (resting->block == NULL) {
+    solver_lacks_memory(settlement->instance);
+    *problem = no_pushes;
+  }
   if (resting->block == NULL || !moves) {
     free_resting(settlement, resting);
     return false;
@@ -294,8 +305,8 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
 const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   struct RestingContacts resting;
   *again = false;
-  if (!choose_resting(settlement) || !create_resting(settlement, &resting)) return NULL;
   const char *problem = NULL;
+  if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return problem;
   if (resting.count <= COMBINED_LIMIT && (sinks(settlement) || !is_surely_one(&resting))) {
     int count = count_solutions(&resting);
     if (count == 1) *again = take_solution(settlement, &resting);

@@ -16,6 +16,7 @@
 
 #include "complementarity.h"
 #include "pushes.h"
+#include "solver.h"
 
 enum { HALVINGS = 52, SOLUTIONS = 50 };
 
@@ -74,7 +75,7 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
   problem->block = settlement->instance->memory.allocate(numbers, sizeof(double));
-  if (problem->block == NULL) return false;
+  if (problem->block == NULL) return solver_lacks_memory(settlement->instance);
   problem->unit = problem->block;
   problem->impulse = problem->unit + count;
   problem->matrix = problem->impulse + count;
