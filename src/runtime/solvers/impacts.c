@@ -75,7 +75,10 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
   problem->block = settlement->instance->memory.allocate(numbers, sizeof(double));
-  if (problem->block == NULL) return solver_lacks_memory(settlement->instance);
+  if (problem->block == NULL) {
+    solver_lacks_memory(settlement->instance);
+    return false;
+  }
   problem->unit = problem->block;
   problem->impulse = problem->unit + count;
   problem->matrix = problem->impulse + count;

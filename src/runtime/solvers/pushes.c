@@ -90,7 +90,10 @@ bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
   size_t scratch = rows + 2 * n + values;
   pushes->block =
       settlement->instance->memory.allocate(1, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
-  if (pushes->block == NULL) return solver_lacks_memory(settlement->instance);
+  if (pushes->block == NULL) {
+    solver_lacks_memory(settlement->instance);
+    return false;
+  }
   pushes->velocities = pushes->block;
   double *lever = pushes->velocities + count * n;
   pushes->mobility = lever + count * n;
