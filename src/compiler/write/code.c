@@ -42,6 +42,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->accelerations != NULL) include_source(file, "projection.c");
   if (program->indicators != NULL) {
     include_source(file, "settlement.c");
+    include_source(file, "beyond.c");
     include_source(file, "switching.c");
     include_source(file, "continuity.c");
     include_source(file, "chebyshev.c");
