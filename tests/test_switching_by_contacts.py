@@ -48,7 +48,9 @@ YARD = """<system name="{name}">
   <friction name="f1" coordinate="q" force="1"/><friction name="f2" coordinate="q" force="10"/><friction name="f3" coordinate="q" force="3"/>
   <!-- What only touches: a parabola, a time; a time that passes by a point of inflection; an input. -->
   <coordinate name="p" velocity="pv" start="0.5" velocityStart="-1"/><particle mass="1" z="p"/><force coordinate="p">1</force>
-  <mode name="touched"/><mode name="inflected"/><mode name="rises"/><mode name="falls"/><mode name="passes"/><mode name="over"/>
+  <mode name="touched"/><mode name="inflected"/><mode name="went_on"/><mode name="rises"/><mode name="falls"/><mode name="passes"/><mode name="over"/>
+  <!-- What comes to 0 and rests there: a velocity that sticks, and pieces that end. -->
+  <coordinate name="e" velocity="ev" velocityStart="2"/><particle mass="1" z="e"/><friction name="drag" coordinate="e" force="10"/>
   {counting}
   <event when="u > 0.5"><set mode="over">over + 1</set></event>
   <!-- What an input decides on. -->
@@ -62,6 +64,8 @@ YARD = """<system name="{name}">
 </system>"""
 COUNTED = [
     ("p", "both", "touched"), ("(time - 1)^2", "both", "touched"), ("0.5 - p - (time - 1)^2 - 1", "both", "touched"), ("(time - 1)^3", "both", "inflected"),
+    ("ev", "both", "touched"), ("max(0, time - 1.1) + max(0, 0.3 - time)", "both", "touched"),
+    ("max(0, time - 1.1) - max(0, 0.3 - time)", "both", "went_on"),
     ("u - 0.5", "rising", "rises"), ("u - 0.5", "falling", "falls"), ("0.5 - u", "both", "passes"),
 ]  # fmt: skip
 WORKED = """<system name="Worked">
@@ -121,7 +125,7 @@ def expected(t):
     hits = np.sum(t > np.sqrt(0.2) * np.array([1, 2, 2.5]))
     l = 10 * (t**3 - 0.125) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0
     return dict(x=t, y=-5 * fall**2, vy=-10 * fall, rx=rx, ry=ry, sx=sx, sy=0.5 * abs(sx - 1), hits=hits, lands=0, weight=0, starts=0, l=l,
-                broke=5.5 if t > 0.5 else 0, slips=float(t > 0.4), pulled=0.3, q=0, touched=0, inflected=float(t > 1), over=0,
+                broke=5.5 if t > 0.5 else 0, slips=float(t > 0.4), pulled=0.3, q=0, touched=0, inflected=float(t > 1), went_on=float(t > 1.1), over=0,
                 k=max(2 * (t - 0.4) - 5 * (t - 0.4) ** 2, 0) if t > 0.4 else 0)  # fmt: skip
 
 

@@ -10,6 +10,7 @@
 /* Its mode is the sign of its indicator, -1, 0 or 1; at a zero the mode changes. */
 struct Switch {
   Node mode, indicator;
+  bool is_side;         /* of an event's expression: what comes to 0 and rests there keeps it */
   unsigned kinds;       /* of the symbols that decide on the mode, those of further modes among them */
   const char *function; /* that has the pieces, and where: for messages */
   long line;

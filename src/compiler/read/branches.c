@@ -31,18 +31,20 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   return kinds;
 }
 
-/* The mode of the switch with this indicator; a new one where there is none. */
-static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line) {
+/* The mode of the switch of this kind with this indicator; a new one where there is none. */
+static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_side) {
   struct Switches *switches = scope->switches;
   graph_work(scope->graph, switches->count / COMPARISONS);
   for (size_t i = switches->count; i-- > 0;)
-    if (switches->items[i].indicator == indicator) return switches->items[i].mode;
+    if (switches->items[i].indicator == indicator && switches->items[i].is_side == is_side)
+      return switches->items[i].mode;
   char *name = format_text("%s in line %ld", function, scope_line(scope, line));
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   free(name);
   append_switch(switches, (struct Switch){.mode = mode,
                                           .indicator = indicator,
                                           .kinds = kinds_that_decide(scope, indicator),
+                                          .is_side = is_side,
                                           .function = function,
                                           .line = scope_line(scope, line)});
   return mode;
@@ -52,13 +54,21 @@ static bool keeps_whole(const struct Scope *scope) {
   return scope->switches == NULL || scope->keeps_whole;
 }
 
-Node branch_of(struct Scope *scope, Node node, const char *function_name, long line) {
+static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_side) {
   struct Graph *graph = scope->graph;
   if (keeps_whole(scope) || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
-  Node mode = mode_of(scope, base, function_name, line);
+  Node mode = mode_of(scope, base, function_name, line, is_side);
   return factor < 0.0 ? negate(graph, mode) : mode;
+}
+
+Node branch_of(struct Scope *scope, Node node, const char *function_name, long line) {
+  return sign_of(scope, node, function_name, line, false);
+}
+
+Node side_of(struct Scope *scope, Node node, long line) {
+  return sign_of(scope, node, "the event", line, true);
 }
 
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {

@@ -13,6 +13,9 @@
  */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
+/* The side of 0 on which the expression of an event is: struct Switch.is_side. */
+Node side_of(struct Scope *scope, Node node, long line);
+
 /* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
 enum { CONTACT_STATE = 1 << 29 };
 

@@ -77,7 +77,7 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
                    "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
                    "no direction");
   } else if (value != ZERO) {
-    event->condition = branch_of(reader->scope, value, "the event", xmlGetLineNo(node));
+    event->condition = side_of(reader->scope, value, xmlGetLineNo(node));
     event->side = new_mode(reader, "side", when);
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;
     bool is_both = direction != NULL && strcmp(direction, "both") == 0;

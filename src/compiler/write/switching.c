@@ -16,7 +16,8 @@ static void write_branches(FILE *file, const struct Program *program) {
     const struct Switch *branch = switching->branches[i];
     fprintf(file, "{%d, ", mode_index(program, branch->mode));
     write_c_string(file, branch->function);
-    fprintf(file, ", %ld, %s}, ", branch->line, switching->holds_energy[i] ? "true" : "false");
+    fprintf(file, ", %ld, %s, %s}, ", branch->line, branch->is_side ? "true" : "false",
+            switching->holds_energy[i] ? "true" : "false");
   }
   fputs("};\n\n", file);
 }

@@ -1,6 +1,7 @@
 /*
- * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; frictions that stick or slip;
- * branches; and the events of the system, each of which happens when its condition comes to hold.
+ * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; branches of pieces; frictions
+ * that stick or slip; the sides of the expressions of events; and these events, each of which happens when its condition comes
+ * to hold.
  */
 #include "switching_parts.h"
 
@@ -59,7 +60,9 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   /* What an event has set is not what rounding has left, however small. */
   sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
-  bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped;
+  /* Where a piece ends or a friction sticks as it comes to 0, a side stays: it rests there. */
+  bool rests = settlement->switches->branches[branch].is_side && settlement->changed;
+  bool passes = is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
   if (passes) return mode == 0.0 ? settlement->instance->departure : -mode;
   /* What was set to rest at 0 is there, wherever it comes from. */
   bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
@@ -79,10 +82,12 @@ static const char *refuse_branch(const struct Settlement *settlement, size_t bra
   return without_end;
 }
 
-static const char *switch_branches(struct Settlement *settlement, bool *switched) {
+/* Those of pieces, or the sides. */
+static const char *switch_branches(struct Settlement *settlement, bool sides, bool *switched) {
   const struct SwitchTable *switches = settlement->switches;
   *switched = false;
   for (size_t i = 0; i < switches->branch_count; i++) {
+    if (switches->branches[i].is_side != sides) continue;
     double mode = branch_mode(settlement, i);
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
     if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
@@ -204,7 +209,7 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   *again = false;
   if (settlement->switches->contact_laws != NULL) problem = settlement->switches->contact_laws->act(settlement, again);
   if (problem != NULL || *again) return problem;
-  problem = switch_branches(settlement, again);
+  problem = switch_branches(settlement, false, again);
   if (problem != NULL || *again) return problem;
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
@@ -214,7 +219,8 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (problem != NULL || *again) return problem;
   if (settlement->switches->friction_laws != NULL && !settlement->switches->friction_laws->tell(settlement, again))
     return "there are no accelerations at an event";
-  return *again ? NULL : happen(settlement, again);
+  if (!*again) problem = switch_branches(settlement, true, again);
+  return problem != NULL || *again ? problem : happen(settlement, again);
 }
 
 /* Modes as the signs of the start values say. */
