@@ -30,6 +30,7 @@ struct Settlement {
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, thrown, set_mode;        /* an event has set coordinates; coordinates or velocities; a mode */
+  bool lags;                           /* frictions have changed, and velocities were not taken to what holds since */
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   int impacts, lifts;

@@ -203,6 +203,21 @@ static const char *happen(struct Settlement *settlement, bool *again) {
   return NULL;
 }
 
+static bool has_sides(const struct SwitchTable *switches) {
+  bool has = false;
+  for (size_t i = 0; i < switches->branch_count; i++) has |= switches->branches[i].is_side;
+  return has;
+}
+
+/* An importer comes to an event a little late: velocities that stick from it on are at rest before their side is asked for. */
+static const char *settle_sides(struct Settlement *settlement, bool *again) {
+  if (!has_sides(settlement->switches)) return NULL;
+  if (!settlement->lags) return switch_branches(settlement, true, again);
+  settlement->lags = false;
+  *again = true;
+  return settlement_push(settlement) ? NULL : constraints_not_kept;
+}
+
 /* One round; *again where it changed something. */
 static const char *settle_once(struct Settlement *settlement, bool *again) {
   const char *problem = NULL;
@@ -213,13 +228,14 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   if (problem != NULL || *again) return problem;
   if (settlement->switches->friction_laws != NULL)
     problem = settlement->switches->friction_laws->act(settlement, again);
+  settlement->lags |= *again && settlement->occasion != AT_START;
   if (problem != NULL || *again) return problem;
   if (settlement->switches->contact_laws != NULL)
     problem = settlement->switches->contact_laws->settle_forces(settlement, again);
   if (problem != NULL || *again) return problem;
   if (settlement->switches->friction_laws != NULL && !settlement->switches->friction_laws->tell(settlement, again))
     return "there are no accelerations at an event";
-  if (!*again) problem = switch_branches(settlement, true, again);
+  if (!*again) problem = settle_sides(settlement, again);
   return problem != NULL || *again ? problem : happen(settlement, again);
 }
 
