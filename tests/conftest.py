@@ -4,6 +4,7 @@ import sys
 
 import pytest
 
+import fmi3
 import fmu
 
 sys.path.append(str(fmu.ROOT / "scripts"))
@@ -26,15 +27,26 @@ def pytest_terminal_summary(terminalreporter):
         terminalreporter.write_line(f"{name:34}" + "".join(f"{number:10}" for number in numbers))
 
 
-@pytest.fixture
-def open_fmu():
-    """Creates instances, and frees them after the test."""
+def created(kind):
+    """A function that creates instances; they are freed behind it."""
     instances = []
 
     def create(name, **options):
-        instances.append(fmu.Instance(name, **options))
+        instances.append(kind(name, **options))
         return instances[-1]
 
     yield create
     for instance in instances:
         instance.free()
+
+
+@pytest.fixture
+def open_fmu():
+    """Creates instances, and frees them after the test."""
+    yield from created(fmu.Instance)
+
+
+@pytest.fixture
+def opened():
+    """The same for FMI 3."""
+    yield from created(fmi3.Instance)

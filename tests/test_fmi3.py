@@ -81,19 +81,6 @@ def types(own_systems):
     return "TypesOfAll"
 
 
-@pytest.fixture
-def opened():
-    instances = []
-
-    def create(name, **options):
-        instances.append(fmi3.Instance(name, **options))
-        return instances[-1]
-
-    yield create
-    for instance in instances:
-        instance.free()
-
-
 def refused(status, call, *words):
     with pytest.raises(FMICallException) as raised:
         call(*words)

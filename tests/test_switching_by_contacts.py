@@ -9,7 +9,6 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model
 from fmpy.fmi3 import FMU3Model
 
-import fmi3
 import fmu
 from fmu import DISCARD, build_systems, lagc
 from test_switching import value
@@ -93,19 +92,6 @@ def built():
     texts = {f"Yard_{method}": YARD.format(name=f"Yard_{method}", method=method, counting=counting) for method in ("taylor", "bdf")}
     texts |= {name: f'<system name="{name}">{text}</system>' for name, text in MISTAKES.items()}
     build_systems("by-contacts", texts | {"Worked": WORKED}, "-DFMI_VERSIONS=2;3")
-
-
-@pytest.fixture
-def opened():
-    instances = []
-
-    def create(name, **options):
-        instances.append(fmi3.Instance(name, **options))
-        return instances[-1]
-
-    yield create
-    for instance in instances:
-        instance.free()
 
 
 # --- Closed forms ---
