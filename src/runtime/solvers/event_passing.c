@@ -20,6 +20,9 @@ static const double window_share = 1.25;
 
 static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
+static const char flutter[] =
+    "a contact opens and closes there without end, as where it opens with no speed and the errors of erk or bdf are "
+    "larger than its gap; expected method=\"taylor\" or \"radau\"";
 static const char no_modes[] = "the parameters leave no acceleration there";
 
 /* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
@@ -109,12 +112,16 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   return false;
 }
 
+static bool is_of_contact(size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  return indicator >= switches->branch_count && indicator - switches->branch_count < switches->contact_count;
+}
+
 /* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
 static bool is_bounce(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t contact = indicator - switches->branch_count;
-  return indicator >= switches->branch_count && contact < switches->contact_count &&
-         instance->parameter[switches->contacts[contact].mode] == 0.0;
+  return is_of_contact(indicator) &&
+         instance->parameter[switches->contacts[indicator - switches->branch_count].mode] == 0.0;
 }
 
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
@@ -135,7 +142,8 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   progress->count++;
   progress->indicator = indicator;
   progress->searched = time;
-  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT) return gathering;
+  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
+    return is_of_contact(indicator) ? flutter : gathering;
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
   return pass_event(instance, step, time, indicator);
