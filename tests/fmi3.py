@@ -1,11 +1,7 @@
 """Instances of the FMUs of FMI 3.0 through FMPy, by variable names instead of value references."""
 
-import functools
-import tempfile
 from ctypes import c_double, c_uint32
-from pathlib import Path
 
-import fmpy
 import numpy as np
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
@@ -16,16 +12,12 @@ def archive(name):
     return fmu.archive(name).parent.parent / "fmi3" / f"{name}.fmu"
 
 
-@functools.cache
 def unpacked(name):
-    folder = tempfile.TemporaryDirectory(prefix=name)
-    fmu.temporary_folders.append(folder)
-    return Path(fmpy.extract(archive(name), folder.name))
+    return fmu.unpacked_archive(archive(name))
 
 
-@functools.cache
 def description(name):
-    return fmpy.read_model_description(unpacked(name))
+    return fmu.read_description(unpacked(name))
 
 
 def library(name):

@@ -41,11 +41,15 @@ def small_names():
 
 
 @functools.cache
-def unpacked(name):
-    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of build_systems()."""
-    folder = tempfile.TemporaryDirectory(prefix=name)
+def unpacked_archive(path):
+    folder = tempfile.TemporaryDirectory(prefix=path.stem)
     temporary_folders.append(folder)
-    return Path(fmpy.extract(archive(name), folder.name))
+    return Path(fmpy.extract(path, folder.name))
+
+
+def unpacked(name):
+    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of build_systems(), of which two may have one name."""
+    return unpacked_archive(archive(name))
 
 
 built_by_tests = {}  # name of a system: its archive
@@ -108,9 +112,11 @@ def build_apart(folder, name, text):
     return folder / "build" / "fmu" / f"{name}.fmu"
 
 
-@functools.cache
+read_description = functools.cache(fmpy.read_model_description)
+
+
 def description(name):
-    return fmpy.read_model_description(unpacked(name))
+    return read_description(unpacked(name))
 
 
 def library(name):

@@ -74,13 +74,13 @@ WORKED = """<system name="Worked">
   <event when="v"><set mode="n">n + 1</set></event><work/>
 </system>"""
 MISTAKES = {
-    "Step": '<coordinate name="x" velocity="v" velocityStart="1"/><coordinate name="y" velocity="w"/><particle mass="1" x="x" y="y"/><gravity y="-10"/>'
+    "Ledge": '<coordinate name="x" velocity="v" velocityStart="1"/><coordinate name="y" velocity="w"/><particle mass="1" x="x" y="y"/><gravity y="-10"/>'
     '<contact name="floor" gap="if(x &lt; 0.5, y, y - 0.1)"/>',
     "Pushes": '<coordinate name="x" velocity="v" velocityStart="1"/><particle mass="1" x="x"/><friction name="rub" coordinate="x" force="0.1 - x"/>',
     "Bounces": '<coordinate name="h" velocity="v" start="1"/><particle mass="1" y="h"/><gravity y="-9.81"/><event when="h"><set velocity="v">-0.5*v</set></event>',
 }  # fmt: skip
 STEPPED = {
-    "Step": (0.5, "the contact 'floor' is penetrated at an event that switches the gap: its gap is -0.1; expected conditions and modes"),
+    "Ledge": (0.5, "the contact 'floor' is penetrated at an event that switches the gap: its gap is -0.1; expected conditions and modes"),
     "Pushes": (None, "the force of the friction 'rub' is -1.02089; expected none below 0"),
     "Bounces": (3 * np.sqrt(2 / 9.81), "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest$"),
 }  # fmt: skip

@@ -62,7 +62,7 @@ def our_program(name, path, base):
     system.write_text(f'<system name="{name}"><include file="{path}" as="robot" base="{base}"/></system>')
     run(LAGC, system, "-o", folder)
     flags = ["-O2", "-std=gnu11", "-ffp-contract=off", "-falign-functions=64", "-ffunction-sections", "-Wl,--gc-sections"]
-    run("gcc", *flags, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", SOURCES / "accelerations.c", folder / "system.c", *runtime(), "-o", program)
+    run("gcc", *flags, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", SOURCES / "accelerations.c", folder / "system.c", *runtime(2), "-o", program)
     return program
 
 

@@ -1,5 +1,7 @@
 #include "chebyshev.h"
 
+#include "arithmetic.h"
+
 /* cos(pi k / 8) */
 static const double cosines[2 * CHEBYSHEV_DEGREE] = {
     1.0,  0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "arithmetic.h"
+
 enum { PIVOTS_A_ROW = 50 };
 
 /* Less than this in a pivot is rounding. */
