@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "xml_output.h"
 
 static void write_unit(xmlTextWriterPtr writer, const char *name) {

@@ -4,7 +4,7 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "mechanics/interface.h"
+#include "interface/interface.h"
 
 /* The element UnitDefinitions, where so many of the first variables have units. */
 void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count);

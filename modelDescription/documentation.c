@@ -8,7 +8,7 @@
 
 #include "algebra/formula.h"
 #include "mathml.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "xml_output.h"
 
 static const char *const style =

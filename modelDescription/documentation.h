@@ -4,7 +4,7 @@
 
 #include <libxml/tree.h>
 
-#include "mechanics/summary.h"
+#include "interface/summary.h"
 #include "program/program.h"
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary);

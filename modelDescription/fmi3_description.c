@@ -8,8 +8,8 @@
 
 #include "algebra/formula.h"
 #include "common_elements.h"
-#include "mechanics/arrays.h"
-#include "memory.h"
+#include "interface/arrays.h"
+#include "base/memory.h"
 #include "model_structure.h"
 #include "scene.h"
 #include "xml_output.h"

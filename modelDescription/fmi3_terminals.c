@@ -5,8 +5,8 @@
 
 #include "algebra/differentiate.h"
 #include "fmi3_description.h"
-#include "mechanics/arrays.h"
-#include "memory.h"
+#include "interface/arrays.h"
+#include "base/memory.h"
 #include "xml_output.h"
 
 /* Names of what a flange is made of, by the unit of its coordinate. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 #define MATH "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" displaystyle=\"true\">"
 

@@ -16,7 +16,7 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /* Whether there is something to see. */
 bool has_scene(const struct Model *model);

@@ -14,7 +14,7 @@ list(JOIN names "" names)
 file(CONFIGURE OUTPUT runtime_sources.c CONTENT
      "extern const char *const runtime_sources[];\nconst char *const runtime_sources[] = {${names}(const char *)0};\n" @ONLY)
 
-file(GLOB compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/src/compiler/*/*.c ${root}/modelDescription/*.c)
+file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
 add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
             ${CMAKE_BINARY_DIR}/runtime_sources.c)

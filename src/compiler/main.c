@@ -8,9 +8,9 @@
 
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "output.h"
-#include "platform.h"
+#include "base/platform.h"
 #include "program/program.h"
 #include "read/reader.h"
 

@@ -9,9 +9,9 @@
 #include "fmi3_description.h"
 #include "model_description.h"
 #include "write/code.h"
-#include "guid.h"
-#include "memory.h"
-#include "platform.h"
+#include "base/guid.h"
+#include "base/memory.h"
+#include "base/platform.h"
 
 enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, CODE, FILE_COUNT };
 

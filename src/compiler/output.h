@@ -5,8 +5,8 @@
 #ifndef OUTPUT_H
 #define OUTPUT_H
 
-#include "diagnostics.h"
-#include "mechanics/summary.h"
+#include "base/diagnostics.h"
+#include "interface/summary.h"
 #include "program/program.h"
 
 /*

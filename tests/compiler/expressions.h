@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "read/parser.h"
+#include "read/expressions/parser.h"
 #include "algebra/formula.h"
 #include "algebra/simplify.h"
 

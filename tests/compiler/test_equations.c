@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "expressions.h"
-#include "mechanics/inertia.h"
+#include "mechanics/mass_matrix/inertia.h"
 #include "mechanics/linearize.h"
 #include "read/reader.h"
 

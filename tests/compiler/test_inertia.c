@@ -1,7 +1,7 @@
 /* The mass matrix as expressions: which coordinates it couples, and its symbolic factors. */
 #include "expressions.h"
-#include "mechanics/mass_elements.h"
-#include "mechanics/pivots.h"
+#include "mechanics/mass_matrix/mass_elements.h"
+#include "mechanics/mass_matrix/pivots.h"
 
 enum { COORDINATES = 12, ELEMENTS = COORDINATES * (COORDINATES + 1) / 2 };
 

@@ -2,7 +2,7 @@
 #include "lu.h"
 
 #include "expressions.h"
-#include "mechanics/elimination.h"
+#include "mechanics/mass_matrix/elimination.h"
 
 enum { SIZE = 30, POSITIONS = SIZE * (SIZE + 1) / 2, NUMBERS = COMPLEX * (SIZE * SIZE + SIZE) };
 

@@ -1,7 +1,7 @@
 /* The factorization of large blocks of the mass matrix. */
 #include "expressions.h"
 #include "ldlt.h"
-#include "mechanics/elimination.h"
+#include "mechanics/mass_matrix/elimination.h"
 
 enum { SIZE = 30 };
 

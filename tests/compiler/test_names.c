@@ -1,6 +1,6 @@
 /* The table of names, against a plain list of what should be in it. */
 #include "expressions.h"
-#include "read/names.h"
+#include "read/names/names.h"
 
 enum { NAMES = 3000 };
 

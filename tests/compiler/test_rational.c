@@ -1,6 +1,6 @@
 /* Fractions of polynomials: what they cancel, and that they give up where they would change a value. */
 #include "expressions.h"
-#include "algebra/rational.h"
+#include "algebra/polynomials/rational.h"
 
 static Node fraction(struct Expressions *e, const char *text) {
   return simplify_fraction(e->graph, parse(e, text));

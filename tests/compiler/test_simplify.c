@@ -1,6 +1,6 @@
 /* The algebra of the graph: what it simplifies, and that it never changes a value. */
 #include "expressions.h"
-#include "algebra/rational.h"
+#include "algebra/polynomials/rational.h"
 
 static void test_simplifications(void **state) {
   (void)state;

@@ -13,7 +13,7 @@
 #include "documentation.h"
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "model_description.h"
 #include "program/program.h"
 #include "read/reader.h"

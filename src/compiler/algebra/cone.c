@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 struct Cone *cone_create(void) {
   return allocate(1, sizeof(struct Cone));

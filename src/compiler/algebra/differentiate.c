@@ -5,7 +5,7 @@
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /* The partial derivatives of an operation with respect to its operands; right stays ZERO for one operand. */
 static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "algebra/functions.h"
 
 bool domain_contains(enum Operation operation, double argument) {

@@ -2,7 +2,7 @@
 #ifndef DOMAIN_H
 #define DOMAIN_H
 
-#include "diagnostics.h"
+#include "base/diagnostics.h"
 #include "algebra/graph.h"
 
 /* An argument that must be in the domain of its function. POWER: of a base whose exponent is no whole number. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "algebra/simplify.h"
 
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };

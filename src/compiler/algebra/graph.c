@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "algebra/cone.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "algebra/functions.h"
 
 int operation_arity(enum Operation operation) {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "algebra/functions.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /*
  * The name of the kink that a node makes, NULL for none. An inverse function of its own function is piecewise linear:

@@ -6,7 +6,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "mechanics/time_derivative.h"
-#include "memory.h"
+#include "base/memory.h"
 
 static void append_row(struct Constraints *constraints, const struct Model *model, size_t row, Node target,
                        enum SymbolKind kind) {

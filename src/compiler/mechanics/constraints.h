@@ -9,7 +9,7 @@
 #ifndef CONSTRAINTS_H
 #define CONSTRAINTS_H
 
-#include "mechanics/mass_elements.h"
+#include "mechanics/mass_matrix/mass_elements.h"
 
 struct Constraints {
   size_t count;

@@ -5,9 +5,9 @@
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
-#include "algebra/rational.h"
+#include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /* Velocities of coordinates and of what inputs move. */
 static bool is_velocity(const struct Model *model, Node node) {

@@ -5,7 +5,7 @@
 #ifndef ENERGIES_H
 #define ENERGIES_H
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /* U - sum v dU/dv: what a potential stores. Terms linear in the velocities (magnetic forces) store nothing. */
 Node stored_energy(const struct Model *model, Node potential);

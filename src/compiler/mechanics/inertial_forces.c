@@ -5,7 +5,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "mechanics/time_derivative.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /* What moves, and the forces of inertia along it. */
 struct Motions {

@@ -10,7 +10,7 @@
 #ifndef INERTIAL_FORCES_H
 #define INERTIAL_FORCES_H
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /*
  * Of the symbols of the kind with these time derivatives (seeds): COORDINATE, or DISPLACEMENT or INPUT, where the symbol of a

@@ -5,14 +5,14 @@
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
-#include "algebra/shorten.h"
+#include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/energies.h"
 #include "mechanics/inertial_forces.h"
 #include "mechanics/reactions.h"
 #include "mechanics/time_derivative.h"
 #include "mechanics/switching.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
 static Node *generalized_forces(const struct Model *model) {

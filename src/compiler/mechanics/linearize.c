@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 #include "algebra/differentiate.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "algebra/formula.h"
-#include "algebra/rational.h"
+#include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
 
 /* States, inputs and accelerations, which change in motion, with their values at the point and deviations from them. */

@@ -5,7 +5,7 @@
 #ifndef MASSLESS_H
 #define MASSLESS_H
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /* Gives an inertia to the rates of the constraints that hold such coordinates, where they make M regular so. */
 void hold_massless_coordinates(struct Model *model);

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 
 #include "algebra/differentiate.h"
-#include "algebra/shorten.h"
+#include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
 #include "mechanics/inertial_forces.h"
 #include "mechanics/time_derivative.h"
-#include "memory.h"
+#include "base/memory.h"
 
 /* sum weight . d position / d s for all symbols s of the kind, over positions as functions of displacements too. */
 struct Work {

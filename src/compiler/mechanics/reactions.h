@@ -9,7 +9,7 @@
 #ifndef REACTIONS_H
 #define REACTIONS_H
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /*
  * The forces along the displacements, the first of model->reactions, with the acceleration symbols: -R, what the system

@@ -6,7 +6,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "mechanics/time_derivative.h"
-#include "memory.h"
+#include "base/memory.h"
 
 struct List {
   Node *nodes;

@@ -1,6 +1,6 @@
 #include "mechanics/time_derivative.h"
 
-#include "memory.h"
+#include "base/memory.h"
 
 Node *time_seeds(const struct Model *model, bool with_accelerations) {
   const struct Graph *graph = model->graph;

@@ -2,7 +2,7 @@
 #ifndef TIME_DERIVATIVE_H
 #define TIME_DERIVATIVE_H
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /*
  * The direction of d/dt in the space of all symbols, for derivative_along(): with the accelerations, or with 0 for them.

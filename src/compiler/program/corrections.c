@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "saddle.h"
 
 static Place target(size_t index) {

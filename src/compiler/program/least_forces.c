@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 /* A constraint that is solved for at run time. */
 struct Row {

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "program/corrections.h"
 #include "program/least_forces.h"
 

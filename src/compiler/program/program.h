@@ -2,9 +2,9 @@
 #ifndef PROGRAM_H
 #define PROGRAM_H
 
-#include "program/accelerations.h"
-#include "program/expressions.h"
-#include "program/series_program.h"
+#include "program/expressions/accelerations.h"
+#include "program/expressions/expressions.h"
+#include "program/series/series_program.h"
 
 /* How the instructions are written; BY_SIZE: small systems as statements, large ones as tables. */
 enum CodeForm { BY_SIZE, STATEMENTS, TABLES };

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "read/rigid_body.h"
+#include "base/memory.h"
+#include "read/robots/rigid_body.h"
 
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;

@@ -2,7 +2,7 @@
 #ifndef CHECKS_H
 #define CHECKS_H
 
-#include "read/attributes.h"
+#include "read/context/attributes.h"
 
 /* Reports a system without content, work without forces, ... and warns of what is likely a mistake. */
 void check_system(struct Reader *reader);

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "read/elements.h"
-#include "memory.h"
-#include "platform.h"
-#include "read/parser.h"
+#include "read/elements/elements.h"
+#include "base/memory.h"
+#include "base/platform.h"
+#include "read/expressions/parser.h"
 
 char *linearized_path(xmlNodePtr root, const char *path) {
   char *of = attribute(root, "of");

@@ -4,9 +4,9 @@
 
 #include <libxml/tree.h>
 
-#include "diagnostics.h"
-#include "mechanics/model.h"
-#include "read/scope.h"
+#include "base/diagnostics.h"
+#include "model/model.h"
+#include "read/names/scope.h"
 
 /* The path of the system that root linearises, relative to the file that holds it. Free with free(). */
 char *linearized_path(xmlNodePtr root, const char *path);

@@ -4,20 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "read/attributes.h"
+#include "read/context/attributes.h"
 #include "read/checks.h"
-#include "read/definitions.h"
-#include "read/elements.h"
-#include "read/frames.h"
-#include "read/includes.h"
+#include "read/names/definitions.h"
+#include "read/elements/elements.h"
+#include "read/space/frames.h"
+#include "read/context/includes.h"
 #include "read/linearization_reader.h"
 #include "mechanics/massless.h"
-#include "memory.h"
-#include "read/parser.h"
-#include "read/robot_system.h"
-#include "read/start_expressions.h"
-#include "read/switching_reader.h"
-#include "read/xml.h"
+#include "base/memory.h"
+#include "read/expressions/parser.h"
+#include "read/robots/robot_system.h"
+#include "read/elements/start_expressions.h"
+#include "read/elements/switching_reader.h"
+#include "read/xml/xml.h"
 
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
 

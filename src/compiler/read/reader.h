@@ -2,8 +2,8 @@
 #ifndef READER_H
 #define READER_H
 
-#include "diagnostics.h"
-#include "mechanics/model.h"
+#include "base/diagnostics.h"
+#include "model/model.h"
 
 /* What the command line adds to the file. */
 struct ReaderOptions {

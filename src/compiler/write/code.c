@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"

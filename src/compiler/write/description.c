@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 #include "write/guides.h"
 #include "write/inertia_names.h"

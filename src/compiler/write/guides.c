@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "algebra/cone.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 
 /* Marks the inputs that the constraint holds, or whose derivatives it holds. Returns their names, NULL for none. */

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "mechanics/model.h"
+#include "model/model.h"
 
 /* Whether some constraint holds an input. */
 bool has_guides(const struct Model *model);

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 /* When a place was written and read last; levels count from 1, and 0 is before all. */
 struct Access {

@@ -2,7 +2,7 @@
 #ifndef SCHEDULE_H
 #define SCHEDULE_H
 
-#include "program/accelerations.h"
+#include "program/expressions/accelerations.h"
 
 /* The numbers of the routine's instructions in the order of execution, to be freed with free(). */
 size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks);

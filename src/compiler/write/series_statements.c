@@ -1,7 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 #include "write/instruction_text.h"
 #include "write/statements.h"

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "write/instruction_text.h"
 
 /* Whether the routine reads elements from .. to - 1 of the space. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "algebra/functions.h"
-#include "memory.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 #include "write/instruction_text.h"
 #include "write/schedule.h"

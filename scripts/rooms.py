@@ -1,0 +1,102 @@
+"""
+The rooms of lagc and what it writes by: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
+Prints what is otherwise; no output where all is well.
+"""
+
+import re
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+MOST_MODULES = 12
+
+
+class House(NamedTuple):
+    rooms: list  # from the ground up: each includes of itself and of those before it
+    paths: list  # in which #include finds names beside the file's own folder; all rooms are in them
+
+
+LAGC = House(
+    """
+    src/compiler/base
+    src/compiler/algebra
+    src/compiler/algebra/polynomials
+    src/compiler/algebra/units
+    src/compiler/model
+    src/compiler/mechanics/mass_matrix
+    src/compiler/mechanics
+    src/compiler/interface
+    src/compiler/read/names
+    src/compiler/read/tables
+    src/compiler/read/expressions
+    src/compiler/read/xml
+    src/compiler/read/robots
+    src/compiler/read/context
+    src/compiler/read/space
+    src/compiler/read/elements
+    src/compiler/read
+    src/compiler/program/values
+    src/compiler/program/expressions
+    src/compiler/program/series
+    src/compiler/program
+    src/compiler/write
+    modelDescription
+    src/compiler
+    """.split(),
+    ["src/compiler", "modelDescription"],
+)
+HOUSES = [LAGC]
+
+
+def files_of(house):
+    """By room."""
+    rooms = {}
+    for file in sorted({file for path in house.paths for file in (ROOT / path).rglob("*.[ch]")}):
+        rooms.setdefault(str(file.parent.relative_to(ROOT)), []).append(file)
+    return rooms
+
+
+def arrows_from(file, house):
+    """The lines that include something of the house, each with the room that it leads to."""
+    for name in re.findall(r'^#include "(.*)"', file.read_text(), re.MULTILINE):
+        places = [file.parent / name, *(ROOT / path / name for path in house.paths)]
+        found = next((place for place in places if place.exists()), None)
+        if found is not None:
+            yield name, str(found.parent.relative_to(ROOT))
+
+
+def way(arrows, start, end):
+    """The rooms on a way along the arrows, both ends with them; None where there is none."""
+    ways = [[start]]
+    seen = {start}
+    for path in ways:
+        if path[-1] == end:
+            return path
+        for room in sorted(arrows[path[-1]] - seen):
+            seen.add(room)
+            ways.append([*path, room])
+    return None
+
+
+def complaints(house):
+    rooms = files_of(house)
+    lines = [(room, file, *arrow) for room in rooms for file in rooms[room] for arrow in arrows_from(file, house)]
+    arrows = {room: {to for start, _, _, to in lines if start == room} for room in rooms}
+    for room, files in rooms.items():
+        modules = {file.stem for file in files}
+        if len(modules) > MOST_MODULES:
+            yield f"{room}: {len(modules)} modules; expected at most {MOST_MODULES}, the others in a room of their own"
+        if room not in house.rooms:
+            yield f"{room}: no room of scripts/rooms.py; expected it there, behind all that it includes"
+    heights = {room: height for height, room in enumerate(house.rooms)}
+    for start, file, name, to in lines:
+        if heights.get(to, 0) > heights.get(start, len(heights)):
+            back = way(arrows, to, start)
+            circle = f", a circle: {' -> '.join([start, *back])}" if back else ""
+            yield f"{file.relative_to(ROOT)} includes {name}, of a room above its own{circle}; expected arrows that lead down"
+
+
+if __name__ == "__main__":
+    found = [complaint for house in HOUSES for complaint in complaints(house)]
+    sys.exit("\n".join(found) or None)

@@ -1,0 +1,40 @@
+#include "algebra/polynomials/shorten.h"
+
+#include <stdlib.h>
+
+#include "algebra/cone.h"
+#include "algebra/polynomials/rational.h"
+#include "base/memory.h"
+
+/* How many operations are computed again and again, and how many once, being of parameters alone. */
+struct Length {
+  size_t in_motion, once;
+};
+
+/* The operations that the nodes take together. */
+static struct Length length_of(const struct Graph *graph, const Node *nodes, size_t count) {
+  const struct Cone *cone = graph->cone;
+  struct Length length = {0};
+  if (graph_limit(graph) != NULL) return length;
+  cone_collect(graph->cone, graph, nodes, count, NULL);
+  for (size_t place = 0; place < cone->count; place++) {
+    if (operation_arity(graph->vertices[cone->nodes[place]].operation) == 0) continue;
+    if (graph_is_constant_in_time(graph, cone->nodes[place])) length.once++;
+    else length.in_motion++;
+  }
+  return length;
+}
+
+void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others) {
+  struct Length length = length_of(graph, nodes, count), other = length_of(graph, others, count);
+  if (other.in_motion > length.in_motion) return;
+  if (other.in_motion == length.in_motion && other.once >= length.once) return;
+  for (size_t i = 0; i < count; i++) nodes[i] = others[i];
+}
+
+void shorten(struct Graph *graph, size_t count, Node *nodes) {
+  Node *others = allocate(count, sizeof *others);
+  for (size_t i = 0; i < count; i++) others[i] = simplify_fraction(graph, nodes[i]);
+  take_shorter(graph, count, nodes, others);
+  free(others);
+}

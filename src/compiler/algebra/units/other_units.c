@@ -1,0 +1,140 @@
+#include "algebra/units/other_units.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/units/units.h"
+#include "base/memory.h"
+
+/* One of the unit is factor * pi^pi_power of the SI unit. */
+struct OtherUnit {
+  const char *name, *si;
+  double factor;
+  int pi_power;
+};
+
+static const struct OtherUnit others[] = {
+    {"deg", "rad", 1.0 / 180, 1},
+    {"degree", "rad", 1.0 / 180, 1},
+    {"degrees", "rad", 1.0 / 180, 1},
+    {"\xc2\xb0", "rad", 1.0 / 180, 1},
+    {"%", "1", 1e-2, 0},
+    {"mm", "m", 1e-3, 0},
+    {"cm", "m", 1e-2, 0},
+    {"km", "m", 1e3, 0},
+    {"g", "kg", 1e-3, 0},
+    {"ms", "s", 1e-3, 0},
+    {"min", "s", 60, 0},
+    {"h", "s", 3600, 0},
+    {"kN", "N", 1e3, 0},
+    {"rpm", "rad/s", 1.0 / 30, 1},
+    {"Nm", "N.m", 1, 0},
+    {"kgm", "kg.m", 1, 0},
+    {"radian", "rad", 1, 0},
+    {"radians", "rad", 1, 0},
+    {"sec", "s", 1, 0},
+    {"second", "s", 1, 0},
+    {"seconds", "s", 1, 0},
+    {"meter", "m", 1, 0},
+    {"meters", "m", 1, 0},
+    {"metre", "m", 1, 0},
+    {"metres", "m", 1, 0},
+    {"kilogram", "kg", 1, 0},
+    {"kilograms", "kg", 1, 0},
+    {"Kg", "kg", 1, 0},
+    {"KG", "kg", 1, 0},
+    {"newton", "N", 1, 0},
+    {"Newton", "N", 1, 0},
+    {"hz", "Hz", 1, 0},
+    {"HZ", "Hz", 1, 0},
+    {"ohm", "Ohm", 1, 0},
+};
+
+/* The length of the name at the beginning: letters, or a sign. */
+static size_t length_of_name(const char *text) {
+  if (*text == '%') return 1;
+  size_t length = strncmp(text, "\xc2\xb0", 2) == 0 ? 2 : 0;
+  while (isalpha((unsigned char)text[length])) length++;
+  return length;
+}
+
+static const struct OtherUnit *find(const char *name, size_t length) {
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (strlen(others[i].name) == length && strncmp(others[i].name, name, length) == 0) return &others[i];
+  return NULL;
+}
+
+struct Translation {
+  bool has_other, is_wrong;
+  double factor;
+  int pi_power;
+};
+
+/* Writes the unit with the SI names; exponents and signs between factors stay as they are. */
+static struct Translation translate(const char *text, FILE *file) {
+  struct Translation result = {.factor = 1};
+  long side = 1; /* -1 below the slash */
+  while (*text != '\0') {
+    size_t length = length_of_name(text);
+    if (length == 0) {
+      if (*text == '/') side = -1;
+      fputc(*text++, file);
+      continue;
+    }
+    const struct OtherUnit *other = find(text, length);
+    fprintf(file, "%.*s", other != NULL ? (int)strlen(other->si) : (int)length, other != NULL ? other->si : text);
+    text += length;
+    if (other == NULL) continue;
+    bool has_exponent = isdigit((unsigned char)*text) || *text == '-';
+    long exponent = has_exponent ? strtol(text, NULL, 10) : 1;
+    result.has_other = true;
+    result.is_wrong |= labs(exponent) > 20 || (has_exponent && strpbrk(other->si, "./") != NULL);
+    if (result.is_wrong) break;
+    result.factor *= pow(other->factor, (double)(side * exponent));
+    result.pi_power += (int)(side * exponent) * other->pi_power;
+  }
+  return result;
+}
+
+/* The number in a few digits, with e for a power of ten; false where that is not the number. */
+static bool write_short(char text[32], double number) {
+  double exponent = round(log10(number));
+  bool is_power = exponent != 0 && fabs(number * pow(10, -exponent) - 1) < 1e-12;
+  if (is_power) snprintf(text, 32, "1e%.0f", exponent);
+  else snprintf(text, 32, "%.10g", number);
+  return fabs(strtod(text, NULL) / number - 1) < 1e-12;
+}
+
+/* "1e-2", "1/3.6", "pi/180", "180/pi"; NULL where the factor has no such form. Free with free(). */
+static char *factor_text(double factor, int pi_power) {
+  char number[32], pi[32] = "pi";
+  bool is_above = write_short(number, factor);
+  if (!isnormal(factor) || (!is_above && !write_short(number, 1 / factor))) return NULL;
+  if (abs(pi_power) > 1) snprintf(pi, sizeof pi, "pi^%d", abs(pi_power));
+  if (pi_power == 0) return format_text("%s%s", is_above ? "" : "1/", number);
+  if (pi_power > 0) return format_text("%s%c%s", pi, is_above ? '*' : '/', number);
+  return is_above ? format_text("%s/%s", number, pi) : format_text("1/(%s*%s)", number, pi);
+}
+
+char *unit_remedy(const char *text) {
+  char *si = NULL, *remedy = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&si, &length);
+  struct Translation translation = translate(text, file);
+  close_text(file, &si, &length);
+  struct Dimension dimension;
+  const char *problem;
+  bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, &dimension, &problem);
+  char *factor = is_known ? factor_text(translation.factor, translation.pi_power) : NULL;
+  if (is_known && translation.factor == 1 && translation.pi_power == 0)
+    remedy = format_text("expected %s%s", si,
+                         strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
+  else if (factor != NULL) remedy = format_text("expected %s, and the value times %s", si, factor);
+  free(factor);
+  free(si);
+  return remedy;
+}

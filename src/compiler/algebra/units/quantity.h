@@ -1,0 +1,14 @@
+/* An expression together with its dimension. */
+#ifndef QUANTITY_H
+#define QUANTITY_H
+
+#include "algebra/graph.h"
+#include "algebra/units/units.h"
+
+struct Quantity {
+  Node node;
+  struct Dimension dimension;
+  bool literal; /* made of numbers alone: agrees with any dimension in a sum */
+};
+
+#endif

@@ -1,0 +1,55 @@
+#include "base/diagnostics.h"
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* What a message says of a very long text has room before and behind what it leaves out. */
+enum { HEAD_LENGTH = 600, TAIL_LENGTH = 400 };
+
+static bool continues_letter(char byte) {
+  return ((unsigned char)byte & 0xC0u) == 0x80u;
+}
+
+static void print_text(const char *text) {
+  size_t length = strlen(text), head = HEAD_LENGTH;
+  if (length <= HEAD_LENGTH + TAIL_LENGTH) {
+    fputs(text, stderr);
+    return;
+  }
+  const char *tail = text + length - TAIL_LENGTH;
+  while (head > 0 && continues_letter(text[head])) head--;
+  while (continues_letter(*tail)) tail++;
+  fprintf(stderr, "%.*s ... %s", (int)head, text, tail);
+}
+
+static void print_message(const struct Diagnostics *diagnostics, long line, const char *kind, const char *format,
+                          va_list arguments) {
+  char *text = format_arguments(format, arguments);
+  fprintf(stderr, "%s:", diagnostics->file);
+  if (line > 0) fprintf(stderr, "%ld:", line);
+  fprintf(stderr, " %s", kind);
+  print_text(text);
+  fprintf(stderr, "%s\n", diagnostics->origin != NULL ? diagnostics->origin : "");
+  free(text);
+}
+
+void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", format, arguments);
+  va_end(arguments);
+  if (++diagnostics->errors == ERROR_LIMIT + 1)
+    fprintf(stderr, "%s: there are more mistakes; expected these to be mended first\n", diagnostics->file);
+}
+
+void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_message(diagnostics, line, "warning: ", format, arguments);
+  va_end(arguments);
+}

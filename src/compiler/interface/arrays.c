@@ -1,0 +1,109 @@
+#include "interface/arrays.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* The text without [index], wherever it stands. Free with free(). */
+static char *without_index(const char *text, size_t index) {
+  char *subscript = format_text("[%zu]", index), *copy = copy_text(text), *place = copy;
+  size_t length = strlen(subscript);
+  while ((place = strstr(place, subscript)) != NULL) memmove(place, place + length, strlen(place + length) + 1);
+  free(subscript);
+  return copy;
+}
+
+/* Whether the name ends with [index], or is a derivative of one that does. */
+static bool is_element(const char *name, size_t index) {
+  char *end = format_text(strncmp(name, "der(", 4) == 0 ? "[%zu])" : "[%zu]", index);
+  size_t length = strlen(name), end_length = strlen(end);
+  bool is = length > end_length && strcmp(name + length - end_length, end) == 0;
+  free(end);
+  return is;
+}
+
+/* Whether the texts are the same, each but for its own index. */
+static bool are_same_text(const char *a, size_t index_of_a, const char *b, size_t index_of_b) {
+  if (a == NULL || b == NULL) return a == b;
+  char *first = without_index(a, index_of_a), *second = without_index(b, index_of_b);
+  bool same = strcmp(first, second) == 0;
+  free(first);
+  free(second);
+  return same;
+}
+
+static bool are_same_number(double a, double b) {
+  return a == b || (isnan(a) && isnan(b));
+}
+
+/* Whether one declaration can hold for the first element and that of the index, but for the start. */
+static bool are_alike(const struct InterfaceVariable *a, const struct InterfaceVariable *b, size_t index) {
+  const struct ScalarVariable *first = &a->entry, *second = &b->entry;
+  return first->kind == second->kind && first->type == second->type && first->is_output == second->is_output &&
+         (first->follows_from == NULL) == (second->follows_from == NULL) && starts_nearby(a) == starts_nearby(b) &&
+         are_same_number(first->minimum, second->minimum) && are_same_number(first->maximum, second->maximum) &&
+         are_same_number(a->nominal, b->nominal) && are_same_text(a->unit, 1, b->unit, index) &&
+         are_same_text(a->description, 1, b->description, index);
+}
+
+static bool has_variable(const struct Interface *interface, const char *name) {
+  for (size_t i = 0; i < interface->count; i++)
+    if (strcmp(interface->variables[i].entry.name, name) == 0) return true;
+  return false;
+}
+
+/* Whether there is an element of this index of the array of the first one, wherever it stands. */
+static bool has_element(const struct Interface *interface, const char *first, size_t index) {
+  for (size_t i = 0; i < interface->count; i++) {
+    const char *name = interface->variables[i].entry.name;
+    if (is_element(name, index) && are_same_text(first, 1, name, index)) return true;
+  }
+  return false;
+}
+
+/* How many elements of one array begin with the variable; 0 where it begins none. */
+static size_t count_elements(const struct Interface *interface, size_t place) {
+  const struct InterfaceVariable *first = &interface->variables[place];
+  const char *name = first->entry.name;
+  size_t count = 0;
+  if (!is_element(name, 1)) return 0;
+  for (; place + count < interface->count; count++) {
+    const char *next = first[count].entry.name;
+    if (!is_element(next, count + 1) || !are_same_text(name, 1, next, count + 1)) break;
+    if (!are_alike(first, &first[count], count + 1)) return 0;
+  }
+  return has_element(interface, name, count + 1) ? 0 : count;
+}
+
+/* Whether a variable of the same index is of an array of so many elements. */
+static bool begins_array(const struct Interface *interface, enum VariableKind kind, size_t index, size_t count) {
+  return interface->variables[interface_find(interface, kind, index)].array_count == count;
+}
+
+void arrays_find(struct Interface *interface) {
+  for (size_t i = 0; i < interface->count; i++) {
+    struct InterfaceVariable *variable = &interface->variables[i];
+    if (variable->is_further_element) continue;
+    size_t count = count_elements(interface, i);
+    /* An array of states has one of derivatives, and the other way round. */
+    if (variable->entry.kind == VARIABLE_DERIVATIVE && count > 0 &&
+        !begins_array(interface, VARIABLE_STATE, variable->entry.index, count))
+      continue;
+    variable->array_count = count;
+    char *name = array_name(variable);
+    if (count > 0 && has_variable(interface, name)) variable->array_count = 0;
+    free(name);
+    for (size_t j = 1; j < variable->array_count; j++) variable[j].is_further_element = true;
+  }
+}
+
+char *array_name(const struct InterfaceVariable *variable) {
+  return variable->array_count == 0 ? copy_text(variable->entry.name) : without_index(variable->entry.name, 1);
+}
+
+char *array_description(const struct InterfaceVariable *variable) {
+  if (variable->description == NULL) return NULL;
+  return variable->array_count == 0 ? copy_text(variable->description) : without_index(variable->description, 1);
+}

@@ -1,0 +1,135 @@
+#include "interface/dependencies.h"
+
+#include <stdlib.h>
+
+#include "algebra/cone.h"
+#include "base/memory.h"
+
+/* Steps for a symbol that something depends on, which is put in order and written. */
+enum { LIST_WORK = 10 };
+
+struct SymbolList {
+  size_t *numbers;
+  size_t count;
+};
+
+struct Dependencies *dependencies_create(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  struct Dependencies *dependencies = allocate(1, sizeof *dependencies);
+  *dependencies = (struct Dependencies){.model = model, .graph = graph, .equations = equations};
+  dependencies->of = allocate(graph->symbol_count, sizeof *dependencies->of);
+  dependencies->symbols = allocate(graph->symbol_count, sizeof *dependencies->symbols);
+  dependencies->symbols_of_block = allocate(equations->inertia->block_count, sizeof *dependencies->symbols_of_block);
+  return dependencies;
+}
+
+void dependencies_free(struct Dependencies *dependencies) {
+  for (size_t b = 0; b < dependencies->equations->inertia->block_count; b++)
+    free(dependencies->symbols_of_block[b].numbers);
+  free(dependencies->symbols_of_block);
+  free(dependencies->symbols);
+  free(dependencies->of);
+  free(dependencies);
+}
+
+static enum Dependency larger(enum Dependency a, enum Dependency b) {
+  return a > b ? a : b;
+}
+
+static void clear(struct Dependencies *dependencies) {
+  for (size_t i = 0; i < dependencies->count; i++) dependencies->of[dependencies->symbols[i]] = INDEPENDENT;
+  dependencies->count = 0;
+}
+
+static void note(struct Dependencies *dependencies, size_t symbol, enum Dependency kind) {
+  if (dependencies->of[symbol] == INDEPENDENT) dependencies->symbols[dependencies->count++] = symbol;
+  dependencies->of[symbol] = larger(dependencies->of[symbol], kind);
+}
+
+/* How an operation depends on one of its operands, which stands beside the other. */
+static enum Dependency step_of(const struct Graph *graph, enum Operation operation, Node other) {
+  if (operation == ADD) return CONSTANT_FACTOR;
+  if (operation != MULTIPLY) return DEPENDENT;
+  if (graph_is_constant(graph, other)) return CONSTANT_FACTOR;
+  return graph_is_constant_in_time(graph, other) ? TUNABLE_FACTOR : DEPENDENT;
+}
+
+/* Follows the node, on which something depends in this way, down to its symbols: the way is as good as its worst step. */
+static void descend(struct Dependencies *dependencies, Node target, enum Dependency kind) {
+  const struct Graph *graph = dependencies->graph;
+  const struct Cone *cone = graph->cone;
+  if (graph_limit(graph) != NULL) return;
+  cone_collect(graph->cone, graph, &target, 1, NULL);
+  enum Dependency *on = allocate(cone->count, sizeof *on);
+  on[cone_place(cone, target)] = kind;
+  for (size_t place = cone->count; place-- > 0;) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+    int arity = operation_arity(vertex->operation);
+    if (vertex->operation == SYMBOL) note(dependencies, vertex->left, on[place]);
+    for (int i = 0; i < arity; i++) {
+      Node operand = i == 0 ? vertex->left : vertex->right, other = i == 0 ? vertex->right : vertex->left;
+      enum Dependency *below = &on[cone_place(cone, operand)];
+      *below = larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
+    }
+  }
+  free(on);
+}
+
+/* The symbols of all residuals of a block, in a list that is made once. */
+static const struct SymbolList *symbols_of(struct Dependencies *dependencies, size_t number) {
+  const struct Graph *graph = dependencies->graph;
+  const struct InertiaBlock *block = &dependencies->equations->inertia->blocks[number];
+  struct SymbolList *list = &dependencies->symbols_of_block[number];
+  if (list->numbers != NULL) return list;
+  Node *residuals = allocate(block->count, sizeof *residuals);
+  for (size_t i = 0; i < block->count; i++) residuals[i] = dependencies->equations->residual[block->coordinates[i]];
+  cone_collect(graph->cone, graph, residuals, block->count, NULL);
+  list->numbers = allocate(graph->symbol_count, sizeof *list->numbers);
+  for (size_t place = 0; place < graph->cone->count; place++) {
+    const struct Vertex *vertex = &graph->vertices[graph->cone->nodes[place]];
+    if (vertex->operation == SYMBOL && (vertex->kinds & 1u << ACCELERATION) == 0)
+      list->numbers[list->count++] = vertex->left;
+  }
+  free(residuals);
+  return list;
+}
+
+/* What an acceleration depends on, for what depends on it in this way. */
+static void follow_acceleration(struct Dependencies *dependencies, size_t coordinate, enum Dependency kind) {
+  const struct Equations *equations = dependencies->equations;
+  if (graph_limit(dependencies->graph) != NULL) return;
+  if (!is_looped(equations, coordinate)) {
+    descend(dependencies, equations->acceleration[coordinate], kind);
+    return;
+  }
+  const struct SymbolList *list = symbols_of(dependencies, equations->inertia->block_of[coordinate]);
+  graph_work(dependencies->graph, LIST_WORK * list->count);
+  for (size_t i = 0; i < list->count; i++) note(dependencies, list->numbers[i], DEPENDENT);
+}
+
+/* What the start values of the states that were found follow from. */
+static void follow_starts(struct Dependencies *dependencies) {
+  const struct Model *model = dependencies->model;
+  size_t found = dependencies->count;
+  for (size_t i = 0; i < found; i++) {
+    size_t number = dependencies->symbols[i];
+    const struct Symbol *symbol = &dependencies->graph->symbols[number];
+    if (symbol->kind != COORDINATE && symbol->kind != VELOCITY) continue;
+    const struct VariableList *list = symbol->kind == COORDINATE ? &model->coordinates : &model->velocities;
+    const struct Variable *state = &list->items[symbol->index];
+    if (start_follows(model, state)) descend(dependencies, state->start_expression, dependencies->of[number]);
+  }
+}
+
+void dependencies_find(struct Dependencies *dependencies, Node node, bool initial) {
+  const struct Graph *graph = dependencies->graph;
+  clear(dependencies);
+  descend(dependencies, node, CONSTANT_FACTOR);
+  size_t direct = dependencies->count;
+  for (size_t i = 0; i < direct; i++) {
+    const struct Symbol *symbol = &graph->symbols[dependencies->symbols[i]];
+    if (symbol->kind != ACCELERATION) continue;
+    follow_acceleration(dependencies, (size_t)symbol->index, dependencies->of[dependencies->symbols[i]]);
+  }
+  if (initial) follow_starts(dependencies);
+}

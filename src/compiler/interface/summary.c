@@ -1,0 +1,105 @@
+#include "interface/summary.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/formula.h"
+#include "algebra/polynomials/rational.h"
+#include "algebra/simplify.h"
+#include "mechanics/switching.h"
+#include "base/memory.h"
+
+/* Mere numbers and variables read as well by themselves. */
+static void add_names(struct NodeNames *names, const struct Graph *graph, const struct VariableList *list) {
+  for (size_t i = 0; i < list->count && names->named_count < SHOWN_LIMIT; i++) {
+    Node node = list->items[i].node;
+    if (graph->vertices[node].operation == SYMBOL || graph_is_constant(graph, node) || names->of[node] != NULL)
+      continue;
+    names->of[node] = list->items[i].name;
+    names->named[names->named_count++] = node;
+  }
+}
+
+/* The names of the first calculated parameters and definitions. These do not occur in linearized equations. */
+static struct NodeNames author_names(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
+  names.named = allocate(SHOWN_LIMIT, sizeof *names.named);
+  add_names(&names, graph, &model->calculated);
+  if (!model->linearized) add_names(&names, graph, &model->definitions);
+  return names;
+}
+
+/* The expression as it is, or multiplied out where that is shorter to read. */
+static Node readable(const struct Model *model, const struct NodeNames *names, Node node) {
+  struct Graph *graph = model->graph;
+  node = without_branches(model, node);
+  Node expanded = simplify_fraction(graph, node);
+  if (expanded == node) return node;
+  char *text = expression_text_with_names(graph, node, names);
+  char *expanded_text = expression_text_with_names(graph, expanded, names);
+  bool shorter = strlen(expanded_text) < strlen(text);
+  free(text);
+  free(expanded_text);
+  return shorter ? expanded : node;
+}
+
+/* Row i of M a and the forces of constraints, or the acceleration itself. */
+static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
+                          size_t i) {
+  struct Graph *graph = model->graph;
+  if (equations->explicit_form) return model->accelerations[i];
+  const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
+  Node sum = ZERO;
+  for (size_t k = 0; k < block->count; k++) {
+    Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
+    sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
+  }
+  return readable(model, names, sum);
+}
+
+static size_t at_most(size_t count, size_t limit) {
+  return count < limit ? count : limit;
+}
+
+struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
+  struct Graph *graph = model->graph;
+  struct Summary *summary = allocate(1, sizeof *summary);
+  struct NodeNames names = author_names(model);
+  Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
+  *summary = (struct Summary){
+      .names = names,
+      .lagrangian_kinetic = readable(model, &names, model->kinetic.node),
+      .kinetic = readable(model, &names, equations->kinetic),
+      .potential = readable(model, &names, model->linearized ? equations->potential : model->potential.node),
+      .power = readable(model, &names, equations->stated_power),
+      .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
+      .motion_count = at_most(equations->count, SHOWN_LIMIT),
+      .reaction_count = at_most(model->reactions.count, SHOWN_LIMIT),
+      .output_count = at_most(model->outputs.count, SHOWN_LIMIT)};
+  summary->inertial = allocate(summary->motion_count, sizeof(Node));
+  summary->right_side = allocate(summary->motion_count, sizeof(Node));
+  summary->outputs = allocate(summary->output_count, sizeof(Node));
+  for (size_t i = 0; i < summary->motion_count; i++) {
+    summary->inertial[i] = inertial_side(model, equations, &names, i);
+    summary->right_side[i] = readable(model, &names, equations->right_side[i]);
+  }
+  summary->reactions = allocate(summary->reaction_count, sizeof(Node));
+  for (size_t i = 0; i < summary->reaction_count; i++)
+    summary->reactions[i] = readable(model, &names, equations->reactions[i]);
+  for (size_t i = 0; i < summary->output_count; i++)
+    summary->outputs[i] = readable(model, &names, equations->outputs[i]);
+  return summary;
+}
+
+void summary_free(struct Summary *summary) {
+  if (summary == NULL) return;
+  free(summary->names.of);
+  free(summary->names.named);
+  free(summary->inertial);
+  free(summary->right_side);
+  free(summary->reactions);
+  free(summary->outputs);
+  free(summary);
+}

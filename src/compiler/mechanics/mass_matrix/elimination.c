@@ -1,0 +1,157 @@
+#include "mechanics/mass_matrix/elimination.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+/* Steps for each item that two sets have when they are joined, which takes memory too. */
+enum { JOIN_WORK = 4 };
+
+/* The neighbours of a row, ascending. */
+struct Set {
+  size_t *items;
+  size_t count;
+};
+
+/* The rows that wait, as a heap: the one with the fewest neighbours on top. Entries of an old degree are passed over. */
+struct Waiting {
+  size_t degree, row;
+};
+
+struct Queue {
+  struct Waiting *items;
+  size_t count, capacity;
+};
+
+static bool precedes(struct Waiting a, struct Waiting b) {
+  return a.degree < b.degree || (a.degree == b.degree && a.row < b.row);
+}
+
+static void push(struct Queue *queue, struct Waiting entry) {
+  queue->items = make_room(queue->items, queue->count, &queue->capacity, sizeof *queue->items);
+  size_t place = queue->count++;
+  for (; place > 0 && precedes(entry, queue->items[(place - 1) / 2]); place = (place - 1) / 2)
+    queue->items[place] = queue->items[(place - 1) / 2];
+  queue->items[place] = entry;
+}
+
+static struct Waiting pop(struct Queue *queue) {
+  struct Waiting top = queue->items[0], last = queue->items[--queue->count];
+  size_t place = 0;
+  for (size_t child = 1; child < queue->count; child = 2 * place + 1) {
+    if (child + 1 < queue->count && precedes(queue->items[child + 1], queue->items[child])) child++;
+    if (!precedes(queue->items[child], last)) break;
+    queue->items[place] = queue->items[child];
+    place = child;
+  }
+  queue->items[place] = last;
+  return top;
+}
+
+static int compare(const void *first, const void *second) {
+  size_t a = *(const size_t *)first, b = *(const size_t *)second;
+  return (a > b) - (a < b);
+}
+
+static struct Set *neighbours_of(size_t count, const struct Position *positions, size_t position_count) {
+  struct Set *sets = allocate(count, sizeof *sets);
+  size_t *degree = allocate(count, sizeof *degree);
+  for (size_t i = 0; i < position_count; i++) {
+    if (positions[i].row == positions[i].column) continue;
+    degree[positions[i].row]++;
+    degree[positions[i].column]++;
+  }
+  for (size_t i = 0; i < count; i++) sets[i].items = allocate(degree[i], sizeof(size_t));
+  for (size_t i = 0; i < position_count; i++) {
+    size_t row = positions[i].row, column = positions[i].column;
+    if (row == column) continue;
+    sets[row].items[sets[row].count++] = column;
+    sets[column].items[sets[column].count++] = row;
+  }
+  for (size_t i = 0; i < count; i++) qsort(sets[i].items, sets[i].count, sizeof(size_t), compare);
+  free(degree);
+  return sets;
+}
+
+/* Without the row itself, and without the one that is eliminated; all neighbours of that become its own. */
+static void join(struct Set *set, size_t row, const struct Set *others, size_t eliminated) {
+  struct Set joined = {.items = allocate(set->count + others->count, sizeof(size_t))};
+  for (size_t i = 0, j = 0; i < set->count || j < others->count;) {
+    size_t next =
+        j == others->count || (i < set->count && set->items[i] < others->items[j]) ? set->items[i] : others->items[j];
+    if (next != row && next != eliminated) joined.items[joined.count++] = next;
+    while (i < set->count && set->items[i] == next) i++;
+    while (j < others->count && others->items[j] == next) j++;
+  }
+  free(set->items);
+  *set = joined;
+}
+
+/* Eliminates all rows; the sets are then the columns of L below the diagonal. */
+static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct Set *sets, size_t *order,
+                           size_t *place) {
+  struct Queue queue = {0};
+  bool *is_eliminated = allocate(count, sizeof *is_eliminated);
+  for (size_t row = 0; row < count; row++) push(&queue, (struct Waiting){sets[row].count, row});
+  size_t next = 0;
+  while (next < count && graph_limit(graph) == NULL) {
+    struct Waiting waiting = pop(&queue);
+    const struct Set *set = &sets[waiting.row];
+    if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
+    if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* comes again when these are gone */
+    is_eliminated[waiting.row] = true;
+    place[waiting.row] = next;
+    order[next++] = waiting.row;
+    for (size_t i = 0; i < set->count; i++) {
+      size_t row = set->items[i];
+      graph_work(graph, JOIN_WORK * (sets[row].count + set->count));
+      join(&sets[row], row, set, waiting.row);
+      push(&queue, (struct Waiting){sets[row].count, row});
+    }
+  }
+  for (size_t row = 0; row < count; row++) {
+    if (is_eliminated[row]) continue;
+    place[row] = next;
+    order[next++] = row;
+  }
+  free(is_eliminated);
+  free(queue.items);
+}
+
+static struct Elimination full_elimination(size_t count) {
+  struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
+  result.column = allocate(count * (count + 1) / 2, sizeof(size_t));
+  for (size_t i = 0; i < count; i++) {
+    result.order[i] = i;
+    result.start[i + 1] = result.start[i] + i + 1;
+    for (size_t j = 0; j <= i; j++) result.column[result.start[i] + j] = j;
+  }
+  return result;
+}
+
+struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
+                             size_t position_count) {
+  if (position_count == count * (count + 1) / 2) return full_elimination(count);
+  struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
+  struct Set *sets = neighbours_of(count, positions, position_count);
+  size_t *place = allocate(count, sizeof *place), *end = allocate(count, sizeof *end);
+  eliminate_rows(graph, count, late, sets, result.order, place);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < sets[i].count; k++) result.start[place[sets[i].items[k]] + 1]++;
+  for (size_t i = 0; i < count; i++) {
+    end[i] = result.start[i];
+    result.start[i + 1] += result.start[i] + 1;
+  }
+  result.column = allocate(result.start[count], sizeof(size_t));
+  for (size_t column = 0; column < count; column++) {
+    const struct Set *set = &sets[result.order[column]];
+    for (size_t k = 0; k < set->count; k++) result.column[end[place[set->items[k]]]++] = column;
+    result.column[end[column]++] = column;
+  }
+  for (size_t i = 0; i < count; i++) free(sets[i].items);
+  free(sets);
+  free(place);
+  free(end);
+  return result;
+}

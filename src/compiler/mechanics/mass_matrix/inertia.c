@@ -1,0 +1,249 @@
+#include "mechanics/mass_matrix/inertia.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/polynomials/rational.h"
+#include "algebra/simplify.h"
+#include "mechanics/mass_matrix/elimination.h"
+#include "mechanics/mass_matrix/mass_elements.h"
+#include "mechanics/mass_matrix/pivots.h"
+#include "base/memory.h"
+
+/* Where the block keeps an element of the lower triangle, in places; start[count] where it is not in the pattern. */
+static size_t find(const struct InertiaBlock *block, size_t row, size_t column) {
+  size_t low = block->start[row], high = block->start[row + 1];
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (block->column[middle] == column) return middle;
+    if (block->column[middle] < column) low = middle + 1;
+    else high = middle;
+  }
+  return block->start[block->count];
+}
+
+static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j) {
+  size_t a = inertia->place_of[i], b = inertia->place_of[j];
+  return find(inertia_block_of(inertia, i), a > b ? a : b, a > b ? b : a);
+}
+
+/* The block of these elements; members: its rows, ascending. */
+static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
+                         struct Position *positions, const Node *nodes, size_t position_count) {
+  struct InertiaBlock *block = &inertia->blocks[number];
+  struct Position *local = allocate(position_count, sizeof *local);
+  for (size_t k = 0; k < position_count; k++)
+    local[k] = (struct Position){inertia->place_of[positions[k].row], inertia->place_of[positions[k].column]};
+  size_t late = block->count - block->constraint_count;
+  struct Elimination elimination = eliminate(graph, block->count, late, local, position_count);
+  block->start = elimination.start;
+  block->column = elimination.column;
+  block->coordinates = elimination.order;
+  for (size_t place = 0; place < block->count; place++) {
+    block->coordinates[place] = members[elimination.order[place]];
+    inertia->place_of[block->coordinates[place]] = place;
+  }
+  block->mass = allocate(block->start[block->count], sizeof(Node));
+  for (size_t k = 0; k < position_count; k++)
+    block->mass[find_coordinates(inertia, positions[k].row, positions[k].column)] = nodes[k];
+  free(local);
+}
+
+/* count: all rows, the last of which are those of constraints. */
+static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
+                                     struct Elements *elements) {
+  struct Components components = find_components(count, elements);
+  size_t *start = sort_by_components(elements, &components);
+  struct Inertia *inertia = allocate(1, sizeof *inertia);
+  *inertia = (struct Inertia){.count = count,
+                              .coordinate_count = count - constraint_count,
+                              .block_of = components.of,
+                              .place_of = allocate(count, sizeof(size_t))};
+  inertia->block_count = components.count;
+  inertia->blocks = allocate(components.count, sizeof *inertia->blocks);
+  size_t **members = allocate(components.count, sizeof *members);
+  for (size_t i = 0; i < count; i++) inertia->place_of[i] = inertia->blocks[components.of[i]].count++;
+  for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
+  for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
+  for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
+  for (size_t b = 0; b < components.count; b++) {
+    create_block(graph, inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
+                 start[b + 1] - start[b]);
+    free(members[b]);
+  }
+  free(members);
+  free(start);
+  return inertia;
+}
+
+/* The column of a force that others follow from, which is new where there is none yet. */
+static size_t oblique_column(struct InertiaBlock *block, size_t force) {
+  for (size_t k = 0; k < block->force_count; k++)
+    if (block->forces[k] == force) return k;
+  size_t count = block->force_count++;
+  block->forces = reallocate(block->forces, count + 1, sizeof *block->forces);
+  block->oblique = reallocate(block->oblique, (count + 1) * block->count, sizeof *block->oblique);
+  for (size_t i = 0; i < block->count; i++) block->oblique[count * block->count + i] = ZERO;
+  block->forces[count] = force;
+  return count;
+}
+
+static void add_oblique(struct Inertia *inertia, const struct Elements *oblique) {
+  for (size_t k = 0; k < oblique->count; k++) {
+    size_t row = inertia->coordinate_count + oblique->positions[k].row, column = oblique->positions[k].column;
+    struct InertiaBlock *block = &inertia->blocks[inertia->block_of[row]];
+    size_t place = oblique_column(block, inertia->place_of[row]);
+    block->oblique[place * block->count + inertia->place_of[column]] = oblique->nodes[k];
+  }
+}
+
+/* The same matrix with the borders J and J^T. */
+static struct Inertia *border(const struct Graph *graph, size_t count, struct Elements *elements,
+                              const struct Constraints *constraints) {
+  const struct Elements *jacobian = &constraints->jacobian;
+  for (size_t k = 0; k < jacobian->count; k++)
+    elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
+  struct Inertia *inertia = create_blocks(graph, count + constraints->count, constraints->count, elements);
+  add_oblique(inertia, &constraints->oblique);
+  return inertia;
+}
+
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
+                               struct Diagnostics *diagnostics) {
+  size_t count = model->coordinates.count;
+  struct Elements elements = elements_of(model, momentum);
+  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
+  bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
+  if (!is_right || constraints->count > 0) {
+    inertia_free(inertia);
+    inertia = is_right ? border(model->graph, count, &elements, constraints) : NULL;
+  }
+  elements_free(&elements);
+  if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
+  /* The power of drives rests on accelerations, which its derivatives need as expressions. */
+  bool power_has_accelerations = (model->drive_count > 0 || model->inputs_move) && model->work_line > 0;
+  bool unroll_all =
+      power_has_accelerations || model->linearized || (model->method != NULL && model->method->needs_linear);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);
+  }
+  pivots_factor(model->graph, inertia);
+  return inertia;
+}
+
+void inertia_free(struct Inertia *inertia) {
+  if (inertia == NULL) return;
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    free(block->coordinates);
+    free(block->start);
+    free(block->column);
+    free(block->mass);
+    free(block->factor);
+    free(block->forces);
+    free(block->oblique);
+  }
+  free(inertia->blocks);
+  free(inertia->block_of);
+  free(inertia->place_of);
+  free(inertia->pivots);
+  free(inertia);
+}
+
+static size_t *copy_sizes(const size_t *sizes, size_t count) {
+  size_t *copy = allocate(count, sizeof *copy);
+  for (size_t i = 0; i < count; i++) copy[i] = sizes[i];
+  return copy;
+}
+
+static Node *substitute_all(struct Graph *graph, const Node *nodes, size_t count, const Node *replacements) {
+  if (nodes == NULL) return NULL;
+  Node *results = allocate(count, sizeof *results);
+  substitute(graph, nodes, count, replacements, results);
+  return results;
+}
+
+static void substitute_pivots(struct Graph *graph, const struct Inertia *from, struct Inertia *to,
+                              const Node *replacements) {
+  to->pivots = allocate(from->pivot_count, sizeof *to->pivots);
+  for (size_t i = 0; i < from->pivot_count; i++) {
+    const struct Pivot *pivot = &from->pivots[i];
+    Node parts[] = {pivot->value, pivot->diagonal, pivot->scale};
+    substitute(graph, parts, 3, replacements, parts);
+    for (int part = 0; part < 3; part++) parts[part] = simplify_fraction(graph, parts[part]);
+    to->pivots[i] = (struct Pivot){parts[0], parts[1], parts[2], pivot->coordinate};
+  }
+}
+
+struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements) {
+  struct Inertia *result = allocate(1, sizeof *result);
+  *result = *inertia;
+  result->block_of = copy_sizes(inertia->block_of, inertia->count);
+  result->place_of = copy_sizes(inertia->place_of, inertia->count);
+  result->blocks = allocate(inertia->block_count, sizeof *result->blocks);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *from = &inertia->blocks[b];
+    size_t count = from->count, elements = from->start[count];
+    result->blocks[b] = (struct InertiaBlock){.count = count,
+                                              .constraint_count = from->constraint_count,
+                                              .coordinates = copy_sizes(from->coordinates, count),
+                                              .is_unrolled = from->is_unrolled,
+                                              .start = copy_sizes(from->start, count + 1),
+                                              .column = copy_sizes(from->column, elements),
+                                              .mass = substitute_all(graph, from->mass, elements, replacements),
+                                              .factor = substitute_all(graph, from->factor, elements, replacements)};
+  }
+  substitute_pivots(graph, inertia, result, replacements);
+  return result;
+}
+
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
+  for (size_t i = 0; i < block->count; i++)
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
+      x[i] = subtract(graph, x[i], multiply(graph, block->factor[k], x[block->column[k]]));
+  for (size_t i = 0; i < block->count; i++) x[i] = divide(graph, x[i], block->factor[block->start[i + 1] - 1]);
+  for (size_t i = block->count; i-- > 0;)
+    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
+      size_t j = block->column[k];
+      x[j] = subtract(graph, x[j], multiply(graph, block->factor[k], x[i]));
+    }
+}
+
+void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
+  Node *x = allocate(inertia->count, sizeof *x);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    for (size_t i = 0; i < block->count; i++) x[i] = block->is_unrolled ? right_side[block->coordinates[i]] : ZERO;
+    if (block->is_unrolled) block_solve(graph, block, x);
+    for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = x[i];
+  }
+  free(x);
+}
+
+void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    for (size_t row = 0; row < block->count; row++)
+      for (size_t k = block->start[row]; k < block->start[row + 1]; k++) {
+        size_t i = block->coordinates[row], j = block->coordinates[block->column[k]];
+        sum[i] = add(graph, sum[i], multiply(graph, block->mass[k], vector[j]));
+        if (i != j) sum[j] = add(graph, sum[j], multiply(graph, block->mass[k], vector[i]));
+      }
+  }
+}
+
+Node inertia_element(const struct Inertia *inertia, size_t i, size_t j) {
+  if (inertia->block_of[i] != inertia->block_of[j]) return ZERO;
+  const struct InertiaBlock *block = inertia_block_of(inertia, i);
+  size_t found = find_coordinates(inertia, i, j);
+  return found < block->start[block->count] ? block->mass[found] : ZERO;
+}
+
+const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate) {
+  return &inertia->blocks[inertia->block_of[coordinate]];
+}
+
+bool block_is_full(const struct InertiaBlock *block) {
+  return block->constraint_count == 0 && block->start[block->count] == block->count * (block->count + 1) / 2;
+}

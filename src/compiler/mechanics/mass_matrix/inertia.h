@@ -1,0 +1,83 @@
+/*
+ * The mass matrix M = d2L/dv dv, bordered by the constraints' Jacobian matrix J where there are some: K = (M J^T; J 0).
+ * It is sparse, in blocks that are independent of each other, each with its factors L D L^T or the pattern of them. Its
+ * rows are the coordinates, then the constraints.
+ */
+#ifndef INERTIA_H
+#define INERTIA_H
+
+#include "mechanics/constraints.h"
+#include "model/model.h"
+
+/* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
+struct Pivot {
+  Node value;    /* D_i of M = L D L^T */
+  Node diagonal; /* M_ii */
+  Node scale;    /* the magnitude of the terms of M_ii, with |sin| and |cos| taken as 1 */
+  size_t coordinate;
+};
+
+/*
+ * Rows that K couples, directly or by way of others. Elements are kept in the pattern of L, by rows of its lower
+ * triangle, columns ascending and the diagonal last: row i has elements start[i] .. start[i + 1] - 1. Rows and columns
+ * are places in coordinates.
+ */
+struct InertiaBlock {
+  size_t count;
+  size_t constraint_count; /* of its rows; each of them is eliminated after its coordinates */
+  size_t *coordinates;     /* its rows in the order of elimination */
+  bool is_unrolled;        /* solved symbolically, as straight-line code; others by ldlt.h at run time */
+  size_t *start, *column;
+  Node *mass; /* the elements of K; ZERO where L fills in */
+  /* Of the forces that others follow from: how many, the row of each, and the columns that they add to K, see oblique.h. */
+  size_t force_count, *forces;
+  Node *oblique;
+  Node *factor; /* of unrolled blocks: the elements of L, and those of D on the diagonal; NULL in others */
+};
+
+struct Inertia {
+  size_t count;            /* rows: coordinates and constraints */
+  size_t coordinate_count; /* of them */
+  struct InertiaBlock *blocks;
+  size_t block_count;
+  size_t *block_of, *place_of; /* of each row */
+  struct Pivot *pivots;        /* of the unrolled blocks */
+  size_t pivot_count;
+};
+
+/*
+ * Blocks of M up to this size become straight-line code. Larger ones take fewer operations where their numbers are
+ * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
+ */
+enum { UNROLL_LIMIT = 2 };
+
+/*
+ * K from the momenta dL/dv of all coordinates and the constraints. Reports a coordinate without inertia and an M that is
+ * singular everywhere or not positive at the start values; NULL then. Free with inertia_free().
+ */
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
+                               struct Diagnostics *diagnostics);
+void inertia_free(struct Inertia *inertia);
+
+/* The same matrix with each symbol s replaced by replacements[s], its factors and pivots too. */
+struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements);
+
+/* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
+void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution);
+
+/* Solves for the coordinates of one unrolled block, in their order of elimination, in place. */
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x);
+
+/* sum += K vector */
+void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);
+
+/* K_ij */
+Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);
+
+/* The block that a row belongs to. */
+const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate);
+
+/* Whether the pattern of the block is the whole triangle, and its matrix positive definite. */
+bool block_is_full(const struct InertiaBlock *block);
+
+#endif

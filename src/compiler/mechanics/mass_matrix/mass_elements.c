@@ -1,0 +1,164 @@
+#include "mechanics/mass_matrix/mass_elements.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/polynomials/shorten.h"
+#include "base/memory.h"
+
+static struct Elements elements_create(size_t capacity) {
+  return (struct Elements){.positions = allocate(capacity, sizeof(struct Position)),
+                           .nodes = allocate(capacity, sizeof(Node)),
+                           .capacity = capacity};
+}
+
+void elements_append(struct Elements *elements, size_t row, size_t column, Node node) {
+  if (elements->count == elements->capacity) {
+    elements->capacity = 2 * elements->capacity + 1;
+    elements->positions = reallocate(elements->positions, elements->capacity, sizeof *elements->positions);
+    elements->nodes = reallocate(elements->nodes, elements->capacity, sizeof *elements->nodes);
+  }
+  elements->positions[elements->count] = (struct Position){row, column};
+  elements->nodes[elements->count++] = node;
+}
+
+void elements_free(struct Elements *elements) {
+  free(elements->positions);
+  free(elements->nodes);
+}
+
+/* M_ij = d p_i / d v_j, row by row; a driven coordinate has 1 alone, for v' = its acceleration. */
+static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
+  struct Graph *graph = model->graph;
+  size_t count = model->coordinates.count;
+  struct Elements elements = elements_create(count);
+  for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
+    if (model->drives[i].given) {
+      elements_append(&elements, i, i, ONE);
+      continue;
+    }
+    struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
+    for (size_t k = 0; k < row.count; k++) {
+      size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
+      if (j <= i && !model->drives[j].given) elements_append(&elements, i, j, row.values[k]);
+    }
+    gradient_free(&row);
+  }
+  return elements;
+}
+
+static size_t root_of(size_t *parent, size_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+struct Components find_components(size_t count, const struct Elements *elements) {
+  struct Components components = {.of = allocate(count, sizeof(size_t))};
+  size_t *parent = allocate(count, sizeof *parent);
+  for (size_t i = 0; i < count; i++) parent[i] = i;
+  for (size_t k = 0; k < elements->count; k++) {
+    size_t a = root_of(parent, elements->positions[k].row), b = root_of(parent, elements->positions[k].column);
+    parent[a > b ? a : b] = a > b ? b : a;
+  }
+  for (size_t i = 0; i < count; i++)
+    components.of[i] = parent[i] == i ? components.count++ : components.of[root_of(parent, i)];
+  free(parent);
+  return components;
+}
+
+size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
+  struct Elements sorted = elements_create(elements->count);
+  size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
+  size_t *first = allocate(components->count, sizeof *first);
+  for (size_t k = elements->count; k-- > 0;) {
+    size_t component = components->of[elements->positions[k].row];
+    next[k] = first[component];
+    first[component] = k + 1;
+  }
+  for (size_t component = 0; component < components->count; component++) {
+    for (size_t k = first[component]; k > 0; k = next[k - 1])
+      elements_append(&sorted, elements->positions[k - 1].row, elements->positions[k - 1].column,
+                      elements->nodes[k - 1]);
+    start[component + 1] = sorted.count;
+  }
+  free(first);
+  free(next);
+  elements_free(elements);
+  *elements = sorted;
+  return start;
+}
+
+struct ColumnPart {
+  size_t column, element;
+};
+
+static int compare_columns(const void *first, const void *second) {
+  const struct ColumnPart *a = first, *b = second;
+  if (a->column != b->column) return a->column < b->column ? -1 : 1;
+  return (a->element > b->element) - (a->element < b->element);
+}
+
+/* The elements at these positions column by column, which gives other expressions of the same values. */
+static void differentiate_columns(const struct Model *model, const Node *momentum, const struct ColumnPart *parts,
+                                  const struct Position *positions, size_t count, Node *nodes) {
+  struct Graph *graph = model->graph;
+  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
+  Node *targets = allocate(count, sizeof *targets), *column = allocate(count, sizeof *column);
+  for (size_t first = 0, end = 0; first < count && graph_limit(graph) == NULL; first = end) {
+    for (end = first; end < count && parts[end].column == parts[first].column; end++)
+      targets[end - first] = momentum[positions[parts[end].element].row];
+    Node *seed = &seeds[graph->vertices[model->velocities.items[parts[first].column].node].left];
+    *seed = ONE;
+    derivative_along(graph, targets, end - first, seeds, column);
+    *seed = ZERO;
+    for (size_t k = first; k < end; k++) nodes[parts[k].element] = column[k - first];
+  }
+  free(seeds);
+  free(targets);
+  free(column);
+}
+
+/*
+ * Takes the elements of a component by columns where that makes them shorter. The cost is that of all its momenta for
+ * each column, so that only components with most of their elements are worth it.
+ */
+static void try_columns(const struct Model *model, const Node *momentum, const struct Position *positions, size_t count,
+                        Node *nodes) {
+  struct ColumnPart *parts = allocate(count, sizeof *parts);
+  size_t columns = 0;
+  for (size_t k = 0; k < count; k++) parts[k] = (struct ColumnPart){positions[k].column, k};
+  if (count > 0) qsort(parts, count, sizeof *parts, compare_columns);
+  for (size_t k = 0; k < count; k++) columns += k == 0 || parts[k].column != parts[k - 1].column;
+  if (columns > 1 && 4 * count >= columns * columns) {
+    Node *others = allocate(count, sizeof *others);
+    differentiate_columns(model, momentum, parts, positions, count, others);
+    take_shorter(model->graph, count, nodes, others);
+    free(others);
+  }
+  free(parts);
+}
+
+/* Multiplies the elements of each component out where that makes them shorter, and drops those that vanish so. */
+static void shorten_elements(const struct Model *model, const Node *momentum, struct Elements *elements) {
+  struct Components components = find_components(model->coordinates.count, elements);
+  size_t *start = sort_by_components(elements, &components), kept = 0;
+  for (size_t component = 0; component < components.count; component++) {
+    size_t first = start[component], count = start[component + 1] - first;
+    try_columns(model, momentum, elements->positions + first, count, elements->nodes + first);
+    shorten(model->graph, count, elements->nodes + first);
+  }
+  for (size_t k = 0; k < elements->count; k++) {
+    if (elements->nodes[k] == ZERO) continue;
+    elements->positions[kept] = elements->positions[k];
+    elements->nodes[kept++] = elements->nodes[k];
+  }
+  elements->count = kept;
+  free(components.of);
+  free(start);
+}
+
+struct Elements elements_of(const struct Model *model, const Node *momentum) {
+  struct Elements elements = differentiate_momenta(model, momentum);
+  shorten_elements(model, momentum, &elements);
+  return elements;
+}

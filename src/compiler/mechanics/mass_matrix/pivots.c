@@ -1,0 +1,204 @@
+#include "mechanics/mass_matrix/pivots.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+
+double next_random(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return 0.5 + (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+/* What ends a numeric L D L^T. */
+enum Ending { SINGULAR, NOT_POSITIVE };
+
+/*
+ * The coordinate at which a numeric L D L^T finds the block singular, and for NOT_POSITIVE also negative; or count, the
+ * number of all coordinates. The sign of its pivot is +1 or -1, 0 where it is singular.
+ */
+static size_t end_in_block(const struct InertiaBlock *block, const double *values, size_t count, enum Ending ending,
+                           int *sign) {
+  const size_t *start = block->start, *column = block->column;
+  double *factor = allocate(start[block->count], sizeof *factor), *row = allocate(block->count, sizeof *row);
+  size_t found = count;
+  for (size_t i = 0; i < block->count && found == count; i++) {
+    size_t diagonal = start[i + 1] - 1;
+    double pivot = values[block->mass[diagonal]];
+    for (size_t k = start[i]; k < diagonal; k++) row[column[k]] = values[block->mass[k]];
+    for (size_t k = start[i]; k < diagonal; k++) { /* row[j] becomes L_ij D_j */
+      size_t j = column[k], end = start[j + 1] - 1;
+      for (size_t l = start[j]; l < end; l++) row[j] -= row[column[l]] * factor[l];
+    }
+    for (size_t k = start[i]; k < diagonal; k++) {
+      size_t j = column[k];
+      factor[k] = row[j] / factor[start[j + 1] - 1];
+      pivot -= factor[k] * row[j];
+      row[j] = 0.0;
+    }
+    factor[diagonal] = pivot;
+    *sign = fabs(pivot) <= 1e-10 * fabs(values[block->mass[diagonal]]) ? 0 : pivot > 0 ? 1 : -1;
+    if (*sign == 0 || (*sign < 0 && ending == NOT_POSITIVE)) found = block->coordinates[i];
+  }
+  free(factor);
+  free(row);
+  return found;
+}
+
+/* The coordinate at which a block of M ends as above, count where none does, -1 without a finite M. */
+static long ending_coordinate(const struct Inertia *inertia, const double *values, enum Ending ending, int *sign) {
+  size_t found = inertia->count;
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    for (size_t k = 0; k < block->start[block->count]; k++)
+      if (!isfinite(values[block->mass[k]])) return -1;
+  }
+  for (size_t b = 0; b < inertia->block_count && found == inertia->count; b++)
+    found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
+  return (long)found;
+}
+
+/* Whether M couples the coordinate with others. */
+static bool has_coupled_inertia(const struct Inertia *inertia, size_t coordinate) {
+  const struct InertiaBlock *block = inertia_block_of(inertia, coordinate);
+  for (size_t i = 0; i < block->count; i++)
+    if (block->coordinates[i] != coordinate && inertia_element(inertia, coordinate, block->coordinates[i]) != ZERO)
+      return true;
+  return false;
+}
+
+static bool has_all_inertias(const struct Model *model, const struct Inertia *inertia,
+                             struct Diagnostics *diagnostics) {
+  bool complete = true;
+  for (size_t i = 0; i < inertia->count; i++) {
+    if (inertia_element(inertia, i, i) != ZERO) continue;
+    if (has_coupled_inertia(inertia, i))
+      report_error(diagnostics, model->coordinates.items[i].line,
+                   "the kinetic energy has no term with the square of '%s', but products with other velocities: it is "
+                   "not positive definite; expected one that is positive for every motion",
+                   model->velocities.items[i].name);
+    else
+      report_error(diagnostics, model->coordinates.items[i].line,
+                   "the coordinate '%s' has no inertia: no mass moves with it; expected a <particle>, <body> or "
+                   "<kinetic> that depends on it, or constraints that tell its motion",
+                   model->coordinates.items[i].name);
+    complete = false;
+  }
+  return complete;
+}
+
+/* A matrix that is singular at the start values, as at a pole, may be regular elsewhere; a negative one is a wrong sign. */
+static bool is_positive_at_start(const struct Model *model, const struct Inertia *inertia,
+                                 struct Diagnostics *diagnostics) {
+  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  int sign = 0;
+  long found = ending_coordinate(inertia, values, NOT_POSITIVE, &sign);
+  free(values);
+  free(symbols);
+  if (found < 0 || found == (long)inertia->count || sign == 0) return true;
+  report_error(
+      diagnostics, model->coordinates.items[found].line,
+      "the kinetic energy is not positive definite at the start values: it is negative for a motion along '%s'; "
+      "expected masses, inertias and <kinetic> that are positive for every motion",
+      model->coordinates.items[found].name);
+  return false;
+}
+
+bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
+  const struct Graph *graph = model->graph;
+  if (!has_all_inertias(model, inertia, diagnostics)) return false;
+  double *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  uint64_t seed = 1;
+  long regular = (long)inertia->count, singular = -1, found = -1;
+  int sign;
+  for (int trial = 0; trial < 8 && found != regular; trial++) {
+    for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
+    double *values = graph_evaluate(graph, symbols);
+    found = ending_coordinate(inertia, values, SINGULAR, &sign);
+    if (found >= 0 && found < regular) singular = found;
+    free(values);
+  }
+  free(symbols);
+  if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
+  report_error(diagnostics, model->coordinates.items[singular].line,
+               "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
+               "coordinates; expected one coordinate for each degree of freedom, or constraints that tell its motion",
+               model->coordinates.items[singular].name);
+  return false;
+}
+
+enum { MAGNITUDE_DEPTH = 8 };
+
+/* An upper bound of |node| that shares its structure, with |sin|, |cos| <= 1. */
+static Node magnitude(struct Graph *graph, Node node, int depth) {
+  const struct Vertex vertex = graph->vertices[node];
+  if (depth == MAGNITUDE_DEPTH) return node;
+  depth++;
+  switch (vertex.operation) {
+  case SINE:
+  case COSINE: return ONE;
+  case ADD:
+  case MULTIPLY: {
+    Node right = magnitude(graph, vertex.right, depth), left = magnitude(graph, vertex.left, depth);
+    return vertex.operation == ADD ? add(graph, left, right) : multiply(graph, left, right);
+  }
+  case CONSTANT: return graph_constant(graph, fabs(vertex.value));
+  case POWER: {
+    bool positive = graph_is_constant(graph, vertex.right) && graph_value(graph, vertex.right) > 0;
+    return positive ? power(graph, magnitude(graph, vertex.left, depth), vertex.right) : node;
+  }
+  default: return node;
+  }
+}
+
+/* The trigonometric factors of a diagonal element can vanish where the motion is regular (poles). */
+static Node pivot_scale(struct Graph *graph, Node diagonal) {
+  Node terms[TERM_LIMIT], scale = ZERO;
+  int count = terms_of(graph, diagonal, terms, TERM_LIMIT);
+  if (count == TERM_LIMIT) return diagonal;
+  for (int i = 0; i < count; i++) scale = add(graph, scale, magnitude(graph, terms[i], 0));
+  return scale;
+}
+
+/* D_j = M_jj - sum_k L_jk^2 D_k,  L_ij = (M_ij - sum_k L_ik L_jk D_k) / D_j */
+static void factor_block(struct Graph *graph, struct InertiaBlock *block) {
+  const size_t *start = block->start, *column = block->column;
+  Node *factor = allocate(start[block->count], sizeof *factor), *row = allocate(block->count, sizeof *row);
+  for (size_t i = 0; i < block->count; i++) {
+    size_t diagonal = start[i + 1] - 1;
+    Node pivot = block->mass[diagonal];
+    for (size_t k = start[i]; k < diagonal; k++) {
+      size_t j = column[k], end = start[j + 1] - 1;
+      Node product = block->mass[k]; /* L_ij D_j */
+      for (size_t l = start[j]; l < end; l++) {
+        Node part = multiply(graph, row[column[l]], factor[start[column[l] + 1] - 1]);
+        product = subtract(graph, product, multiply(graph, part, factor[l]));
+      }
+      factor[k] = row[j] = divide(graph, product, factor[end]);
+      pivot = subtract(graph, pivot, multiply(graph, factor[k], product));
+    }
+    factor[diagonal] = pivot;
+    for (size_t k = start[i]; k < diagonal; k++) row[column[k]] = ZERO;
+  }
+  free(row);
+  block->factor = factor;
+}
+
+void pivots_factor(struct Graph *graph, struct Inertia *inertia) {
+  inertia->pivots = allocate(inertia->count, sizeof *inertia->pivots);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    if (!block->is_unrolled) continue;
+    factor_block(graph, block);
+    for (size_t i = 0; i < block->count; i++) {
+      size_t diagonal = block->start[i + 1] - 1;
+      if (block->factor[diagonal] == ONE) continue; /* as of driven coordinates */
+      if (block->coordinates[i] >= inertia->coordinate_count) continue;
+      inertia->pivots[inertia->pivot_count++] = (struct Pivot){.value = block->factor[diagonal],
+                                                               .diagonal = block->mass[diagonal],
+                                                               .scale = pivot_scale(graph, block->mass[diagonal]),
+                                                               .coordinate = block->coordinates[i]};
+    }
+  }
+}

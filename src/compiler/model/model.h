@@ -1,0 +1,159 @@
+/* A mechanical system as its author wrote it: variables, energies, forces. The reader fills it. */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include "algebra/units/quantity.h"
+#include "base/diagnostics.h"
+#include "model/kinematics.h"
+#include "model/methods.h"
+#include "model/switches.h"
+#include "variable_type.h"
+
+struct Variable {
+  char *name, *description;
+  char *unit; /* as written, NULL where none was given */
+  enum VariableType type;
+  struct Dimension dimension;
+  double start, minimum, maximum, nominal; /* NAN where none was given */
+  Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
+  Node node;                               /* the symbol, or the value of an output */
+  bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
+  long line;
+};
+
+struct VariableList {
+  struct Variable *items;
+  size_t count;
+};
+
+/* A particle or a rigid body. Components that were not given are ZERO and not present. */
+struct Body {
+  char *name;
+  struct Quantity mass, inertia;
+  struct Quantity position[3], angle;
+  Node displaced[4]; /* x, y, z and angle as functions of displacements too */
+  bool has_position[3], has_angle;
+  bool is_in_frame;     /* has the following in place of an angle and its inertia */
+  size_t frame;         /* among the model's */
+  struct Vector offset; /* m, of the centre of mass along the frame's axes */
+  struct Matrix tensor; /* kg.m2, about the centre of mass along the frame's axes */
+  /* m/s of the centre of mass and rad/s, along the frame's axes; also as functions of displacements and their rates. */
+  struct Vector velocity, angular_velocity, displaced_velocity, displaced_angular_velocity;
+  long line;
+};
+
+/* Axes that are moved and turned, as functions of displacements too. The first one is the base. */
+struct ReferenceFrame {
+  char *name;
+  size_t parent;   /* among the model's */
+  bool is_of_body; /* turns with the planar body of its name */
+  struct Pose pose;
+};
+
+/* A Cartesian force along a component of a position, which is a function of displacements too. */
+struct PointForce {
+  Node position, force;
+};
+
+/* A torque and the angular velocity of what it turns, a function of displacements too, along the same axes. */
+struct Torque {
+  struct Vector torque, angular_velocity;
+};
+
+/*
+ * What has an inertia without energy, since it rests: the rate of a holonomic constraint, or a nonholonomic one itself.
+ * Adding its inertia to M, which may be singular without it, changes neither the motion nor the forces.
+ */
+struct Stillness {
+  Node constraint, inertia;
+};
+
+/* How a coordinate moves that is driven: in a given way. */
+struct Drive {
+  bool given;        /* false of a coordinate that moves by its equation */
+  Node acceleration; /* a function of inputs, parameters and time */
+  size_t reaction;   /* the place of the drive's force among the reactions */
+};
+
+/* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
+struct LinearizationPoint {
+  Node *values;
+  bool *given;
+};
+
+struct Model {
+  char *name, *description;
+  struct Graph *graph;
+  struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
+  struct VariableList definitions; /* what each <define> stands for, in its node */
+  struct VariableList displacements;
+  struct VariableList modes; /* that the author declared; those of switches have no names */
+  struct Switches switches;
+  struct VariableList reactions; /* forces along the displacements, then of the drives */
+  Node *input_rates;             /* of each input: the one that is its time derivative; ZERO for none */
+  bool inputs_move;              /* positions or energies depend on inputs */
+  struct Drive *drives;          /* one a coordinate */
+  size_t drive_count;            /* of those that are given */
+  struct Body *bodies;
+  size_t body_count;
+  struct ReferenceFrame *frames;
+  size_t frame_count;
+  struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
+  struct Vector gravity;      /* m/s2: the direction of what <gravity> gives, along the base's axes */
+  struct Stillness *stillnesses;
+  size_t stillness_count;
+  Node *accelerations; /* the symbol of each coordinate's acceleration */
+  /* Each is 0 at all times: of coordinates and time, or also linear in the velocities. */
+  struct VariableList constraints;
+  const struct Variable *moving_constraint; /* one that moves in a given way, so that it does work; NULL for none */
+  Node *constraint_forces; /* the symbol of each force, of the kind ACCELERATION, numbered after the coordinates */
+  Node time;
+  struct Quantity kinetic;                /* J: K of L = K - U, of the bodies and of the <kinetic> terms */
+  struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
+  struct Quantity kinetic_energy;         /* J: the energy of both, see energies.h */
+  bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
+  struct Quantity potential, dissipation; /* J, W */
+  struct Quantity *forces;                /* generalized force along each coordinate */
+  /* The sums of the <kinetic> terms, potentials and dissipations as functions of displacements too. */
+  struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
+  struct PointForce *point_forces;
+  size_t point_force_count;
+  struct Torque *torques;
+  size_t torque_count;
+  struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
+  bool has_forces;              /* some force, dissipation or drive was given */
+  long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
+  bool linearized;
+  struct LinearizationPoint point;         /* where linearized */
+  const struct Method *method;             /* NULL for the default */
+  double tolerance, max_step;              /* NAN where none was given; max_step in s */
+  double max_steps;                        /* in one communication step, a whole number; NAN where none was given */
+  double start_time, stop_time, step_size; /* NAN where none was given */
+  long solver_line;
+};
+
+void model_free(struct Model *model);
+
+/* Whether the input is the time derivative of the one before it. */
+bool is_input_rate(const struct Model *model, size_t input);
+
+/* Frees what a variable that is in no list owns. */
+void variable_free(struct Variable *variable);
+
+/* Whether the start value is an expression of parameters. */
+bool start_follows(const struct Model *model, const struct Variable *variable);
+
+/* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
+double *start_values(const struct Model *model);
+
+/* Whether some coordinate is. */
+bool has_fixed_coordinates(const struct Model *model);
+
+/* The symbol of what a row of inertia.h is solved for: an acceleration, or the force of a constraint. */
+Node unknown_of_row(const struct Model *model, size_t row);
+
+/* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. Free with free(). */
+char *variable_unit(const struct Variable *variable);
+
+#endif

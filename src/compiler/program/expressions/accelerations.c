@@ -1,0 +1,144 @@
+#include "program/expressions/accelerations.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "oblique.h"
+#include "saddle.h"
+
+static size_t mass_count_of(const struct InertiaBlock *block) {
+  size_t elements = block->start[block->count];
+  if (block->constraint_count == 0) return elements;
+  if (block->force_count == 0) return SADDLE_MASS(elements, block->count);
+  return SADDLE_MASS(elements, block->count) + OBLIQUE_MASS(block->count, block->force_count);
+}
+
+struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
+  struct LoopedBlocks blocks = {0};
+  if (equations->explicit_form) return blocks;
+  const struct Inertia *inertia = equations->inertia;
+  blocks.items = allocate(inertia->block_count, sizeof *blocks.items);
+  for (size_t i = 0; i < inertia->block_count; i++) {
+    const struct InertiaBlock *block = &inertia->blocks[i];
+    if (block->is_unrolled) continue;
+    bool is_saddle = block->constraint_count > 0;
+    size_t count = mass_count_of(block);
+    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count, count};
+    blocks.mass_count += count;
+    blocks.side_count += is_saddle ? SADDLE_SIDE(block->count) : block->count;
+  }
+  return blocks;
+}
+
+bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
+  return graph_is_constant_in_time(graph, pivot->value) && graph_is_constant_in_time(graph, pivot->scale);
+}
+
+void append_elements(struct NodeList *targets, const struct InertiaBlock *block) {
+  append_nodes(targets, block->mass, block->start[block->count]);
+  append_nodes(targets, block->oblique, block->force_count * block->count);
+}
+
+struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations) {
+  struct NodeList targets = {0};
+  size_t rows = equations->explicit_form ? equations->count : row_count(equations);
+  for (size_t i = 0; i < rows; i++)
+    append_node(&targets, is_looped(equations, i) ? equations->right_side[i] : equations->acceleration[i]);
+  const struct Inertia *inertia = equations->inertia;
+  for (size_t i = 0; !equations->explicit_form && i < inertia->block_count; i++) {
+    const struct InertiaBlock *block = &inertia->blocks[i];
+    if (!block->is_unrolled) append_elements(&targets, block);
+  }
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &inertia->pivots[i];
+    if (pivot_is_prepared(graph, pivot)) continue;
+    append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
+  }
+  return targets;
+}
+
+void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
+  Place number = (Place)pivot->coordinate + 1, value = values_place(values, pivot->value);
+  Place diagonal = values_place(values, pivot->diagonal), scale = values_place(values, pivot->scale);
+  if (value != diagonal) routine_append(values->routine, CHECK_PIVOT, number, value, diagonal, 0);
+  if (diagonal != scale) routine_append(values->routine, CHECK_DIAGONAL, number, diagonal, scale, 0);
+  if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
+}
+
+static void append_side(struct Values *values, const struct LoopedBlock *looped, const Node *right_side) {
+  for (size_t i = 0; i < looped->block->count; i++)
+    values_copy(values, place_in(SPACE_SIDE, looped->first_side + i), right_side[i]);
+}
+
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side) {
+  append_side(values, &blocks->items[block], right_side);
+  routine_append(values->routine, SOLVE, (Place)block, 0, 0, 0);
+}
+
+/* Multiplications, divisions and additions of factoring a block and solving it once. */
+static size_t factor_operations(const struct InertiaBlock *block) {
+  size_t elements = block->start[block->count], operations = block->count + 4 * (elements - block->count);
+  size_t *below = allocate(block->count, sizeof *below); /* the diagonal of each column */
+  for (size_t i = 0; i < elements; i++) below[block->column[i]]++;
+  for (size_t j = 0; j < block->count; j++) operations += (below[j] - 1) * below[j] + 2 * (below[j] - 1);
+  free(below);
+  return operations;
+}
+
+void append_masses(struct Values *values, const struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  for (size_t i = 0; i < block->start[block->count]; i++)
+    values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count);
+  for (size_t i = 0; i < block->force_count * block->count; i++)
+    values_copy(values, place_in(SPACE_MASS, first + i), block->oblique[i]);
+}
+
+void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
+  routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
+  values->routine->operation_count += factor_operations(blocks->items[number].block);
+}
+
+void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct InertiaBlock *block = blocks->items[b].block;
+    struct NodeList elements = {0};
+    append_elements(&elements, block);
+    values_compute(values, elements.nodes, elements.count, false);
+    free(elements.nodes);
+    append_masses(values, &blocks->items[b]);
+    append_factor(values, blocks, b);
+  }
+}
+
+/* Factors a large block and solves it for its accelerations. */
+static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                         size_t number, bool with_forces) {
+  const struct LoopedBlock *looped = &blocks->items[number];
+  const struct InertiaBlock *block = looped->block;
+  Node *right_side = allocate(block->count, sizeof *right_side);
+  for (size_t i = 0; i < block->count; i++) right_side[i] = equations->right_side[block->coordinates[i]];
+  append_masses(values, looped);
+  append_factor(values, blocks, number);
+  append_solution(values, blocks, number, right_side);
+  if (with_forces && block->constraint_count > 0 && block->force_count == 0)
+    routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
+  for (size_t i = 0; i < block->count; i++)
+    if (with_forces || block->coordinates[i] < equations->count)
+      routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  free(right_side);
+}
+
+void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                          bool with_forces) {
+  const struct Inertia *inertia = equations->inertia;
+  struct NodeList targets = accelerations_targets(values->graph, equations);
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+  for (size_t i = 0; i < inertia->pivot_count; i++)
+    if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
+  for (size_t i = 0; i < equations->count; i++)
+    if (!is_looped(equations, i)) values_copy(values, place_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
+  for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block, with_forces);
+}

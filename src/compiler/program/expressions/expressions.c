@@ -1,0 +1,300 @@
+#include "program/expressions/expressions.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/kinks.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "program/expressions/accelerations.h"
+#include "program/expressions/jacobian.h"
+#include "program/expressions/lu_pattern.h"
+
+/* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
+static Node *create_seeds(struct Graph *graph) {
+  static const enum SymbolKind seed_kinds[] = {
+      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
+      [VELOCITY] = SEED_VELOCITY,   [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
+  };
+  size_t count = graph->symbol_count;
+  Node *seeds = allocate(2 * count, sizeof *seeds);
+  for (size_t i = 0; i < count; i++) {
+    enum SymbolKind kind = graph->symbols[i].kind;
+    if (kind == DISPLACEMENT || kind == REACTION || kind == MODE) continue; /* 0, replaced, or held */
+    char *name = format_text("d %s", graph->symbols[i].name);
+    seeds[i] = graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, name);
+    free(name);
+  }
+  return seeds;
+}
+
+/*
+ * Along a direction, 0 = d (M a - right_side) = M da + d(M a - right_side)|a held; explicit accelerations are
+ * differentiated as they are. In large blocks result holds the right side of this system.
+ */
+static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
+                                Node *result) {
+  size_t n = equations->explicit_form ? equations->count : row_count(equations);
+  derivative_along(graph, equations->explicit_form ? equations->acceleration : equations->residual, n, seeds, result);
+  if (equations->explicit_form) return;
+  Node *right = allocate(n, sizeof *right);
+  for (size_t i = 0; i < n; i++) right[i] = negate(graph, result[i]);
+  inertia_solve(graph, equations->inertia, right, result);
+  for (size_t i = 0; i < n; i++)
+    if (is_looped(equations, i)) result[i] = right[i];
+  free(right);
+}
+
+/*
+ * K (change; forces) = (-M moved; -constraint): with the total of the changes in moved, the limit has the constraints
+ * fulfilled and M moved + J^T forces = 0, the least way in the metric of M.
+ */
+static void create_corrections(struct Expressions *expressions, const Node *seeds) {
+  const struct Model *model = expressions->model;
+  const struct Equations *equations = expressions->equations;
+  struct Graph *graph = model->graph;
+  size_t n = equations->count, rows = row_count(equations);
+  const struct Constraints *constraints = equations->constraints;
+  struct Corrections *corrections = &expressions->corrections;
+  corrections->position = allocate(rows, sizeof(Node));
+  corrections->velocity = allocate(rows, sizeof(Node));
+  corrections->slope = constraint_slopes(graph, constraints);
+  Node *moved = allocate(rows, sizeof *moved);
+  for (size_t i = 0; i < n; i++) moved[i] = seeds[graph->vertices[model->coordinates.items[i].node].left];
+  inertia_add_product(graph, equations->inertia, moved, corrections->position);
+  for (size_t i = 0; i < n; i++) corrections->position[i] = negate(graph, corrections->position[i]);
+  for (size_t j = 0; j < constraints->count; j++) {
+    corrections->position[n + j] = negate(graph, constraints->position[j]);
+    corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
+  }
+  free(moved);
+}
+
+static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
+  return seeds[graph->vertices[symbol].left];
+}
+
+/* Adds what a push along a gap, or a velocity, does along the coordinates. */
+static void add_push(const struct Model *model, Node along, enum SymbolKind kind, Node seed, Node *push) {
+  struct Graph *graph = model->graph;
+  struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
+  for (size_t i = 0; i < gradient.count; i++) {
+    size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
+    if (model->drives[coordinate].given) continue;
+    push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
+  }
+  gradient_free(&gradient);
+}
+
+/* Contacts push along their gaps, frictions along their velocities. */
+static void create_pushes(struct Expressions *expressions, const Node *seeds) {
+  const struct Model *model = expressions->model;
+  const struct Switches *switches = &model->switches;
+  Node *push = expressions->corrections.push = allocate(row_count(expressions->equations), sizeof(Node));
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const struct Contact *contact = &switches->contacts[i];
+    Node seed = seed_of(model->graph, seeds, model->constraint_forces[contact->constraint]);
+    add_push(model, contact->gap, COORDINATE, seed, push);
+  }
+  for (size_t i = 0; i < switches->friction_count && switches->contact_count > 0; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node seed = seed_of(model->graph, seeds, model->constraint_forces[friction->constraint]);
+    add_push(model, friction->velocity, VELOCITY, seed, push);
+  }
+}
+
+static void without_accelerations(const struct Graph *graph, Node *seeds) {
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == ACCELERATION) seeds[i] = ZERO;
+}
+
+static void create_results(struct Expressions *expressions, const Node *seeds) {
+  const struct Interface *interface = expressions->interface;
+  struct NodeList outputs = {0};
+  expressions->result = allocate(interface->result_count, sizeof(Node));
+  expressions->result_along = allocate(interface->result_count, sizeof(Node));
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    if (variable->entry.kind != VARIABLE_RESULT) continue;
+    expressions->result[variable->entry.index] = variable->node;
+    if (is_unknown(&variable->entry)) append_node(&outputs, variable->node);
+  }
+  Node *along = allocate(outputs.count, sizeof *along);
+  derivative_along(expressions->model->graph, outputs.nodes, outputs.count, seeds, along);
+  size_t next = 0;
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (entry->kind == VARIABLE_RESULT && is_unknown(entry)) expressions->result_along[entry->index] = along[next++];
+  }
+  free(along);
+  free(outputs.nodes);
+}
+
+static void create_initial(struct Expressions *expressions, const Node *seeds) {
+  const struct Interface *interface = expressions->interface;
+  size_t count = 2 * expressions->equations->count;
+  expressions->initial = allocate(count, sizeof(Node));
+  expressions->initial_along = allocate(count, sizeof(Node));
+  for (size_t i = 0; i < count; i++)
+    expressions->initial[i] = interface->variables[interface_find(interface, VARIABLE_STATE, i)].start;
+  derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
+}
+
+static void create_directional(struct Expressions *expressions) {
+  struct Graph *graph = expressions->model->graph;
+  Node *seeds = create_seeds(graph);
+  create_results(expressions, seeds);
+  create_initial(expressions, seeds);
+  if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
+  if (expressions->equations->constraints->count > 0) create_pushes(expressions, seeds);
+  without_accelerations(graph, seeds);
+  expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
+  accelerations_along(graph, expressions->equations, seeds, expressions->along);
+  derivative_along(graph, &expressions->equations->power, 1, seeds, &expressions->power_along);
+  const struct Elements *jacobian = &expressions->equations->constraints->jacobian;
+  expressions->constraints_along = allocate(jacobian->count, sizeof(Node));
+  derivative_along(graph, jacobian->nodes, jacobian->count, seeds, expressions->constraints_along);
+  free(seeds);
+}
+
+static void create_linear(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  if (!isnan(model->max_step) || !isnan(model->max_steps))
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' takes a communication step as a whole; expected no maxStep%s",
+                 isnan(model->max_step) ? "s" : "");
+  if (expressions->equations->constraints->count > 0)
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
+  if (model->switches.contact_count + model->switches.friction_count + model->switches.event_count > 0)
+    report_error(diagnostics, model->solver_line,
+                 "the method 'exact' knows no events; expected another method for a system that switches");
+  expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
+  if (expressions->equations->has_work)
+    report_error(diagnostics, model->solver_line,
+                 "<work/> is not linear in the state; expected another method than 'exact'");
+}
+
+static void create_jacobian(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  expressions->jacobian = jacobian_create(model->graph, expressions->equations);
+  if (expressions->jacobian == NULL)
+    report_error(
+        diagnostics, model->solver_line,
+        "the Jacobian matrix of the method '%s' would have more than %d elements, as the mass matrix couples the "
+        "coordinates; expected the method 'taylor', or a smaller system",
+        expressions->interface->method->name, JACOBIAN_LIMIT);
+  else if (expressions->interface->method->factors)
+    expressions->jacobian->factors =
+        lu_pattern_create(model->graph, expressions->jacobian, expressions->equations->count);
+}
+
+/* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
+static void create_series(struct Expressions *expressions, struct Diagnostics *diagnostics) {
+  const struct Model *model = expressions->model;
+  const struct Equations *equations = expressions->equations;
+  const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
+  bool is_taylor = expressions->interface->method->series == ALL_TERMS;
+  if (kink == NULL || !is_taylor)
+    expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
+  else
+    report_error(diagnostics, model->solver_line,
+                 "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
+}
+
+static void create_output_series(struct Expressions *expressions) {
+  const struct Model *model = expressions->model;
+  size_t count = model->outputs.count;
+  if (count == 0 || expressions->interface->output_derivative_order == 1) return;
+  expressions->output_series = series_plan_of_outputs(model->graph, expressions->result, count);
+}
+
+/* A function that is folded has no series where it turns, and hides nothing. */
+static void create_watched_series(struct Expressions *expressions) {
+  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  struct Graph *graph = expressions->model->graph;
+  if (switching == NULL) return;
+  struct NodeList watched = {0};
+  for (size_t i = 0; i < switching->watched_count; i++)
+    if (kink_without_series_of(graph, &switching->watched[i], 1) == NULL) append_node(&watched, switching->watched[i]);
+  expressions->watched_series = series_plan_of_outputs(graph, watched.nodes, watched.count);
+  free(watched.nodes);
+}
+
+struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
+                                       const struct Interface *interface, struct Diagnostics *diagnostics) {
+  int errors = diagnostics->errors;
+  const struct Method *method = interface->method;
+  struct Expressions *expressions = allocate(1, sizeof *expressions);
+  *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
+  if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
+  create_directional(expressions);
+  if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
+  if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
+  create_output_series(expressions);
+  create_watched_series(expressions);
+  if (graph_limit(model->graph) != NULL)
+    report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
+  if (diagnostics->errors == errors) return expressions;
+  expressions_free(expressions);
+  return NULL;
+}
+
+struct NodeList expressions_targets(const struct Expressions *expressions) {
+  const struct Equations *equations = expressions->equations;
+  struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
+  append_nodes(&targets, expressions->along, row_count(equations));
+  if (equations->constraints->count > 0) {
+    append_nodes(&targets, expressions->constraints_along, equations->constraints->jacobian.count);
+    append_nodes(&targets, expressions->corrections.position, row_count(equations));
+    append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
+    append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
+    append_nodes(&targets, expressions->corrections.push, equations->count);
+  }
+  if (expressions->equations->has_work)
+    append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
+  if (expressions->jacobian != NULL) {
+    const struct JacobianExpressions *jacobian = expressions->jacobian;
+    append_nodes(&targets, jacobian->value, jacobian->count);
+    for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+  }
+  if (expressions->linear != NULL) {
+    const struct LinearSystem *linear = expressions->linear;
+    append_nodes(&targets, linear->a, linear->states * linear->states);
+    append_nodes(&targets, linear->b, linear->states * linear->inputs);
+    append_nodes(&targets, linear->c, linear->states);
+  }
+  append_nodes(&targets, expressions->result, expressions->interface->result_count);
+  append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
+  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  if (switching != NULL) {
+    append_nodes(&targets, switching->indicators, switching->indicator_count);
+    append_nodes(&targets, switching->values, switching->value_count);
+  }
+  const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series,
+                                            expressions->watched_series};
+  for (int i = 0; i < 3; i++)
+    if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets.nodes, plans[i]->targets.count);
+  return targets;
+}
+
+void expressions_free(struct Expressions *expressions) {
+  if (expressions == NULL) return;
+  linear_system_free(expressions->linear);
+  series_plan_free(expressions->series);
+  series_plan_free(expressions->output_series);
+  series_plan_free(expressions->watched_series);
+  jacobian_free(expressions->jacobian);
+  free(expressions->along);
+  free(expressions->initial);
+  free(expressions->initial_along);
+  free(expressions->constraints_along);
+  free(expressions->corrections.position);
+  free(expressions->corrections.velocity);
+  free(expressions->corrections.slope);
+  free(expressions->corrections.push);
+  free(expressions->result);
+  free(expressions->result_along);
+  free(expressions);
+}

@@ -1,0 +1,121 @@
+#include "program/expressions/jacobian.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "program/expressions/lu_pattern.h"
+
+enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY };
+
+struct Element {
+  size_t row, column;
+  Node value;
+};
+
+struct ElementList {
+  struct Element *items;
+  size_t count, capacity;
+};
+
+static void append(struct ElementList *list, size_t row, size_t column, Node value) {
+  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
+  list->items[list->count++] = (struct Element){row, column, value};
+}
+
+static int compare(const void *first, const void *second) {
+  const struct Element *a = first, *b = second;
+  if (a->column != b->column) return a->column < b->column ? -1 : 1;
+  return (a->row > b->row) - (a->row < b->row);
+}
+
+static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
+  const struct Symbol *what = graph_symbol_of(graph, symbol);
+  return what->kind == COORDINATE ? (size_t)what->index : coordinates + (size_t)what->index;
+}
+
+static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,
+                            size_t row) {
+  struct Gradient gradient = gradient_by_kinds(graph, target, STATE_KINDS);
+  for (size_t i = 0; i < gradient.count; i++)
+    append(list, row, column_of(graph, coordinates, gradient.symbols[i]), gradient.values[i]);
+  gradient_free(&gradient);
+}
+
+/* The elements of one column in the rows of a block: M da = -d(M a - right_side), solved where the block is small. */
+static void append_column(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+                          const struct InertiaBlock *block, size_t column, Node *right) {
+  if (block->is_unrolled) block_solve(graph, block, right);
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row >= equations->count) row += equations->has_work; /* behind all states */
+    if (!block->is_unrolled || right[i] != ZERO) append(list, equations->count + row, column, right[i]);
+  }
+}
+
+static void append_block(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+                         const struct InertiaBlock *block) {
+  struct ElementList residual = {0};
+  for (size_t i = 0; i < block->count; i++)
+    append_gradient(&residual, graph, equations->count, equations->residual[block->coordinates[i]], i);
+  if (residual.count > 0) qsort(residual.items, residual.count, sizeof *residual.items, compare);
+  Node *right = allocate(block->count, sizeof *right);
+  for (size_t first = 0, next = 0; first < residual.count && list->count <= JACOBIAN_LIMIT; first = next) {
+    size_t column = residual.items[first].column;
+    for (size_t i = 0; i < block->count; i++) right[i] = ZERO;
+    for (; next < residual.count && residual.items[next].column == column; next++)
+      right[residual.items[next].row] = negate(graph, residual.items[next].value);
+    append_column(list, graph, equations, block, column, right);
+  }
+  free(right);
+  free(residual.items);
+}
+
+/* Rows beyond the states are those of constraints. */
+static struct JacobianExpressions *by_columns(struct ElementList *list, size_t columns) {
+  struct JacobianExpressions *jacobian = allocate(1, sizeof *jacobian);
+  if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare);
+  jacobian->start = allocate(columns + 1, sizeof *jacobian->start);
+  jacobian->row = allocate(list->count, sizeof *jacobian->row);
+  jacobian->value = allocate(list->count, sizeof *jacobian->value);
+  jacobian->sides = allocate(list->count, sizeof *jacobian->sides);
+  for (size_t i = 0; i < list->count; i++) {
+    const struct Element *element = &list->items[i];
+    if (element->row >= columns) {
+      struct ConstraintSide side = {element->column, element->row - columns, element->value};
+      jacobian->sides[jacobian->side_count++] = side;
+      continue;
+    }
+    jacobian->start[element->column + 1]++;
+    jacobian->row[jacobian->count] = element->row;
+    jacobian->value[jacobian->count++] = element->value;
+  }
+  for (size_t j = 0; j < columns; j++) jacobian->start[j + 1] += jacobian->start[j];
+  return jacobian;
+}
+
+struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
+  struct ElementList list = {0};
+  size_t n = equations->count;
+  for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
+  for (size_t i = 0; equations->explicit_form && i < n; i++)
+    append_gradient(&list, graph, n, equations->acceleration[i], n + i);
+  for (size_t i = 0; !equations->explicit_form && i < equations->inertia->block_count; i++)
+    append_block(&list, graph, equations, &equations->inertia->blocks[i]);
+  if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
+  struct JacobianExpressions *jacobian =
+      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->has_work);
+  free(list.items);
+  return jacobian;
+}
+
+void jacobian_free(struct JacobianExpressions *jacobian) {
+  if (jacobian == NULL) return;
+  free(jacobian->start);
+  free(jacobian->row);
+  free(jacobian->value);
+  free(jacobian->sides);
+  lu_pattern_free(jacobian->factors);
+  free(jacobian);
+}

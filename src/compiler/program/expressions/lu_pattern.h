@@ -1,0 +1,13 @@
+/* The pattern in which implicit methods factor their matrices: include/lagrangian.h, struct LuPattern. */
+#ifndef LU_PATTERN_H
+#define LU_PATTERN_H
+
+#include "mechanics/mass_matrix/elimination.h"
+#include "program/expressions/expressions.h"
+
+/* For so many coordinates; NULL where full matrices are cheaper. Free with lu_pattern_free(). */
+struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
+                                      size_t coordinates);
+void lu_pattern_free(struct Elimination *pattern);
+
+#endif

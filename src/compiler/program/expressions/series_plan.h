@@ -1,0 +1,27 @@
+/* What Taylor series of the motion need beside the equations themselves. */
+#ifndef SERIES_PLAN_H
+#define SERIES_PLAN_H
+
+#include "mechanics/lagrange.h"
+#include "program/values/node_list.h"
+
+/*
+ * The nodes whose series are computed: accelerations (or M and the right side of large blocks), the power of the
+ * forces where its work is asked for, and the auxiliary nodes that recurrences rest on, such as cos(x) for sin(x).
+ */
+struct SeriesPlan {
+  struct NodeList targets;
+  size_t root_count; /* of the targets, those that are no auxiliary nodes */
+  Node
+      *slope; /* for each node of the graph: its constant time derivative where it is linear in time; ZERO: it is not */
+  Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */
+};
+
+/* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
+
+/* For expressions of the motion, without kinks. Free with series_plan_free(). */
+struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);
+void series_plan_free(struct SeriesPlan *plan);
+
+#endif

@@ -1,0 +1,207 @@
+#include "program/series/limits.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/functions.h"
+#include "base/memory.h"
+#include "program/series/openers.h"
+
+static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
+    [LIMIT_EXPONENTIAL] = {.name = "exponential", .has_function = true},
+    [LIMIT_HYPERBOLIC] = {.name = "hyperbolic", .has_function = true},
+    [LIMIT_TANH] = {.name = "tanh"},
+    [LIMIT_TANGENT] = {.name = "tangent"},
+    [LIMIT_POSITIVE] = {.name = "positive", .has_function = true},
+    [LIMIT_QUOTIENT] = {.name = "quotient", .has_share = true},
+    [LIMIT_ROOT] = {.name = "root", .has_share = true},
+    [LIMIT_WHOLE_POWER] = {.name = "whole_power", .has_share = true},
+    [LIMIT_DIVISION] = {.name = "division", .has_two_rows = true, .has_share = true},
+    [LIMIT_POWER] = {.name = "power", .has_exponent = true},
+    [LIMIT_SIGN] = {.name = "sign", .has_function = true},
+    [LIMIT_ANGLE] = {.name = "angle", .has_two_rows = true},
+};
+
+const struct LimitFacts *limit_facts(enum LimitRule rule) {
+  return &facts[rule];
+}
+
+/* A check whose rows are still nodes; ZERO for none. */
+struct Check {
+  enum LimitRule rule;
+  Node rows[2];
+  const char *function;
+  Node exponent; /* known at run time alone; ZERO for none */
+  double share;  /* for powers with a number as exponent, else NAN */
+  size_t next;   /* 1 + the next check of the same first row, 0 for none */
+  bool is_covered;
+  Node opener; /* of the gate under which it matters; ZERO for always */
+};
+
+struct CheckList {
+  const struct SeriesBuilder *builder;
+  struct Check *items;
+  size_t count, capacity;
+  size_t *first;                 /* for each node: 1 + the first check of this row, 0 for none */
+  const struct Openers *openers; /* under which the present node matters; NULL for always */
+};
+
+/* One check serves all powers of a base; of two, the one with the smaller share shortens more. */
+static void append_under(struct CheckList *list, struct Check check, Node opener) {
+  check.opener = opener;
+  size_t *end = &list->first[check.rows[0]];
+  for (; *end != 0; end = &list->items[*end - 1].next) {
+    struct Check *other = &list->items[*end - 1];
+    if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent ||
+        other->opener != check.opener)
+      continue;
+    if (check.share < other->share) other->share = check.share;
+    return;
+  }
+  size_t number = list->count + 1;
+  *end = number;
+  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
+  list->items[list->count++] = check;
+}
+
+/* A check for each gate under which the present node matters. */
+static void append(struct CheckList *list, struct Check check) {
+  const struct Openers *openers = list->openers;
+  if (openers == NULL || openers->always) {
+    append_under(list, check, ZERO);
+    return;
+  }
+  for (size_t i = 0; i < openers->count; i++) append_under(list, check, openers->nodes[i]);
+}
+
+static bool can_have_row(const struct SeriesBuilder *builder, Node node) {
+  return !is_constant_series(builder, node) &&
+         (builder->is_computed[node] || builder->graph->vertices[node].operation == SYMBOL);
+}
+
+/* base^exponent with constant factors and inner powers of the base taken off, as they do not matter here. */
+static Node bare_base(const struct SeriesBuilder *builder, Node base, double *exponent) {
+  const struct Graph *graph = builder->graph;
+  for (;;) {
+    const struct Vertex *vertex = &graph->vertices[base];
+    Node inner = base;
+    double factor = 1.0;
+    if (vertex->operation == MULTIPLY && is_constant_series(builder, vertex->left)) inner = vertex->right;
+    else if (vertex->operation == MULTIPLY && is_constant_series(builder, vertex->right)) inner = vertex->left;
+    else if (vertex->operation == POWER && graph_is_constant(graph, vertex->right)) {
+      inner = vertex->left;
+      factor = graph_value(graph, vertex->right);
+    }
+    if (inner == base || !can_have_row(builder, inner)) return base;
+    base = inner;
+    *exponent *= factor;
+  }
+}
+
+/* The numerator is known to be 0 for some motions through a point where the denominator vanishes. */
+static void check_division(struct CheckList *list, Node numerator, Node denominator) {
+  double exponent = -1.0;
+  Node base = bare_base(list->builder, denominator, &exponent);
+  struct Check check = {.rule = LIMIT_QUOTIENT, .rows = {base}, .share = series_limit_share(exponent)};
+  if (can_have_row(list->builder, numerator)) {
+    check.rule = LIMIT_DIVISION;
+    check.rows[1] = numerator;
+  }
+  append(list, check);
+}
+
+static void check_number_power(struct CheckList *list, Node base, double exponent) {
+  base = bare_base(list->builder, base, &exponent);
+  bool is_whole = exponent == floor(exponent);
+  if (is_whole && exponent > 0.0 && exponent <= 3.0) return;
+  enum LimitRule rule = exponent < 0.0 ? LIMIT_QUOTIENT : is_whole ? LIMIT_WHOLE_POWER : LIMIT_ROOT;
+  append(list, (struct Check){.rule = rule, .rows = {base}, .share = series_limit_share(exponent)});
+}
+
+static void check_power(struct CheckList *list, Node node) {
+  const struct Graph *graph = list->builder->graph;
+  const struct Vertex *vertex = &graph->vertices[node];
+  Node auxiliary = list->builder->plan->auxiliary[node];
+  if (graph_is_constant(graph, vertex->right))
+    check_number_power(list, vertex->left, graph_value(graph, vertex->right));
+  else if (is_constant_series(list->builder, vertex->right))
+    append(list, (struct Check){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
+  else if (can_have_row(list->builder, auxiliary))
+    append(list, (struct Check){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
+}
+
+static enum LimitRule rule_named(const char *name) {
+  int rule = 0;
+  while (strcmp(facts[rule].name, name) != 0) rule++;
+  return (enum LimitRule)rule;
+}
+
+/* What a rule of the table of functions says of an operand or of the auxiliary node. */
+static void check_by_rule(struct CheckList *list, const char *rule, Node row, const char *function) {
+  if (rule != NULL && can_have_row(list->builder, row))
+    append(list, (struct Check){.rule = rule_named(rule), .rows = {row}, .function = function, .share = NAN});
+}
+
+static void check_function(struct CheckList *list, Node node) {
+  const struct SeriesBuilder *builder = list->builder;
+  const struct Vertex *vertex = &builder->graph->vertices[node];
+  const struct Function *function = &functions[vertex->operation];
+  /* What authors do not write comes from the derivatives of what they do. */
+  const char *name = function->is_internal ? "min or max" : function->name;
+  check_by_rule(list, function->operand_limit, vertex->left, name);
+  check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
+  bool is_angle =
+      function->recurrence == ANGLE && can_have_row(builder, vertex->left) && can_have_row(builder, vertex->right);
+  if (is_angle) append(list, (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
+}
+
+/* Where a power of the denominator itself is checked, its numerators do not matter. */
+static void find_covered(struct CheckList *list) {
+  for (size_t i = 0; i < list->count; i++) {
+    struct Check *check = &list->items[i];
+    if (check->rule != LIMIT_DIVISION) continue;
+    for (size_t j = list->first[check->rows[0]]; j != 0; j = list->items[j - 1].next)
+      check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share &&
+                           list->items[j - 1].opener == check->opener;
+  }
+}
+
+static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct CheckList *list) {
+  struct LimitChecks checks = {.items = allocate(list->count, sizeof *checks.items)};
+  for (size_t i = 0; i < list->count; i++) {
+    const struct Check *check = &list->items[i];
+    if (check->is_covered) continue;
+    struct LimitCheck *taken = &checks.items[checks.count++];
+    *taken = (struct LimitCheck){.rule = check->rule, .function = check->function, .share = check->share};
+    taken->row = series_row(builder, check->rows[0]);
+    if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
+    if (check->exponent != ZERO) taken->exponent = values_place(builder->values, check->exponent);
+    taken->is_gated = check->opener != ZERO;
+    if (taken->is_gated) taken->opener = values_place(builder->values, check->opener);
+  }
+  return checks;
+}
+
+struct LimitChecks limits_of(struct SeriesBuilder *builder) {
+  struct CheckList list = {.builder = builder,
+                           .capacity = 16,
+                           .items = allocate(16, sizeof *list.items),
+                           .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct Openers *openers = openers_of(builder->graph, builder->plan);
+  for (size_t i = 0; i < builder->nodes.count; i++) {
+    Node node = builder->nodes.nodes[i];
+    list.openers = openers != NULL ? &openers[node] : NULL;
+    struct Form form = form_of(builder->needs, node);
+    if (form.kind == FORM_POWER) check_power(&list, node);
+    else if (form.kind == FORM_FUNCTION) check_function(&list, node);
+    else if (form.kind == FORM_QUOTIENT && can_have_row(builder, form.right))
+      check_division(&list, form.left, form.right);
+  }
+  find_covered(&list);
+  struct LimitChecks checks = take_rows(builder, &list);
+  free(openers);
+  free(list.items);
+  free(list.first);
+  return checks;
+}

@@ -1,0 +1,397 @@
+#include "program/series/series_program.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "program/series/series_builder.h"
+
+/* The nodes that change in time and are computed. */
+static void find_computed(struct SeriesBuilder *builder) {
+  struct Needs *needs = builder->needs;
+  const struct Cone *cone = needs->cone;
+  bool *below = allocate(cone->count, sizeof *below);
+  for (size_t i = 0; i < builder->plan->targets.count; i++)
+    below[cone_place(cone, builder->plan->targets.nodes[i])] = true;
+  for (size_t i = cone->count; i-- > 0;) {
+    Node node = cone->nodes[i];
+    if (!below[i] || is_fetched(needs, node)) continue;
+    builder->is_computed[node] = true;
+    if (is_integrated_power(builder, node)) continue;
+    struct Form form = form_of(needs, node);
+    below[cone_place(cone, form.left)] = true;
+    if (form.arity == 2) below[cone_place(cone, form.right)] = true;
+  }
+  for (size_t i = 0; i < cone->count; i++)
+    if (builder->is_computed[cone->nodes[i]]) append_node(&builder->nodes, cone->nodes[i]);
+  free(below);
+}
+
+static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const struct Values *values) {
+  size_t size = values->graph->count;
+  struct SeriesBuilder *builder = allocate(1, sizeof *builder);
+  *builder = (struct SeriesBuilder){.graph = values->graph,
+                                    .plan = plan,
+                                    .coordinates = values->coordinates,
+                                    .values = values,
+                                    .needs = needs_create(values->graph),
+                                    .order = routine_create(),
+                                    .is_computed = allocate(size, sizeof(bool)),
+                                    .has_row = allocate(size, sizeof(bool)),
+                                    .is_done = allocate(size, sizeof(bool)),
+                                    .rate = allocate(size, sizeof(size_t)),
+                                    .inverse = allocate(size, sizeof(size_t))};
+  needs_collect(builder->needs, plan->targets.nodes, plan->targets.count, false);
+  find_computed(builder);
+  return builder;
+}
+
+static void builder_free(struct SeriesBuilder *builder) {
+  needs_free(builder->needs);
+  free(builder->nodes.nodes);
+  free(builder->is_computed);
+  free(builder->has_row);
+  free(builder->is_done);
+  free(builder->rate);
+  free(builder->inverse);
+  free(builder);
+}
+
+static void append_next(struct SeriesBuilder *builder, Node node);
+
+/* Auxiliary nodes may be younger than those that need them, so that numeric order alone does not do. */
+static void append_operands(struct SeriesBuilder *builder, Node node) {
+  struct Form form = form_of(builder->needs, node);
+  if (!is_integrated_power(builder, node)) {
+    append_next(builder, form.left);
+    if (form.arity == 2) append_next(builder, form.right);
+  }
+  enum Operation operation = builder->graph->vertices[node].operation;
+  if (operation == POWER || operation == MINIMUM || operation == MAXIMUM)
+    append_next(builder, builder->plan->auxiliary[node]);
+}
+
+static void append_next(struct SeriesBuilder *builder, Node node) {
+  if (!builder->is_computed[node] || builder->is_done[node]) return;
+  builder->is_done[node] = true;
+  append_operands(builder, node);
+  append_recurrence(builder, node);
+  /* The sine and the cosine of one argument need each other, one coefficient behind. */
+  enum Operation operation = builder->graph->vertices[node].operation;
+  if (operation == SINE || operation == COSINE || operation == SINH || operation == COSH)
+    append_next(builder, builder->plan->auxiliary[node]);
+}
+
+static void append_nodes_of_order(struct SeriesBuilder *builder) {
+  for (size_t i = 0; i < builder->nodes.count; i++) append_next(builder, builder->nodes.nodes[i]);
+}
+
+static Place acceleration_row(size_t coordinate) {
+  return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
+}
+
+/* The elements of each whole row of a block that change in time: row i has start[i] .. start[i + 1] - 1. */
+struct WholeRows {
+  size_t *start, *column;
+  Node *mass;
+};
+
+static struct WholeRows whole_rows_create(const struct SeriesBuilder *builder, const struct InertiaBlock *block) {
+  size_t count = block->count, elements = block->start[count];
+  struct WholeRows rows = {allocate(count + 1, sizeof(size_t)), allocate(2 * elements, sizeof(size_t)),
+                           allocate(2 * elements, sizeof(Node))};
+  size_t *next = allocate(count + 1, sizeof *next);
+  for (int filling = 0; filling <= 1; filling++) {
+    for (size_t i = 0; i < count; i++) {
+      for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
+        const size_t ends[] = {i, block->column[e]};
+        for (int end = 0; end < (ends[0] == ends[1] ? 1 : 2) && !is_constant_series(builder, block->mass[e]); end++) {
+          size_t place = next[ends[end]]++;
+          if (!filling) continue;
+          rows.column[place] = ends[1 - end];
+          rows.mass[place] = block->mass[e];
+        }
+      }
+    }
+    for (size_t i = 0; i < count && !filling; i++) rows.start[i + 1] = rows.start[i] + next[i];
+    for (size_t i = 0; i < count; i++) next[i] = rows.start[i];
+  }
+  free(next);
+  return rows;
+}
+
+static void whole_rows_free(struct WholeRows *rows) {
+  free(rows->start);
+  free(rows->column);
+  free(rows->mass);
+}
+
+/* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
+static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, size_t coordinate) {
+  Place rest = place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+  routine_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
+  return rest;
+}
+
+/* M_0 a_k = b_k - sum over l of M_l a_(k-l) in each large block. */
+static void append_block(struct SeriesBuilder *builder, const struct Equations *equations,
+                         const struct LoopedBlock *looped, size_t number) {
+  const struct InertiaBlock *block = looped->block;
+  struct WholeRows rows = whole_rows_create(builder, block);
+  for (size_t i = 0; i < block->count; i++) {
+    Place sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
+    for (size_t e = rows.start[i]; e < rows.start[i + 1]; e++)
+      sum = append_rest(builder, sum, rows.mass[e], block->coordinates[rows.column[e]]);
+    for (size_t k = 0; k < block->force_count; k++) {
+      Node oblique = block->oblique[k * block->count + i];
+      if (!is_constant_series(builder, oblique))
+        sum = append_rest(builder, sum, oblique, block->coordinates[block->forces[k]]);
+    }
+    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
+  }
+  routine_append(builder->order, SERIES_SOLVE, (Place)number, 0, 0, 0);
+  for (size_t i = 0; i < block->count; i++)
+    routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
+                   place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  whole_rows_free(&rows);
+}
+
+static void append_state(struct SeriesBuilder *builder, size_t state, Place derivative) {
+  routine_append(builder->order, SERIES_STATE, place_in(SPACE_STATE_ROW, state), derivative, 0, 0);
+}
+
+/* The coefficient k + 1 of the state from coefficient k of its derivative. */
+static void append_states(struct SeriesBuilder *builder, const struct Equations *equations, bool with_work) {
+  size_t n = equations->count;
+  for (size_t i = 0; i < n; i++) {
+    append_state(builder, i, place_in(SPACE_STATE_ROW, n + i));
+    append_state(builder, n + i, series_coefficient(builder, equations->acceleration[i]));
+  }
+  if (with_work) append_state(builder, 2 * n, series_coefficient(builder, equations->power));
+}
+
+/* Where the spaces of an incomplete routine have gone. */
+struct Rows {
+  const struct SeriesBuilder *builder;
+  size_t *row; /* for each node: its row */
+  size_t acceleration_row, further_row;
+  struct Routine *order;
+  Place *local; /* for each node: its local variable */
+  bool *has_local;
+  Place *factor; /* of each local variable without a node */
+};
+
+static Place settled(struct Rows *rows, Place place) {
+  size_t index = index_in(place);
+  switch ((int)space_of(place)) {
+  case SPACE_OF_NODES:
+    if (rows->builder->has_row[index]) return place_in(SPACE_ROW, rows->row[index]);
+    if (!rows->has_local[index]) rows->local[index] = routine_local(rows->order);
+    rows->has_local[index] = true;
+    return rows->local[index];
+  case SPACE_OF_ACCELERATIONS: return place_in(SPACE_ROW, rows->acceleration_row + index);
+  case SPACE_OF_RATES: return place_in(SPACE_ROW, rows->further_row + index);
+  case SPACE_OF_FACTORS:
+    if (rows->factor[index] == 0) rows->factor[index] = routine_local(rows->order);
+    return rows->factor[index];
+  default: return place;
+  }
+}
+
+/* Which instructions have an effect: not those of a node that nothing rests on, as sines of what is linear in time. */
+static bool *find_used(const struct SeriesBuilder *builder) {
+  const struct Routine *open = builder->order;
+  bool *is_used = allocate(open->count, sizeof *is_used);
+  bool *is_read = allocate(builder->graph->count, sizeof *is_read);
+  for (size_t i = open->count; i-- > 0;) {
+    const struct Instruction *instruction = &open->instructions[i];
+    bool of_node = instruction->opcode != SERIES_SOLVE && (int)space_of(instruction->result) == SPACE_OF_NODES;
+    size_t node = index_in(instruction->result);
+    is_used[i] = !of_node || builder->has_row[node] || is_read[node];
+    for (int j = 0; j < opcode_arity(instruction->opcode) && is_used[i]; j++)
+      if ((int)space_of(instruction->operands[j]) == SPACE_OF_NODES) is_read[index_in(instruction->operands[j])] = true;
+  }
+  free(is_read);
+  return is_used;
+}
+
+/* The order with all places final. */
+static struct Routine *settle(struct Rows *rows) {
+  const struct Routine *open = rows->builder->order;
+  bool *is_used = find_used(rows->builder);
+  rows->order = routine_create();
+  for (size_t i = 0; i < open->count; i++) {
+    const struct Instruction *from = &open->instructions[i];
+    if (!is_used[i]) continue;
+    Place operands[OPERAND_LIMIT] = {0};
+    for (int j = 0; j < opcode_arity(from->opcode); j++) operands[j] = settled(rows, from->operands[j]);
+    Place result = from->opcode == SERIES_SOLVE ? from->result : settled(rows, from->result);
+    routine_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
+  }
+  free(is_used);
+  return rows->order;
+}
+
+/* Rows for the nodes that need them, then for accelerations, for the factors of large blocks, and for further ones. */
+static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accelerations, size_t mass_count,
+                               struct SeriesProgram *program) {
+  size_t size = builder->graph->count, count = 0;
+  struct Rows rows = {.builder = builder,
+                      .row = allocate(size, sizeof(size_t)),
+                      .local = allocate(size, sizeof(Place)),
+                      .has_local = allocate(size, sizeof(bool)),
+                      .factor = allocate(builder->factor_count, sizeof(Place))};
+  for (size_t i = 0; i < builder->nodes.count; i++)
+    if (builder->has_row[builder->nodes.nodes[i]]) rows.row[builder->nodes.nodes[i]] = count++;
+  rows.acceleration_row = program->acceleration_row = count;
+  program->acceleration_count = accelerations;
+  program->mass_row = count + accelerations;
+  rows.further_row = program->mass_row + (mass_count + SERIES_LENGTH - 1) / SERIES_LENGTH;
+  program->row_count = rows.further_row + builder->further_rows;
+  return rows;
+}
+
+static void rows_free(struct Rows *rows) {
+  free(rows->row);
+  free(rows->local);
+  free(rows->has_local);
+  free(rows->factor);
+}
+
+/* The final order, and the places of the limits. */
+static void complete(struct SeriesProgram *program, struct Rows *rows) {
+  program->order = settle(rows);
+  for (size_t i = 0; i < program->order->count; i++)
+    program->recurrences += opcode_facts(program->order->instructions[i].opcode)->is_recurrence;
+  for (size_t i = 0; i < program->limit.count; i++) {
+    program->limit.items[i].row = settled(rows, program->limit.items[i].row);
+    program->limit.items[i].other_row = settled(rows, program->limit.items[i].other_row);
+  }
+}
+
+/* Computes what has a row, and further nodes. */
+static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further,
+                          size_t count) {
+  struct NodeList targets = {0};
+  append_nodes(&targets, further, count);
+  for (size_t i = 0; i < builder->nodes.count; i++)
+    if (builder->has_row[builder->nodes.nodes[i]]) append_node(&targets, builder->nodes.nodes[i]);
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+}
+
+/* Coefficient 0 of all rows, and the inverses of some. */
+static void copy_first(const struct Rows *rows, struct Values *values) {
+  const struct SeriesBuilder *builder = rows->builder;
+  for (size_t i = 0; i < builder->nodes.count; i++) {
+    Node node = builder->nodes.nodes[i];
+    if (builder->has_row[node]) values_copy(values, place_in(SPACE_ROW, rows->row[node]), node);
+  }
+  for (size_t i = 0; i < builder->needs->cone->count; i++) {
+    Node node = builder->needs->cone->nodes[i];
+    if (builder->inverse[node] == 0) continue;
+    Place row = place_in(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
+    routine_append(values->routine, RECIPROCAL, row, values_place(values, node), 0, 0);
+  }
+}
+
+struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
+                                               struct Values *values) {
+  const struct Equations *equations = expressions->equations;
+  size_t n = equations->count;
+  struct SeriesProgram *program = allocate(1, sizeof *program);
+  struct SeriesBuilder *builder = builder_create(expressions->series, values);
+  program->limit = limits_of(builder);
+  append_nodes_of_order(builder);
+  for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
+  append_states(builder, equations, expressions->equations->has_work);
+  struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
+  complete(program, &rows);
+
+  program->start = values_begin(values);
+  compute_first(builder, values, &equations->power, expressions->equations->has_work);
+  append_accelerations(values, equations, blocks, false);
+  copy_first(&rows, values);
+  for (size_t i = 0; i < n; i++)
+    routine_append(program->start, COPY, place_in(SPACE_TARGET, i), place_in(SPACE_STATE, n + i), 0, 0);
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct LoopedBlock *looped = &blocks->items[b];
+    for (size_t i = 0; i < looped->block->count; i++)
+      routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+  }
+  if (expressions->equations->has_work) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
+  rows_free(&rows);
+  routine_free(builder->order);
+  builder_free(builder);
+  return program;
+}
+
+static bool uses_accelerations(const struct SeriesPlan *plan, const struct Graph *graph) {
+  for (size_t i = 0; i < plan->targets.count; i++)
+    if (graph_depends_on(graph, plan->targets.nodes[i], ACCELERATION)) return true;
+  return false;
+}
+
+struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct Values *values) {
+  const struct SeriesPlan *plan = expressions->output_series;
+  size_t count = expressions->model->outputs.count, n = expressions->equations->count;
+  struct SeriesProgram *program = allocate(1, sizeof *program);
+  struct SeriesBuilder *builder = builder_create(plan, values);
+  bool with_accelerations = uses_accelerations(plan, values->graph);
+  for (size_t i = 0; with_accelerations && i < n; i++)
+    routine_append(builder->order, SERIES_SLOPE, acceleration_row(i), place_in(SPACE_STATE_ROW, n + i), 0, 0);
+  append_nodes_of_order(builder);
+  for (size_t i = 0; i < count; i++)
+    routine_append(builder->order, SERIES_COPY, place_in(SPACE_TARGET_ROW, i),
+                   series_coefficient(builder, expressions->result[i]), 0, 0);
+  struct Rows rows = rows_create(builder, with_accelerations ? n : 0, 0, program);
+  complete(program, &rows);
+
+  program->start = values_begin(values);
+  for (size_t i = 0; with_accelerations && i < n; i++) {
+    Place acceleration = place_in(SPACE_ACCELERATION, i);
+    routine_append(program->start, FIRST_SLOPE, acceleration, place_in(SPACE_STATE_ROW, n + i), 0, 0);
+    routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i), acceleration, 0, 0);
+  }
+  compute_first(builder, values, expressions->result, count);
+  copy_first(&rows, values);
+  for (size_t i = 0; i < count; i++) values_copy(values, place_in(SPACE_TARGET_ROW, i), expressions->result[i]);
+  rows_free(&rows);
+  routine_free(builder->order);
+  builder_free(builder);
+  return program;
+}
+
+struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values) {
+  const struct SeriesPlan *plan = expressions->watched_series;
+  struct SeriesProgram *program = allocate(1, sizeof *program);
+  struct SeriesBuilder *builder = builder_create(plan, values);
+  size_t forces = uses_accelerations(plan, values->graph) ? row_count(expressions->equations) : 0;
+  program->limit = limits_of(builder);
+  /* What no limit asks for has no row, and is left out. */
+  for (size_t i = 0; i < builder->nodes.count; i++)
+    if (builder->has_row[builder->nodes.nodes[i]]) append_next(builder, builder->nodes.nodes[i]);
+  struct Rows rows = rows_create(builder, forces, 0, program);
+  complete(program, &rows);
+
+  program->start = values_begin(values);
+  compute_first(builder, values, NULL, 0);
+  copy_first(&rows, values);
+  for (size_t i = 0; i < forces; i++)
+    routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
+                   place_in(SPACE_ACCELERATION, i), 0, 0);
+  rows_free(&rows);
+  routine_free(builder->order);
+  builder_free(builder);
+  if (program->limit.count > 0) return program;
+  series_program_free(program);
+  return NULL;
+}
+
+void series_program_free(struct SeriesProgram *program) {
+  if (program == NULL) return;
+  routine_free(program->start);
+  routine_free(program->order);
+  free(program->limit.items);
+  free(program);
+}

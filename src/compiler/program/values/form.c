@@ -1,0 +1,77 @@
+#include "program/values/form.h"
+
+#include <stdlib.h>
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "program/values/prepared.h"
+
+struct Needs *needs_create(const struct Graph *graph) {
+  struct Needs *needs = allocate(1, sizeof *needs);
+  needs->graph = graph;
+  needs->cone = cone_create();
+  return needs;
+}
+
+void needs_free(struct Needs *needs) {
+  if (needs == NULL) return;
+  cone_free(needs->cone);
+  free(needs->uses);
+  free(needs);
+}
+
+static bool is_leaf(const struct Graph *graph, Node node) {
+  return operation_arity(graph->vertices[node].operation) == 0;
+}
+
+bool is_fetched(const struct Needs *needs, Node node) {
+  return is_leaf(needs->graph, node) || (!needs->preparing && is_of_parameters(needs->graph, node));
+}
+
+void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing) {
+  const struct Graph *graph = needs->graph;
+  struct Cone *cone = needs->cone;
+  needs->preparing = preparing;
+  cone_collect(cone, graph, targets, count, preparing ? NULL : is_of_parameters);
+  if (cone->count > needs->capacity) {
+    needs->capacity = 2 * cone->count;
+    needs->uses = reallocate(needs->uses, needs->capacity, sizeof *needs->uses);
+  }
+  for (size_t i = 0; i < cone->count; i++) needs->uses[i] = 0;
+  for (size_t i = 0; i < count; i++) needs->uses[cone_place(cone, targets[i])] += 2;
+  for (size_t i = 0; i < cone->count; i++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[i]];
+    if (is_fetched(needs, cone->nodes[i])) continue;
+    needs->uses[cone_place(cone, vertex->left)]++;
+    if (operation_arity(vertex->operation) == 2) needs->uses[cone_place(cone, vertex->right)]++;
+  }
+}
+
+static bool is_inverse_for_one(const struct Needs *needs, Node node) {
+  const struct Vertex *vertex = &needs->graph->vertices[node];
+  return !is_fetched(needs, node) && vertex->operation == POWER && graph_is_constant(needs->graph, vertex->right) &&
+         graph_value(needs->graph, vertex->right) == -1.0 && needs->uses[cone_place(needs->cone, node)] == 1;
+}
+
+static bool is_negation(const struct Needs *needs, Node node) {
+  Node base;
+  return !is_fetched(needs, node) && coefficient_of(needs->graph, node, &base) == -1.0;
+}
+
+struct Form form_of(const struct Needs *needs, Node node) {
+  const struct Vertex *vertices = needs->graph->vertices, *vertex = &vertices[node];
+  Node left = vertex->left, right = vertex->right;
+  switch (vertex->operation) {
+  case ADD:
+    if (is_negation(needs, right)) return (struct Form){FORM_DIFFERENCE, left, vertices[right].right, 2};
+    if (is_negation(needs, left)) return (struct Form){FORM_DIFFERENCE, right, vertices[left].right, 2};
+    return (struct Form){FORM_SUM, left, right, 2};
+  case MULTIPLY:
+    if (is_negation(needs, node)) return (struct Form){FORM_NEGATION, right, ZERO, 1};
+    if (is_inverse_for_one(needs, right)) return (struct Form){FORM_QUOTIENT, left, vertices[right].left, 2};
+    if (is_inverse_for_one(needs, left)) return (struct Form){FORM_QUOTIENT, right, vertices[left].left, 2};
+    return (struct Form){FORM_PRODUCT, left, right, 2};
+  case POWER: return (struct Form){FORM_POWER, left, right, 2};
+  default: return (struct Form){FORM_FUNCTION, left, right, operation_arity(vertex->operation)};
+  }
+}

@@ -1,0 +1,114 @@
+#include "program/values/routine.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+/* Checks and blocks have statements of their own, which the writers know. */
+static const struct OpcodeFacts facts[OPCODE_COUNT] = {
+    [COPY] = {"$1", VALUE, {VALUE}, 0, false},
+    [FIRST_SLOPE] = {"$1[1]", VALUE, {ROW}, 0, false},
+    [SUM] = {"$1 + $2", VALUE, {VALUE, VALUE}, 1, false},
+    [DIFFERENCE] = {"$1 - $2", VALUE, {VALUE, VALUE}, 1, false},
+    [PRODUCT] = {"$1 * $2", VALUE, {VALUE, VALUE}, 1, false},
+    [QUOTIENT] = {"$1 / $2", VALUE, {VALUE, VALUE}, 1, false},
+    [NEGATION] = {"-$1", VALUE, {VALUE}, 1, false},
+    [SQUARE] = {"$1 * $1", VALUE, {VALUE}, 1, false},
+    [CUBE] = {"$1 * $1 * $1", VALUE, {VALUE}, 2, false},
+    [FOURTH] = {"$1 * $1 * $1 * $1", VALUE, {VALUE}, 3, false},
+    [RECIPROCAL] = {"1.0 / $1", VALUE, {VALUE}, 1, false},
+    [INVERSE_SQUARE] = {"1.0 / ($1 * $1)", VALUE, {VALUE}, 2, false},
+    [INVERSE_CUBE] = {"1.0 / ($1 * $1 * $1)", VALUE, {VALUE}, 3, false},
+    [INVERSE_FOURTH] = {"1.0 / ($1 * $1 * $1 * $1)", VALUE, {VALUE}, 4, false},
+    [SQUARE_ROOT] = {"sqrt($1)", VALUE, {VALUE}, 1, false},
+    [INVERSE_ROOT] = {"1.0 / sqrt($1)", VALUE, {VALUE}, 2, false},
+    [LESS_THAN] = {"$1 < $2 ? 1.0 : 0.0", VALUE, {VALUE, VALUE}, 1, false},
+    [SIGN_OF] = {"$1 > 0.0 ? 1.0 : $1 < 0.0 ? -1.0 : 0.0", VALUE, {VALUE}, 1, false},
+    [GATE_OF] = {"$1 > 0.0 ? $2 : 0.0", VALUE, {VALUE, VALUE}, 1, false},
+    [CALL] = {"$f($1)", VALUE, {VALUE}, 1, false},
+    [CALL_OF_TWO] = {"$f($1, $2)", VALUE, {VALUE, VALUE}, 1, false},
+    [CHECK_POSITIVE] = {"if (!($1 > 0.0)) return $0", NUMBER, {VALUE}, 0, false},
+    [CHECK_PIVOT] = {"if (!($1 > 1e-14 * $2)) return $0", NUMBER, {VALUE, VALUE}, 0, false},
+    [CHECK_DIAGONAL] = {"if (!($1 > 1e-28 * $2)) return $0", NUMBER, {VALUE, VALUE}, 0, false},
+    [FACTOR] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [LEAST_FORCES] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [SERIES_COPY] = {"$1", COEFFICIENT, {COEFFICIENT}, 0, false},
+    [SERIES_ZERO] = {"0.0", COEFFICIENT, {NO_OPERAND}, 0, false},
+    [SERIES_SUM] = {"$1 + $2", COEFFICIENT, {COEFFICIENT, COEFFICIENT}, 1, false},
+    [SERIES_DIFFERENCE] = {"$1 - $2", COEFFICIENT, {COEFFICIENT, COEFFICIENT}, 1, false},
+    [SERIES_NEGATION] = {"-$1", COEFFICIENT, {COEFFICIENT}, 1, false},
+    [SERIES_MULTIPLE] = {"$1 * $2", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
+    [SERIES_SHARE] = {"$1 / $2", COEFFICIENT, {COEFFICIENT, VALUE}, 1, false},
+    [SERIES_PRODUCT] = {"series_product(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},
+    [SERIES_SQUARE] = {"series_square(k, $1)", COEFFICIENT, {ROW}, 1, true},
+    [SERIES_QUOTIENT] = {"series_quotient(k, $1, $3, $2, $0)", ROW, {COEFFICIENT, ROW, VALUE}, 1, true},
+    [SERIES_ROOT] = {"series_root(k, $1, $0)", ROW, {ROW}, 1, true},
+    [SERIES_POWER] = {"series_power(k, $2, $1, $0)", ROW, {ROW, VALUE}, 1, true},
+    [SERIES_RATE] = {"k * $1", PAST_COEFFICIENT, {COEFFICIENT}, 1, false},
+    [SERIES_INTEGRAL] = {"series_integral(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
+    [SERIES_NEGATIVE_INTEGRAL] = {"-series_integral(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
+    [SERIES_TURN] = {"$1 * $2[k - 1] * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
+    [SERIES_NEGATIVE_TURN] = {"-($1 * $2[k - 1]) * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
+    [SERIES_RATIO_INTEGRAL] = {"series_ratio_integral(k, $1, $2, $0)", ROW, {COEFFICIENT, ROW_OF_PAST}, 1, true},
+    [SERIES_AREA] = {"series_area(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},
+    [SERIES_ANGLE] = {"series_angle(k, $1, $2, $3, $0)", ROW, {ROW, ROW, ROW_OF_PAST}, 1, true},
+    [SERIES_ABSOLUTE] = {"series_absolute(k, $1)", COEFFICIENT, {ROW}, 1, true},
+    [SERIES_LARGER] = {"series_sign(k, $1) > 0.0 ? $2 : $3", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
+    [SERIES_SMALLER] = {"series_sign(k, $1) < 0.0 ? $2 : $3", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
+    [SERIES_GATE] = {"$1 > 0.0 ? $2 : 0.0", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
+    [SERIES_REST] = {"$1 - series_rest(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
+    [SERIES_SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [SERIES_STATE] = {"$1 * (1.0 / (k + 1))", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
+    [SERIES_SLOPE] = {"(k + 1) * $1", COEFFICIENT, {NEXT_COEFFICIENT}, 1, false},
+};
+
+const struct OpcodeFacts *opcode_facts(enum Opcode opcode) {
+  return &facts[opcode];
+}
+
+bool opcode_has_result(enum Opcode opcode) {
+  return facts[opcode].result != NUMBER && facts[opcode].result != BLOCK;
+}
+
+int opcode_arity(enum Opcode opcode) {
+  int arity = 0;
+  while (arity < OPERAND_LIMIT && facts[opcode].operands[arity] != NO_OPERAND) arity++;
+  return arity;
+}
+
+struct Routine *routine_create(void) {
+  return allocate(1, sizeof(struct Routine));
+}
+
+void routine_free(struct Routine *routine) {
+  if (routine == NULL) return;
+  free(routine->instructions);
+  free(routine);
+}
+
+static void append(struct Routine *routine, struct Instruction instruction) {
+  routine->instructions =
+      make_room(routine->instructions, routine->count, &routine->capacity, sizeof *routine->instructions);
+  routine->instructions[routine->count++] = instruction;
+  routine->operation_count += facts[instruction.opcode].operations;
+  if (opcode_has_result(instruction.opcode)) routine->spaces |= 1u << space_of(instruction.result);
+  for (int i = 0; i < opcode_arity(instruction.opcode); i++) routine->spaces |= 1u << space_of(instruction.operands[i]);
+}
+
+void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c) {
+  append(routine, (struct Instruction){.opcode = opcode, .result = result, .operands = {a, b, c}});
+}
+
+void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b) {
+  enum Opcode opcode = operation_arity(function) == 2 ? CALL_OF_TWO : CALL;
+  append(routine, (struct Instruction){.opcode = opcode, .function = function, .result = result, .operands = {a, b}});
+}
+
+Place routine_local(struct Routine *routine) {
+  return place_in(SPACE_LOCAL, routine->local_count++);
+}
+
+bool routine_uses(const struct Routine *routine, enum Space space) {
+  return (routine->spaces >> space & 1u) != 0;
+}

@@ -1,0 +1,136 @@
+#include "program/values/values.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+struct Values *values_create(const struct Graph *graph, const struct Prepared *prepared, size_t coordinates) {
+  struct Values *values = allocate(1, sizeof *values);
+  *values = (struct Values){.graph = graph,
+                            .prepared = prepared,
+                            .coordinates = coordinates,
+                            .needs = needs_create(graph),
+                            .local = allocate(graph->count, sizeof(Place)),
+                            .has_local = allocate(graph->count, sizeof(bool))};
+  return values;
+}
+
+void values_free(struct Values *values) {
+  if (values == NULL) return;
+  needs_free(values->needs);
+  free(values->local);
+  free(values->has_local);
+  free(values->computed.nodes);
+  free(values);
+}
+
+struct Routine *values_begin(struct Values *values) {
+  for (size_t i = 0; i < values->computed.count; i++) values->has_local[values->computed.nodes[i]] = false;
+  values->computed.count = 0;
+  values->routine = routine_create();
+  return values->routine;
+}
+
+static Place place_of_symbol(const struct Values *values, const struct Symbol *symbol) {
+  size_t index = (size_t)symbol->index, n = values->coordinates;
+  switch (symbol->kind) {
+  case PARAMETER:
+  case MODE: return place_in(SPACE_PARAMETER, index);
+  case TIME: return place_in(SPACE_TIME, 0);
+  case COORDINATE: return place_in(SPACE_STATE, index);
+  case VELOCITY: return place_in(SPACE_STATE, n + index);
+  case ACCELERATION: return place_in(SPACE_ACCELERATION, index);
+  case INPUT: return place_in(SPACE_INPUT, index);
+  case SEED_PARAMETER: return place_in(SPACE_SEED_PARAMETER, index);
+  case SEED_TIME: return place_in(SPACE_SEED_TIME, 0);
+  case SEED_COORDINATE: return place_in(SPACE_SEED_STATE, index);
+  case SEED_VELOCITY: return place_in(SPACE_SEED_STATE, n + index);
+  case SEED_ACCELERATION: return place_in(SPACE_SEED_ACCELERATION, index);
+  case DISPLACEMENT: /* replaced in all that is computed, and without seeds */
+  case REACTION:
+  case SEED_INPUT:
+  case SYMBOL_KIND_COUNT: break;
+  }
+  return place_in(SPACE_SEED_INPUT, index);
+}
+
+Place values_place(const struct Values *values, Node node) {
+  if (values->has_local[node]) return values->local[node];
+  if (graph_is_constant(values->graph, node)) return place_in(SPACE_NUMBER, node);
+  if (values->graph->vertices[node].operation == SYMBOL)
+    return place_of_symbol(values, graph_symbol_of(values->graph, node));
+  return place_in(SPACE_PREPARED, values->prepared->slot[node] - 1);
+}
+
+void values_copy(struct Values *values, Place target, Node node) {
+  routine_append(values->routine, COPY, target, values_place(values, node), 0, 0);
+}
+
+/* The opcode of a power with a number as exponent that needs no pow(); COPY for none. */
+static enum Opcode opcode_of_power(double exponent) {
+  static const enum Opcode powers[] = {INVERSE_FOURTH, INVERSE_CUBE, INVERSE_SQUARE, RECIPROCAL, COPY,
+                                       COPY,           SQUARE,       CUBE,           FOURTH};
+  if (exponent == 0.5) return SQUARE_ROOT;
+  if (exponent == -0.5) return INVERSE_ROOT;
+  bool is_whole = exponent == floor(exponent) && fabs(exponent) <= 4.0;
+  return is_whole ? powers[(int)exponent + 4] : COPY;
+}
+
+static void append_function(struct Values *values, enum Operation function, Place result, struct Form form) {
+  Place left = values_place(values, form.left), right = form.arity == 2 ? values_place(values, form.right) : 0;
+  if (function == LESS) routine_append(values->routine, LESS_THAN, result, left, right, 0);
+  else if (function == GATE) routine_append(values->routine, GATE_OF, result, left, right, 0);
+  else if (function == SIGN) routine_append(values->routine, SIGN_OF, result, left, 0, 0);
+  else routine_append_call(values->routine, function, result, left, right);
+}
+
+static void append_power(struct Values *values, Place result, struct Form form) {
+  bool is_number = graph_is_constant(values->graph, form.right);
+  enum Opcode opcode = is_number ? opcode_of_power(graph_value(values->graph, form.right)) : COPY;
+  if (opcode == COPY) append_function(values, POWER, result, form);
+  else routine_append(values->routine, opcode, result, values_place(values, form.left), 0, 0);
+}
+
+static void append(struct Values *values, Node node, struct Form form) {
+  static const enum Opcode opcodes[] = {[FORM_SUM] = SUM,
+                                        [FORM_DIFFERENCE] = DIFFERENCE,
+                                        [FORM_PRODUCT] = PRODUCT,
+                                        [FORM_QUOTIENT] = QUOTIENT,
+                                        [FORM_NEGATION] = NEGATION};
+  Place result = routine_local(values->routine);
+  if (form.kind == FORM_POWER) append_power(values, result, form);
+  else if (form.kind == FORM_FUNCTION) append_function(values, values->graph->vertices[node].operation, result, form);
+  else
+    routine_append(values->routine, opcodes[form.kind], result, values_place(values, form.left),
+                   form.arity == 2 ? values_place(values, form.right) : 0, 0);
+  values->local[node] = result;
+  values->has_local[node] = true;
+  append_node(&values->computed, node);
+}
+
+static bool is_missing(const struct Values *values, Node node) {
+  return !is_fetched(values->needs, node) && !values->has_local[node];
+}
+
+/* Steps for a node that a routine needs, which becomes an instruction and a line of code. */
+enum { COMPUTE_WORK = 10 };
+
+void values_compute(struct Values *values, const Node *targets, size_t count, bool preparing) {
+  struct Needs *needs = values->needs;
+  if (graph_limit(values->graph) != NULL) return; /* nothing is written then */
+  needs_collect(needs, targets, count, preparing);
+  graph_work(values->graph, COMPUTE_WORK * needs->cone->count);
+  const struct Cone *cone = needs->cone;
+  bool *needed = allocate(cone->count, sizeof *needed);
+  for (size_t i = 0; i < count; i++) needed[cone_place(cone, targets[i])] = true;
+  for (size_t i = cone->count; i-- > 0;) {
+    if (!needed[i] || !is_missing(values, cone->nodes[i])) continue;
+    struct Form form = form_of(needs, cone->nodes[i]);
+    needed[cone_place(cone, form.left)] = true;
+    if (form.arity == 2) needed[cone_place(cone, form.right)] = true;
+  }
+  for (size_t i = 0; i < cone->count; i++)
+    if (needed[i] && is_missing(values, cone->nodes[i])) append(values, cone->nodes[i], form_of(needs, cone->nodes[i]));
+  free(needed);
+}

@@ -1,0 +1,156 @@
+#include "read/context/attributes.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/units/other_units.h"
+#include "mechanics/reactions.h"
+#include "base/memory.h"
+
+bool is_element(xmlNodePtr node, const char *name) {
+  return xmlStrEqual(node->name, (const xmlChar *)name);
+}
+
+bool has_attribute(xmlNodePtr node, const char *name) {
+  return xmlHasProp(node, (const xmlChar *)name) != NULL;
+}
+
+char *attribute(xmlNodePtr node, const char *name) {
+  xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
+  if (value == NULL) return NULL;
+  char *copy = copy_text((const char *)value);
+  xmlFree(value);
+  return copy;
+}
+
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  return *text != '\0' && parse_number(reader->scope, text, place, value);
+}
+
+bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
+  char *text = attribute(node, name);
+  bool right = text != NULL && number_in(reader, node, name, text, value);
+  free(text);
+  return right;
+}
+
+static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
+  char *text = attribute(node, name);
+  if (text == NULL) return NULL;
+  struct Place place = {.line = xmlGetLineNo(node), .what = name};
+  char *expanded = parse_name(reader->scope, text, place, parts);
+  char *full_name = expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
+  free(expanded);
+  free(text);
+  return full_name;
+}
+
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, false);
+}
+
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return full_name_in(reader, node, name, true);
+}
+
+bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
+                          struct Quantity *value) {
+  char *text = attribute(node, name);
+  if (text == NULL) return false;
+  char *what = format_text("%s of <%s>", name, (const char *)node->name);
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
+  if (*text != '\0') *value = parse_expression(reader->scope, text, place);
+  free(what);
+  free(text);
+  return true;
+}
+
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node) {
+  struct Graph *graph = reader->model->graph;
+  if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
+  if (reader->undisplaced_count < graph->symbol_count) { /* what has been read since may have switches */
+    free(reader->undisplaced);
+    reader->undisplaced = undisplaced_symbols(graph);
+    reader->undisplaced_count = graph->symbol_count;
+  }
+  graph->not_finite = false;
+  substitute(graph, &node, 1, reader->undisplaced, &node);
+  if (graph->not_finite)
+    report_error(reader->diagnostics, line,
+                 "%s has no finite value where the displacements are 0; expected one, as they always are", what);
+  return node;
+}
+
+struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector) {
+  for (int i = 0; i < 3; i++) vector.along[i] = without_displacements(reader, line, what, vector.along[i]);
+  return vector;
+}
+
+struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix) {
+  for (int i = 0; i < 3; i++) matrix.row[i] = vector_without_displacements(reader, line, what, matrix.row[i]);
+  return matrix;
+}
+
+/* The element's text; a comment separates what stands before and after it. */
+static char *text_of(xmlNodePtr node) {
+  char *text = copy_text("");
+  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
+    bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
+    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
+    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
+    xmlFree(content);
+    free(text);
+    text = longer;
+  }
+  return text;
+}
+
+struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  char *text = text_of(node);
+  struct Place place = {
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
+  struct Quantity value = parse_expression(reader->scope, text, place);
+  free(text);
+  return value;
+}
+
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
+  reader->scope->keeps_whole = true;
+  struct Quantity value = expression_text_of(reader, node, what, kinds);
+  reader->scope->keeps_whole = false;
+  return value;
+}
+
+struct Dimension unit_of(const char *text) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(text, &dimension, &problem);
+  return dimension;
+}
+
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Dimension dimension = dimension_unknown;
+  const char *problem;
+  char *text = attribute(node, name);
+  if (text != NULL && !unit_parse(text, &dimension, &problem)) {
+    char *remedy = unit_remedy(text);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,
+                 remedy != NULL ? remedy : problem);
+    free(remedy);
+  }
+  reader->scope->checks_units |= text != NULL;
+  free(text);
+  return dimension;
+}
+
+void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
+                  struct Dimension expected) {
+  if (quantity.literal || scope_units_agree(reader->scope, quantity.dimension, expected)) return;
+  char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
+  report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
+               expected_unit);
+  free(actual_unit);
+  free(expected_unit);
+}

@@ -1,0 +1,107 @@
+/* Attributes of XML elements as strings, numbers, names and expressions. */
+#ifndef ATTRIBUTES_H
+#define ATTRIBUTES_H
+
+#include <libxml/tree.h>
+
+#include "read/names/branches.h"
+#include "read/expressions/parser.h"
+#include "read/reader.h"
+
+/* Each pass uses the names that the ones before it made known, wherever in the file they stand. */
+enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
+
+struct Dissipation {
+  Node node;
+  long line;
+};
+
+struct Source;
+
+struct Reader {
+  struct Model *model;
+  struct Scope *scope;
+  struct Definitions *definitions;
+  size_t started_coordinates;   /* those whose start values were read */
+  struct Names *bodies;         /* name -> struct NamedBody */
+  struct Names *frames;         /* name -> size_t, its place among the model's */
+  struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
+  struct Source *source;        /* the file being read */
+  struct Includes *includes;    /* all files that are included */
+  struct Diagnostics *diagnostics;
+  const struct ReaderOptions *options;
+  bool *definition_used;
+  bool has_solver, has_experiment;
+  struct Dissipation *dissipations; /* each <dissipation> that was read */
+  size_t dissipation_count;
+  Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced; NULL until it is asked for */
+  size_t undisplaced_count;
+  size_t constraints_read, contacts_read, frictions_read;
+};
+
+/* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
+#define KIND(kind) (1u << (kind))
+
+enum {
+  IN_MASS = KIND(PARAMETER),
+  IN_DRIVE = KIND(PARAMETER) | KIND(MODE) | KIND(TIME) | KIND(INPUT),
+  IN_INERTIA = KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
+  WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
+  IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
+  IN_ENERGY = IN_POSITION | KIND(VELOCITY),
+  IN_CONSTRAINT =
+      KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT) | WITH_RATES,
+  IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
+  IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION) | CONTACT_STATE,
+};
+
+/* Whether the element has this name, and whether it has an attribute of this name. */
+bool is_element(xmlNodePtr node, const char *name);
+bool has_attribute(xmlNodePtr node, const char *name);
+
+/* NULL where missing; to be freed with free(). */
+char *attribute(xmlNodePtr node, const char *name);
+
+/* True and *value set where the attribute is present and right; reports an error where it is not right. */
+bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
+
+/* The same of a text from the node that the attribute's name stands for in messages. */
+bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value);
+
+/*
+ * The full name in an attribute, its index worked out, of what the element declares; NULL where missing or after an
+ * error. Free with free().
+ */
+char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* The same of what is declared elsewhere, perhaps in an included file. */
+char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* An expression in an attribute; true where present. kinds as in struct Place. */
+bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
+                          struct Quantity *value);
+
+/* The node where nothing is displaced; reports where it has no finite value there. */
+Node without_displacements(struct Reader *reader, long line, const char *what, Node node);
+
+/* The same of the components of a vector, and of the rows of a matrix. */
+struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector);
+struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
+
+/* The text of an element as an expression; what names it in messages. */
+struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
+/* The same where no event waits for its pieces: abs, min and the like stay whole. */
+struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
+
+/* The dimension of a unit that is right. */
+struct Dimension unit_of(const char *text);
+
+/* The unit in an attribute of the element; unknown where missing or after an error. */
+struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
+void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
+                  struct Dimension expected);
+
+#endif

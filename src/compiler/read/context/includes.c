@@ -1,0 +1,248 @@
+#include "read/context/includes.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/platform.h"
+#include "read/robots/robot_system.h"
+#include "read/xml/xml.h"
+
+struct Includes {
+  struct Names *sources;   /* prefix -> struct Source */
+  struct Names *documents; /* canonical path, and what is said of a robot -> struct Document */
+  struct Names *given;     /* full name -> struct Given */
+};
+
+/* A file that was read, NULL where it has mistakes. */
+struct Document {
+  xmlDocPtr document;
+};
+
+static void free_source(struct Source *source) {
+  if (source->outer != NULL) free((char *)source->file);
+  free(source->canonical_path);
+  free(source->prefix);
+  free(source->origin);
+}
+
+void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root) {
+  reader->includes = allocate(1, sizeof *reader->includes);
+  *reader->includes = (struct Includes){names_create(), names_create(), names_create()};
+  struct Source *own = allocate(1, sizeof *own);
+  *own = (struct Source){.file = path, .canonical_path = canonical_path(path), .prefix = copy_text(""), .root = root};
+  names_set(reader->includes->sources, "", own);
+  reader->source = own;
+}
+
+void includes_end(struct Reader *reader) {
+  struct Includes *includes = reader->includes;
+  source_enter(reader, names_find(includes->sources, ""));
+  reader->scope->prefix = ""; /* the scope lives longer */
+  for (size_t i = 0; i < includes->sources->capacity; i++)
+    if (includes->sources->places[i].text != NULL) free_source(includes->sources->places[i].meaning);
+  for (size_t i = 0; i < includes->documents->capacity; i++)
+    if (includes->documents->places[i].text != NULL)
+      xmlFreeDoc(((struct Document *)includes->documents->places[i].meaning)->document);
+  names_free(includes->sources);
+  names_free(includes->documents);
+  names_free(includes->given);
+  free(includes);
+  reader->includes = NULL;
+}
+
+struct Source *source_enter(struct Reader *reader, struct Source *source) {
+  struct Source *before = reader->source;
+  reader->source = source;
+  reader->scope->prefix = source->prefix;
+  reader->scope->include_line = source->include_line;
+  reader->diagnostics->file = source->file;
+  reader->diagnostics->origin = source->origin;
+  return before;
+}
+
+char *path_beside(const struct Reader *reader, const char *file) {
+  return path_beside_file(reader->source->file, file);
+}
+
+enum { DEPTH_LIMIT = 100 };
+
+/* Recursion is bounded here, so that no chain of files exhausts the stack. */
+static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
+  int depth = 0;
+  for (const struct Source *outer = source->outer; outer != NULL; outer = outer->outer) depth++;
+  if (depth <= DEPTH_LIMIT) return true;
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "more than %d files include each other in a row; expected fewer, some of them side by side",
+               DEPTH_LIMIT);
+  return false;
+}
+
+/* Whether the file is one of those that lead to it. */
+static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
+  const struct Source *first = source->outer;
+  while (first != NULL && (first->canonical_path == NULL || strcmp(first->canonical_path, source->canonical_path) != 0))
+    first = first->outer;
+  if (first == NULL) return true;
+  char *circle = copy_text(source->file);
+  for (const struct Source *s = source->outer;; s = s->outer) {
+    char *longer = format_text("%s -> %s", s->file, circle);
+    free(circle);
+    circle = longer;
+    if (s == first) break;
+  }
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "files include each other in a circle: %s; expected one of them without the next", circle);
+  free(circle);
+  return false;
+}
+
+/* The <system> in the file of a source, or that its robot is with what the <include> says of it; NULL after reporting why not. */
+static xmlDocPtr load_system(const struct Source *source, const struct RobotOptions *options,
+                             struct Diagnostics *diagnostics) {
+  xmlDocPtr document = xml_load(source->file, diagnostics);
+  if (document == NULL) return NULL;
+  if (is_robot(document)) return system_of_robot(document, options, diagnostics);
+  xmlNodePtr root = xmlDocGetRootElement(document);
+  if (!is_element(root, "system"))
+    report_error(diagnostics, xmlGetLineNo(root),
+                 "a <%s> cannot be included; expected the file of a <system> or <robot>", (const char *)root->name);
+  else if (options->base != NULL || options->tool != NULL)
+    report_error(diagnostics, xmlGetLineNo(root),
+                 "base=\"...\" and tool=\"...\" of <include> are for robots; expected a file that begins with <robot>");
+  if (diagnostics->errors == 0) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
+
+/* The document of a source, read once for all that include it in the same way. */
+static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
+  char *base = attribute(source->include, "base"), *tool = attribute(source->include, "tool");
+  char *key = format_text("%s\n%s\n%s", source->canonical_path, base != NULL ? base : "", tool != NULL ? tool : "");
+  struct Document *known = names_find(reader->includes->documents, key);
+  if (known == NULL) {
+    struct Diagnostics local = {.file = source->file, .origin = source->origin};
+    known = allocate(1, sizeof *known);
+    known->document = load_system(source, &(struct RobotOptions){.base = base, .tool = tool}, &local);
+    reader->diagnostics->errors += local.errors;
+    names_set(reader->includes->documents, key, known);
+  }
+  free(key);
+  free(base);
+  free(tool);
+  return known->document;
+}
+
+/* Notes what the <include> gives; what one further out gives to the same name comes before it. */
+static void note_given(struct Reader *reader, const struct Source *source) {
+  for (xmlNodePtr node = source->include->children; node != NULL; node = node->next) {
+    char *text = node->type == XML_ELEMENT_NODE ? attribute(node, "name") : NULL;
+    if (text == NULL) continue;
+    struct Place place = {.line = xmlGetLineNo(node), .what = "name"};
+    char *name = parse_name(reader->scope, text, place, true);
+    char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
+    const struct Given *other = names_find(reader->includes->given, full_name);
+    if (other != NULL && other->source == source->outer)
+      report_error(reader->diagnostics, xmlGetLineNo(node), "'%s' is given twice; expected it once", name);
+    if (other == NULL && name != NULL) {
+      struct Given *given = allocate(1, sizeof *given);
+      *given = (struct Given){.node = node, .source = source->outer, .target = source};
+      names_set(reader->includes->given, full_name, given);
+    }
+    free(full_name);
+    free(name);
+    free(text);
+  }
+}
+
+/* Sets the root where the file can be read. */
+static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) {
+  source->canonical_path = canonical_path(source->file);
+  if (source->canonical_path == NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",
+                 source->file, strerror(errno));
+  if (source->canonical_path == NULL || !check_depth(reader, node, source) || !check_circle(reader, node, source))
+    return;
+  xmlDocPtr document = document_of(reader, source);
+  if (document != NULL) source->root = xmlDocGetRootElement(document);
+  if (document != NULL) note_given(reader, source);
+}
+
+static struct Source *create_source(struct Reader *reader, xmlNodePtr node, const char *name, const char *prefix) {
+  struct Source *source = allocate(1, sizeof *source), *outer = reader->source;
+  char *file = attribute(node, "file");
+  long line = xmlGetLineNo(node);
+  *source = (struct Source){.file = path_beside(reader, file),
+                            .prefix = copy_text(prefix),
+                            .origin = format_text(" (included as '%s' on line %ld of %s)", name, line, outer->file),
+                            .include_line = outer->include_line > 0 ? outer->include_line : line,
+                            .include = node,
+                            .outer = outer};
+  free(file);
+  names_set(reader->includes->sources, prefix, source);
+  load(reader, node, source);
+  return source;
+}
+
+struct Source *include_open(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  char *name = name_attribute(reader, node, "as");
+  if (name == NULL) return NULL;
+  char *prefix = format_text("%s.", name);
+  struct Source *source = names_find(reader->includes->sources, prefix);
+  if (pass == DECLARATIONS && source != NULL) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "as=\"%s\" is the name of the <include> on line %ld already; expected another name%s", name,
+                 xmlGetLineNo(source->include),
+                 source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
+    source = NULL;
+  } else if (pass == DECLARATIONS) source = create_source(reader, node, name, prefix);
+  free(prefix);
+  free(name);
+  return source != NULL && source->include == node && source->root != NULL ? source : NULL;
+}
+
+const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Given *given = name != NULL ? names_find(reader->includes->given, name) : NULL;
+  if (given == NULL) return NULL;
+  const char *element = (const char *)node->name, *as = (const char *)given->node->name;
+  if (!given->is_used && strcmp(element, as) != 0) {
+    struct Source *present = source_enter(reader, given->source);
+    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' is no <%s> of '%s'; expected <%s name=...>",
+                 name + strlen(given->target->prefix), as, given->target->file, element);
+    source_enter(reader, present);
+  }
+  given->is_used = true;
+  return strcmp(element, as) == 0 ? given : NULL;
+}
+
+bool is_given(const struct Given *given, const char *attribute) {
+  return given != NULL && has_attribute(given->node, attribute);
+}
+
+bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
+                            double *value) {
+  if (!is_given(given, name)) return number_attribute(reader, node, name, value);
+  struct Source *present = source_enter(reader, given->source);
+  bool right = number_attribute(reader, given->node, name, value);
+  source_enter(reader, present);
+  return right;
+}
+
+void check_given(struct Reader *reader) {
+  const struct Names *names = reader->includes->given;
+  for (size_t i = 0; i < names->capacity; i++) {
+    const struct Given *given = names->places[i].text != NULL ? names->places[i].meaning : NULL;
+    if (given == NULL || given->is_used) continue;
+    struct Source *present = source_enter(reader, given->source);
+    const char *name = names->places[i].text + strlen(given->target->prefix);
+    reader->scope->prefix = given->target->prefix;
+    const char *similar = scope_similar_name(reader->scope, name);
+    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
+                 (const char *)given->node->name, name,
+                 similar != NULL ? "did you mean '" : "expected one of its names", similar != NULL ? similar : "",
+                 similar != NULL ? "'?" : "");
+    source_enter(reader, present);
+  }
+}

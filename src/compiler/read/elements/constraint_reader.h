@@ -1,0 +1,16 @@
+/* <constraint>: what is 0 at all times. */
+#ifndef CONSTRAINT_READER_H
+#define CONSTRAINT_READER_H
+
+#include "read/context/attributes.h"
+
+/* Declares the constraint of an element; its name alone is no value, but that of its force is. */
+void declare_constraint(struct Reader *reader, xmlNodePtr node);
+
+/* Reads the expression of the next constraint; they come in the order in which they were declared. */
+void read_constraint(struct Reader *reader, xmlNodePtr node);
+
+/* Reports a constraint that holds nothing, or is not linear in the velocities; notes one that moves by itself. */
+void check_constraint(struct Reader *reader, const struct Variable *constraint);
+
+#endif

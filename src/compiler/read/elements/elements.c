@@ -1,0 +1,331 @@
+#include "read/elements/elements.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "mechanics/energies.h"
+#include "base/memory.h"
+#include "read/space/bodies.h"
+#include "read/elements/constraint_reader.h"
+#include "read/elements/forces.h"
+#include "read/space/frames.h"
+#include "read/context/includes.h"
+#include "read/elements/named_expressions.h"
+#include "algebra/simplify.h"
+#include "read/elements/parameters.h"
+#include "read/names/similar.h"
+#include "read/elements/switching_reader.h"
+#include "read/elements/start_expressions.h"
+#include "read/elements/tables.h"
+
+struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
+  list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
+  list->items[list->count] = variable;
+  return &list->items[list->count++];
+}
+
+struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
+  struct Variable variable = {.name = name_attribute(reader, node, "name"),
+                              .description = attribute(node, "description"),
+                              .unit = attribute(node, "unit"),
+                              .dimension = unit_attribute(reader, node, "unit"),
+                              .start = NAN,
+                              .minimum = NAN,
+                              .maximum = NAN,
+                              .nominal = NAN,
+                              .line = xmlGetLineNo(node)};
+  if (variable.name == NULL) variable.name = copy_text("?"); /* reported already */
+  return variable;
+}
+
+void check_range(struct Reader *reader, const struct Variable *variable) {
+  if (variable->minimum > variable->maximum)
+    report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
+                 variable->minimum, variable->maximum);
+  else if (variable->start < variable->minimum || variable->start > variable->maximum)
+    report_error(reader->diagnostics, variable->line, "'%s': start %g is outside min and max", variable->name,
+                 variable->start);
+}
+
+static void read_constant(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  double value = 0;
+  const struct Given *given = given_for(reader, node, name);
+  bool right = name != NULL && given_number_attribute(reader, node, given, "value", &value);
+  struct Place place = {.line = 0, .what = "-D"};
+  for (size_t i = 0; right && i < reader->options->definition_count; i++) {
+    const char *definition = reader->options->definitions[i];
+    size_t length = strlen(name);
+    if (strncmp(definition, name, length) != 0 || definition[length] != '=') continue;
+    reader->definition_used[i] = true;
+    right = parse_number(reader->scope, definition + length + 1, place, &value);
+  }
+  struct Quantity number = {
+      .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
+  if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
+  free(name);
+}
+
+static Node append_input_rate(struct Reader *reader) {
+  struct VariableList *inputs = &reader->model->inputs;
+  const struct Variable *of = &inputs->items[inputs->count - 1];
+  struct Variable rate = {.name = format_text("der(%s)", of->name),
+                          .description = format_text("time derivative of %s", of->name),
+                          .dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0),
+                          .minimum = NAN,
+                          .maximum = NAN,
+                          .nominal = NAN,
+                          .line = of->line};
+  if (!of->dimension.known) rate.dimension = dimension_unknown;
+  rate.node = scope_symbol(reader->scope, INPUT, (int)inputs->count, rate.name, rate.dimension, rate.line);
+  scope_set_time_derivative(reader->scope, of->node, rate.node);
+  append_variable(inputs, rate);
+  return rate.node;
+}
+
+static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  double nominal = NAN;
+  if (number_attribute(reader, node, name, &nominal) && !(nominal > 0)) {
+    report_error(reader->diagnostics, xmlGetLineNo(node), "%s is %g; expected a positive number", name, nominal);
+    nominal = NAN;
+  }
+  return nominal;
+}
+
+static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable position = common_attributes(reader, node);
+  struct Variable velocity = {.name = name_attribute(reader, node, "velocity"),
+                              .description = attribute(node, "velocityDescription"),
+                              .dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0),
+                              .minimum = NAN,
+                              .maximum = NAN,
+                              .line = position.line};
+  if (velocity.name == NULL) velocity.name = copy_text("?");
+  given_for(reader, node, position.name); /* is there, and read with the start values */
+  if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
+  position.start = velocity.start = 0.0; /* see start_expressions.h */
+  char *fixed = attribute(node, "fixed");
+  position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
+  free(fixed);
+  position.nominal = nominal_attribute(reader, node, "nominal");
+  velocity.nominal = nominal_attribute(reader, node, "velocityNominal");
+  int index = (int)model->coordinates.count;
+  position.node = scope_symbol(reader->scope, COORDINATE, index, position.name, position.dimension, position.line);
+  velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
+  position.line = velocity.line = scope_line(reader->scope, position.line);
+  append_variable(&model->coordinates, position);
+  append_variable(&model->velocities, velocity);
+  model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
+  model->drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
+  model->drive_count += model->drives[index].given;
+  model->has_forces |= model->drives[index].given;
+}
+
+/* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
+static void read_displacement(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable displacement = common_attributes(reader, node);
+  int index = 2 * (int)model->displacements.count;
+  displacement.node =
+      scope_symbol(reader->scope, DISPLACEMENT, index, displacement.name, displacement.dimension, displacement.line);
+  char *name = format_text("der(%s)", displacement.name);
+  Node rate = scope_symbol(reader->scope, DISPLACEMENT, index + 1, name,
+                           dimension_multiply(displacement.dimension, unit_of("s"), -1.0), displacement.line);
+  scope_set_time_derivative(reader->scope, displacement.node, rate);
+  append_variable(&model->displacements, displacement);
+  free(name);
+}
+
+static void add_term(struct Model *model, struct Quantity *sum, Node term) {
+  sum->node = add(model->graph, sum->node, term);
+}
+
+/* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
+static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
+                        const char *what, unsigned kinds, const char *unit) {
+  struct Quantity term = expression_text_of(reader, node, what, kinds);
+  require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
+  add_term(reader->model, displaced, term.node);
+  reader->model->inputs_move |= (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
+  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
+  add_term(reader->model, sum, undisplaced);
+  return undisplaced;
+}
+
+static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  bool driven;
+  Node term = read_energy(reader, node, &model->displaced_kinetic, &model->explicit_kinetic, "the kinetic energy",
+                          IN_ENERGY, "J");
+  add_term(model, &model->kinetic, term);
+  add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
+  model->driven |= driven;
+}
+
+/* The acceleration of a driven coordinate. */
+static void read_drive(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Quantity acceleration = {.node = ZERO};
+  if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
+  char *name = name_attribute(reader, node, "name");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  free(name);
+  if (symbol == NULL) return; /* the name was taken, which is reported */
+  const struct Variable *velocity = &model->velocities.items[symbol->index];
+  if (velocity->dimension.known)
+    require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
+                 dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
+  model->drives[symbol->index].acceleration = acceleration.node;
+}
+
+static void read_output(struct Reader *reader, xmlNodePtr node) {
+  struct Variable output = common_attributes(reader, node);
+  char *what = format_text("the output '%s'", output.name);
+  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
+  require_unit(reader, output.line, what, value, output.dimension);
+  if (!output.dimension.known) output.dimension = value.dimension;
+  value.node = without_displacements(reader, output.line, what, value.node);
+  /* What it tells waits for no events, unlike expressions that use its name. */
+  Node told = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
+  output.node = without_displacements(reader, output.line, what, told);
+  value.dimension = output.dimension;
+  scope_define(reader->scope, output.name, value, output.line);
+  free(what);
+  output.line = scope_line(reader->scope, output.line);
+  append_variable(&reader->model->outputs, output);
+}
+
+void read_solver(struct Reader *reader, xmlNodePtr node) {
+  char *method = attribute(node, "method");
+  reader->model->solver_line = xmlGetLineNo(node);
+  if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
+  reader->has_solver = true;
+  if (method != NULL) reader->model->method = method_named(method);
+  double *tolerance = &reader->model->tolerance;
+  if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
+                 *tolerance);
+  if (*tolerance > 0 && *tolerance < 1e-14)
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
+  number_attribute(reader, node, "maxStep", &reader->model->max_step);
+  double *steps = &reader->model->max_steps;
+  if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
+  free(method);
+}
+
+void read_experiment(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  if (reader->has_experiment)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "a second <experiment>; expected one");
+  reader->has_experiment = true;
+  number_attribute(reader, node, "startTime", &model->start_time);
+  number_attribute(reader, node, "stopTime", &model->stop_time);
+  if (number_attribute(reader, node, "stepSize", &model->step_size) && !(model->step_size > 0))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number", model->step_size);
+  double start = isnan(model->start_time) ? 0.0 : model->start_time;
+  if (model->stop_time <= start)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g", model->stop_time,
+                 start);
+}
+
+/* Further inputs that are the time derivatives of the last one. */
+static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  double derivatives = 0;
+  if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
+                 derivatives);
+  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
+  size_t index = model->inputs.count - 1;
+  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
+  if (derivatives >= 2) model->input_rates[index] = ZERO;
+}
+
+static void read_input(struct Reader *reader, xmlNodePtr node) {
+  struct VariableList *list = &reader->model->inputs;
+  struct Variable variable = common_attributes(reader, node);
+  const struct Given *given = given_for(reader, node, variable.name);
+  if (is_given(given, "value")) { /* an expression like a definition */
+    check_calculated(reader, given, node);
+    variable_free(&variable);
+    return;
+  }
+  variable.start = 0.0;
+  given_number_attribute(reader, node, given, "start", &variable.start);
+  given_number_attribute(reader, node, given, "min", &variable.minimum);
+  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  check_range(reader, &variable);
+  variable.node =
+      scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
+  append_variable(list, variable);
+  read_input_rates(reader, node);
+}
+
+/* Solver, experiment and work are the system's own. */
+static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
+  struct Model *model = reader->model;
+  if (strcmp(element, "constant") == 0) read_constant(reader, node);
+  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
+  else if (strcmp(element, "input") == 0) read_input(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
+  else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
+  else if (strcmp(element, "frame") == 0) declare_frame(reader, node);
+  else if (strcmp(element, "table") == 0) read_table(reader, node);
+  else if (strcmp(element, "constraint") == 0) declare_constraint(reader, node);
+  else if (strcmp(element, "mode") == 0) declare_mode(reader, node);
+  else if (strcmp(element, "contact") == 0) declare_contact(reader, node);
+  else if (strcmp(element, "stop") == 0) declare_stop(reader, node);
+  else if (strcmp(element, "friction") == 0) declare_friction(reader, node);
+  else if (reader->source->outer != NULL) return;
+  else if (strcmp(element, "solver") == 0) read_solver(reader, node);
+  else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
+  else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
+}
+
+static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  Node dissipation =
+      read_energy(reader, node, &model->displaced_dissipation, &model->dissipation, "the dissipation", IN_FORCE, "W");
+  if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
+  size_t count = reader->dissipation_count++;
+  reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
+  reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
+  model->has_forces = true;
+}
+
+static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
+  struct Model *model = reader->model;
+  if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
+  else if (strcmp(element, "potential") == 0)
+    read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
+  else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_drive(reader, node);
+  else if (strcmp(element, "force") == 0) read_force(reader, node);
+  else if (strcmp(element, "torque") == 0) read_torque(reader, node);
+  else if (strcmp(element, "gravity") == 0) read_gravity(reader, node);
+  else if (strcmp(element, "frame") == 0) add_stillness_of_norm(reader, node);
+  else if (strcmp(element, "output") == 0) read_output(reader, node);
+  else if (strcmp(element, "constraint") == 0) read_constraint(reader, node);
+  else if (strcmp(element, "contact") == 0) read_contact(reader, node);
+  else if (strcmp(element, "stop") == 0) read_stop(reader, node);
+  else if (strcmp(element, "friction") == 0) read_friction(reader, node);
+  else if (strcmp(element, "event") == 0) read_event(reader, node);
+}
+
+void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+  const char *element = (const char *)node->name;
+  if (pass == DECLARATIONS) read_declaration(reader, node, element);
+  else if (pass == EXPRESSIONS) read_expression(reader, node, element);
+  else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
+  else if (strcmp(element, "coordinate") == 0) read_start_expressions(reader, node);
+  else if (is_spatial(node) || strcmp(element, "particle") == 0 || strcmp(element, "body") == 0)
+    read_body(reader, node);
+}

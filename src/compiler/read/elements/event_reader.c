@@ -1,0 +1,142 @@
+/* <event> and <set>. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/cone.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/names/branches.h"
+#include "read/expressions/conditions.h"
+#include "read/elements/elements.h"
+#include "read/elements/switching_reader.h"
+
+enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
+
+/* What <set> changes: the symbol of a coordinate, velocity or mode. */
+static Node target_of(struct Reader *reader, xmlNodePtr node) {
+  static const struct {
+    const char *attribute;
+    enum SymbolKind kind;
+  } targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"mode", MODE}};
+  size_t given = 0;
+  Node symbol = ZERO;
+  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+    if (!has_attribute(node, targets[i].attribute)) continue;
+    given++;
+    char *name = reference_attribute(reader, node, targets[i].attribute);
+    const struct Quantity *quantity = name != NULL ? scope_find(reader->scope, name) : NULL;
+    const struct Graph *graph = reader->model->graph;
+    bool fits = quantity != NULL && graph->vertices[quantity->node].operation == SYMBOL &&
+                graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
+    if (fits) symbol = quantity->node;
+    else
+      report_error(reader->diagnostics, xmlGetLineNo(node), "<set %s=\"%s\">: there is no %s of this name",
+                   targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
+    free(name);
+  }
+  if (given != 1)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "a <set> needs one of velocity, coordinate and mode");
+  return symbol;
+}
+
+static void check_target(struct Reader *reader, xmlNodePtr node, const struct Event *event, Node symbol) {
+  const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
+  bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
+  if (is_state && reader->model->drives[target->index].given)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "<set> of '%s', which is driven; expected another one",
+                 target->name);
+  for (size_t i = 0; i < event->assignment_count; i++)
+    if (event->assignments[i].symbol == symbol)
+      report_error(reader->diagnostics, xmlGetLineNo(node), "a second <set> of '%s' in one <event>; expected one",
+                   target->name);
+}
+
+static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
+  Node symbol = target_of(reader, node);
+  struct Quantity value = expression_text_of(reader, node, "the value of <set>", IN_EVENT);
+  if (symbol == ZERO || reader->diagnostics->errors > 0) return;
+  check_target(reader, node, event, symbol);
+  const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
+  const struct Quantity *target = scope_find(reader->scope, name);
+  if (target != NULL && target->dimension.known)
+    require_unit(reader, xmlGetLineNo(node), "the value of <set>", value, target->dimension);
+  event->assignments = reallocate(event->assignments, event->assignment_count + 1, sizeof *event->assignments);
+  event->assignments[event->assignment_count++] = (struct Assignment){symbol, value.node};
+}
+
+/* A condition that comes to hold, or an expression that passes 0 in a direction. */
+static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
+  struct Graph *graph = reader->model->graph;
+  struct Place place = {.line = xmlGetLineNo(node), .what = "when", .kinds = IN_EVENT};
+  char *direction = attribute(node, "direction");
+  Node value;
+  if (parse_when(reader->scope, when, place, &value)) {
+    event->condition = value;
+    if (direction != NULL)
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
+                   "no direction");
+  } else if (value != ZERO) {
+    event->condition = side_of(reader->scope, value, xmlGetLineNo(node));
+    event->side = new_mode(reader, "side", when);
+    bool rises = direction != NULL && strcmp(direction, "rising") == 0;
+    bool is_both = direction != NULL && strcmp(direction, "both") == 0;
+    event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
+  }
+  if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
+  free(direction);
+}
+
+/* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */
+static void collect_event(const struct Reader *reader, const struct Event *event) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Switches *switches = &reader->model->switches;
+  Node *roots = allocate(event->assignment_count + 1 + switches->count, sizeof *roots);
+  size_t count = 0, before = 0;
+  roots[count++] = event->condition;
+  for (size_t i = 0; i < event->assignment_count; i++) roots[count++] = event->assignments[i].value;
+  size_t first = count;
+  while (count > before) {
+    cone_collect(graph->cone, graph, roots, count, NULL);
+    before = count;
+    count = first;
+    for (size_t i = 0; i < switches->count; i++)
+      if (cone_has(graph->cone, switches->items[i].mode)) roots[count++] = switches->items[i].indicator;
+  }
+  free(roots);
+}
+
+/* Of accelerations, an event may look at the forces of contacts, frictions and constraints alone. */
+static void check_forces(const struct Reader *reader, struct Event *event, long line) {
+  const struct Model *model = reader->model;
+  unsigned kinds = kinds_that_decide(reader->scope, event->condition);
+  event->is_of_contacts = (kinds & (KIND(ACCELERATION) | CONTACT_STATE)) != 0;
+  for (size_t i = 0; i < event->assignment_count; i++)
+    kinds |= kinds_that_decide(reader->scope, event->assignments[i].value);
+  if ((kinds & KIND(ACCELERATION)) == 0) return;
+  collect_event(reader, event);
+  for (size_t i = 0; i < model->coordinates.count; i++)
+    if (cone_has(model->graph->cone, model->accelerations[i]))
+      report_error(reader->diagnostics, line,
+                   "an <event> cannot depend on accelerations, but this one does on '%s'; expected velocities, or the "
+                   "force of a contact, a friction or a constraint such as ground.force",
+                   graph_symbol_of(model->graph, model->accelerations[i])->name);
+}
+
+void read_event(struct Reader *reader, xmlNodePtr node) {
+  struct Switches *switches = &reader->model->switches;
+  char *when = attribute(node, "when");
+  if (when == NULL) return;
+  struct Event event = {.passage = PASSAGE_HOLDS};
+  read_condition(reader, node, when, &event);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
+  if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
+  if (reader->diagnostics->errors == 0) check_forces(reader, &event, xmlGetLineNo(node));
+  event.text = when;
+  switches->events = reallocate(switches->events, switches->event_count + 1, sizeof *switches->events);
+  switches->events[switches->event_count++] = event;
+}

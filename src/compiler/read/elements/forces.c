@@ -1,0 +1,231 @@
+#include "read/elements/forces.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/space/bodies.h"
+#include "read/space/frames.h"
+#include "read/context/includes.h"
+#include "read/names/similar.h"
+
+static const char *const axes[3] = {"x", "y", "z"};
+
+/* A search through all names is for messages that are shown. */
+static bool are_shown(const struct Reader *reader) {
+  return reader->diagnostics->errors < ERROR_LIMIT;
+}
+
+/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. Free with free(). */
+static char *meant_coordinate(const struct Reader *reader, const char *name) {
+  const struct Model *model = reader->model;
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
+    const char *known = model->coordinates.items[i].name;
+    if (strcmp(name, model->velocities.items[i].name) == 0)
+      return format_text("did you mean '%s', whose velocity it is?", known);
+    similar_consider(&similar, known);
+  }
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
+                              : copy_text("expected the name of a <coordinate>");
+}
+
+static char *meant_body(const struct Reader *reader, const char *name) {
+  struct Similar similar = {.wanted = name};
+  if (are_shown(reader)) similar_consider_all(&similar, reader->bodies);
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
+}
+
+const struct Symbol *find_coordinate(const struct Reader *reader, const char *name) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Quantity *quantity = scope_find(reader->scope, name);
+  if (quantity == NULL || graph->vertices[quantity->node].operation != SYMBOL) return NULL;
+  const struct Symbol *symbol = graph_symbol_of(graph, quantity->node);
+  return symbol->kind == COORDINATE && strcmp(symbol->name, name) == 0 ? symbol : NULL;
+}
+
+static void add_term(struct Model *model, struct Quantity *sum, Node term) {
+  sum->node = add(model->graph, sum->node, term);
+}
+
+static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
+  struct Model *model = reader->model;
+  const struct Symbol *symbol = find_coordinate(reader, coordinate);
+  if (symbol == NULL) {
+    char *meant = meant_coordinate(reader, coordinate);
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; %s", coordinate,
+                 meant);
+    free(meant);
+    return;
+  }
+  int index = symbol->index;
+  struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
+  require_unit(reader, xmlGetLineNo(node), "the force", force,
+               dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
+  add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
+}
+
+/* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
+static void add_force(struct Model *model, Node position, Node force) {
+  struct Graph *graph = model->graph;
+  struct Gradient levers = gradient_by_kinds(graph, position, KIND(COORDINATE) | KIND(TIME));
+  for (size_t i = 0; i < levers.count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
+    struct Quantity *sum = symbol->kind == TIME ? &model->driven_power : &model->forces[symbol->index];
+    add_term(model, sum, multiply(graph, force, levers.values[i]));
+  }
+  gradient_free(&levers);
+}
+
+static void append_point_force(struct Model *model, Node position, Node force) {
+  model->point_forces = reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
+  model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
+}
+
+static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
+  char *meant = meant_body(reader, name);
+  report_error(reader->diagnostics, xmlGetLineNo(node), "there is no %s '%s' for this %s; %s", what, name,
+               (const char *)node->name, meant);
+  free(meant);
+}
+
+/* The components along the axes of the frame that the attribute in names, of a force or torque. */
+static struct Vector read_components(struct Reader *reader, xmlNodePtr node, const char *unit) {
+  struct Vector vector = {{ZERO, ZERO, ZERO}};
+  for (int axis = 0; axis < 3; axis++) {
+    struct Quantity component;
+    if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &component)) continue;
+    require_unit(reader, xmlGetLineNo(node), axes[axis], component, unit_of(unit));
+    vector.along[axis] = without_displacements(reader, xmlGetLineNo(node), axes[axis], component.node);
+  }
+  return vector;
+}
+
+/* How the frame is turned where nothing is displaced. */
+static struct Matrix rotation_of(struct Reader *reader, long line, const struct ReferenceFrame *frame) {
+  return matrix_without_displacements(reader, line, frame->name, frame->pose.rotation);
+}
+
+static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Model *model = reader->model;
+  const struct Body *body = find_body(reader, name);
+  struct SpatialPoint point;
+  long line = xmlGetLineNo(node);
+  const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
+  struct Vector force = read_components(reader, node, "N");
+  if (body == NULL && !find_spatial_point(reader, name, &point)) {
+    report_unknown_body(reader, node, name, "particle or body");
+    return;
+  }
+  if (frame == NULL) return;
+  struct Matrix rotation = rotation_of(reader, line, frame);
+  force = matrix_apply(model->graph, &rotation, force);
+  for (int axis = 0; axis < 3; axis++) {
+    bool is_given = has_attribute(node, axes[axis]) && !has_attribute(node, "in");
+    if (body != NULL && !body->has_position[axis] && is_given)
+      report_error(reader->diagnostics, line,
+                   "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
+                   axes[axis]);
+    Node displaced = body != NULL ? body->displaced[axis] : point.position.along[axis];
+    add_force(model, without_displacements(reader, line, name, displaced), force.along[axis]);
+    append_point_force(model, displaced, force.along[axis]);
+  }
+}
+
+/* What turns by itself, without velocities and rates of inputs: by time alone. */
+static struct Vector driven_part(const struct Model *model, struct Vector velocity) {
+  struct Graph *graph = model->graph;
+  Node *at_rest = allocate(graph->symbol_count, sizeof *at_rest);
+  for (size_t i = 0; i < graph->symbol_count; i++) {
+    const struct Symbol *symbol = &graph->symbols[i];
+    bool is_rate = symbol->kind == VELOCITY || (symbol->kind == INPUT && is_input_rate(model, (size_t)symbol->index));
+    at_rest[i] = is_rate ? ZERO : symbol->node;
+  }
+  substitute(graph, velocity.along, 3, at_rest, velocity.along);
+  free(at_rest);
+  return velocity;
+}
+
+/* A torque T contributes Q_i = T . d omega / d v_i; its power is T . omega. Both along the axes of what it turns. */
+static void add_torque(struct Reader *reader, long line, struct Vector torque, struct Vector displaced) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
+  struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
+  for (size_t i = 0; i < levers.count; i++)
+    add_term(model, &model->forces[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
+  gradient_free(&levers);
+  add_term(model, &model->driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
+  model->torques = reallocate(model->torques, model->torque_count + 1, sizeof *model->torques);
+  model->torques[model->torque_count++] = (struct Torque){torque, displaced};
+}
+
+void read_torque(struct Reader *reader, xmlNodePtr node) {
+  char *name = reference_attribute(reader, node, "on");
+  const struct ReferenceFrame *turned = name != NULL ? find_frame(reader, name) : NULL;
+  const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
+  struct Vector torque = read_components(reader, node, "N.m");
+  long line = xmlGetLineNo(node);
+  reader->model->has_forces = true;
+  if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
+  if (turned != NULL && frame != NULL) {
+    if (frame != turned) {
+      struct Graph *graph = reader->model->graph;
+      struct Matrix to_base = rotation_of(reader, line, frame), from_turned = rotation_of(reader, line, turned);
+      torque = matrix_apply_transposed(graph, &from_turned, matrix_apply(graph, &to_base, torque));
+    }
+    add_torque(reader, line, torque, turned->pose.angular_velocity);
+  }
+  free(name);
+}
+
+/* Whether the name was given in the file being read, not in one that it includes or is included by. */
+static bool is_of_file(const struct Reader *reader, const char *name) {
+  const char *prefix = reader->source->prefix;
+  return strncmp(name, prefix, strlen(prefix)) == 0 && strchr(name + strlen(prefix), '.') == NULL;
+}
+
+void read_gravity(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  for (int axis = 0; axis < 3; axis++) {
+    struct Quantity gravity = {.node = ZERO};
+    if (!expression_attribute(reader, node, axes[axis], IN_MASS, &gravity)) continue;
+    require_unit(reader, xmlGetLineNo(node), axes[axis], gravity, unit_of("m/s2"));
+    model->gravity.along[axis] = gravity.node;
+    for (size_t i = 0; i < model->body_count; i++) {
+      const struct Body *body = &model->bodies[i];
+      if (!is_of_file(reader, body->name)) continue;
+      Node weight = negate(graph, multiply(graph, body->mass.node, gravity.node));
+      add_term(model, &model->potential, multiply(graph, weight, body->position[axis].node));
+      add_term(model, &model->displaced_potential, multiply(graph, weight, body->displaced[axis]));
+    }
+  }
+}
+
+static bool is_blank(xmlNodePtr node) {
+  xmlChar *text = xmlNodeGetContent(node);
+  bool blank = text == NULL || strspn((const char *)text, " \t\r\n") == strlen((const char *)text);
+  xmlFree(text);
+  return blank;
+}
+
+void read_force(struct Reader *reader, xmlNodePtr node) {
+  char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
+  reader->model->has_forces = true;
+  bool has_components = false;
+  for (int axis = 0; axis < 3; axis++) has_components |= has_attribute(node, axes[axis]);
+  bool is_along_frame = has_attribute(node, "in");
+  if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
+  else if (on != NULL && !is_blank(node))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
+  else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
+  else add_cartesian_force(reader, node, on);
+  free(coordinate);
+  free(on);
+}

@@ -1,0 +1,121 @@
+#include "read/elements/grid_reader.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/elements/table_lines.h"
+
+enum { VALUE_LIMIT = 1000 };
+
+struct Grid {
+  struct TableLines lines; /* the first member, from which take_line() comes to the others */
+  struct Surface *surface;
+  size_t row_capacity, value_capacity;
+};
+
+/* Whether the knot is finite and follows the one before it. */
+static bool check_knot(struct Grid *grid, const double *knots, size_t i) {
+  if (isfinite(knots[i]) && (i == 0 || knots[i] > knots[i - 1])) return true;
+  report_error(grid->lines.reader->diagnostics, grid->lines.line,
+               "the knot %g does not follow %g; expected finite numbers, each larger than the one before it", knots[i],
+               i > 0 ? knots[i - 1] : 0.0);
+  grid->lines.wrong = true;
+  return false;
+}
+
+static bool check_value(struct Grid *grid, double value) {
+  if (isfinite(value)) return true;
+  report_error(grid->lines.reader->diagnostics, grid->lines.line,
+               "the value %g is not finite; expected numbers below 1e308", value);
+  grid->lines.wrong = true;
+  return false;
+}
+
+static bool check_size(struct Grid *grid) {
+  if ((grid->surface->rows + 1) * grid->surface->columns <= VALUE_LIMIT) return true;
+  report_error(grid->lines.reader->diagnostics, grid->lines.line, "the table has more than %d values; expected fewer",
+               VALUE_LIMIT);
+  grid->lines.wrong = true;
+  return false;
+}
+
+/* The knots of the first argument; the corner in front of them may hold a word. */
+static void take_head(struct Grid *grid, const char *line) {
+  struct Surface *surface = grid->surface;
+  const char *rest = line;
+  if (!isdigit((unsigned char)*line) && strchr("+-.", *line) == NULL) rest += strcspn(line, " \t,;");
+  rest += strspn(rest, " \t,;");
+  surface->x = table_numbers(rest, &surface->columns, &rest);
+  if (*rest == '\0' && surface->columns > 0) return;
+  report_error(grid->lines.reader->diagnostics, grid->lines.line,
+               "'%.40s' is no number; expected the knots of the first argument in the first line", rest);
+  grid->lines.wrong = true;
+}
+
+/* Where the lines below have as many numbers as the first one, its first is that of the corner. */
+static void drop_corner(struct Surface *surface) {
+  surface->columns--;
+  memmove(surface->x, surface->x + 1, surface->columns * sizeof *surface->x);
+}
+
+static void append_row(struct Grid *grid, const double *numbers) {
+  struct Surface *surface = grid->surface;
+  size_t columns = surface->columns, first = surface->rows * columns;
+  surface->y = make_room(surface->y, surface->rows, &grid->row_capacity, sizeof *surface->y);
+  surface->y[surface->rows] = numbers[0];
+  if (!check_knot(grid, surface->y, surface->rows)) return;
+  surface->value = reallocate(surface->value, first + columns, sizeof *surface->value);
+  for (size_t i = 0; i < columns; i++) {
+    surface->value[first + i] = numbers[i + 1];
+    if (!check_value(grid, numbers[i + 1])) return;
+  }
+  surface->rows++;
+}
+
+static void take_row(struct Grid *grid, const char *line) {
+  struct Surface *surface = grid->surface;
+  size_t count;
+  const char *rest;
+  double *numbers = table_numbers(line, &count, &rest);
+  if (surface->rows == 0 && count == surface->columns && count > 1 && *rest == '\0') drop_corner(surface);
+  bool is_right = true;
+  for (size_t i = 0; i < surface->columns && surface->rows == 0 && is_right; i++)
+    is_right = check_knot(grid, surface->x, i);
+  if (is_right && (*rest != '\0' || count != surface->columns + 1)) {
+    report_error(grid->lines.reader->diagnostics, grid->lines.line,
+                 "'%.40s' has %zu numbers; expected %zu, a knot of the second argument and the values there for all "
+                 "of the first one",
+                 line, count, surface->columns + 1);
+    grid->lines.wrong = true;
+  } else if (is_right && check_size(grid)) append_row(grid, numbers);
+  free(numbers);
+}
+
+static void take_line(struct TableLines *lines, const char *line) {
+  struct Grid *grid = (struct Grid *)lines;
+  if (grid->surface->columns == 0) take_head(grid, line);
+  else take_row(grid, line);
+}
+
+bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file, struct Surface *surface) {
+  struct Grid grid = {.lines = {.reader = reader, .take = take_line}, .surface = surface};
+  if (file != NULL) table_lines_of_file(&grid.lines, node, file);
+  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
+    if (part->type == XML_TEXT_NODE) table_lines_of_text(&grid.lines, part);
+    if (part->type != XML_ELEMENT_NODE || grid.lines.wrong) continue;
+    report_error(reader->diagnostics, xmlGetLineNo(part),
+                 "a <point> in the table '%s' of two arguments; expected lines, or a file", name);
+    grid.lines.wrong = true;
+  }
+  if (grid.lines.wrong) return false;
+  if (surface->columns >= 2 && surface->rows >= 2) return true;
+  report_error(
+      reader->diagnostics, xmlGetLineNo(node),
+      "the table '%s' has %zu times %zu values; expected at least two knots of each argument: a line with those "
+      "of the first, then a line for each of the second with the values there",
+      name, surface->columns, surface->rows);
+  return false;
+}

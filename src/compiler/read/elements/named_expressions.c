@@ -1,0 +1,111 @@
+#include "read/elements/named_expressions.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/names/definitions.h"
+#include "read/elements/elements.h"
+#include "read/space/frames.h"
+
+bool has_value(xmlNodePtr node, const struct Given *given) {
+  if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
+  return is_given(given, "value") || (!is_given(given, "start") && has_attribute(node, "value"));
+}
+
+/* The value of a definition, parameter or input, in its unit where it gives one. */
+static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpression *expression,
+                                   struct Quantity value) {
+  xmlNodePtr node = expression->node, where = expression->given != NULL ? expression->given->node : node;
+  const char *what = expression->attribute == NULL   ? "the definition"
+                     : is_element(node, "parameter") ? "the value of the parameter"
+                                                     : "the value of the input";
+  struct Source *present = source_enter(reader, expression->source);
+  struct Dimension unit = unit_attribute(reader, node, "unit");
+  source_enter(reader, present);
+  require_unit(reader, xmlGetLineNo(where), what, value, unit);
+  if (unit.known) value.dimension = unit;
+  value.literal = value.literal && !unit.known;
+  return value;
+}
+
+static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, const char *component) {
+  struct Quantity value = {.node = ZERO};
+  bool is_angle = strcmp(component, "angle") == 0;
+  expression_attribute(reader, node, component, IN_POSITION, &value);
+  if (definitions_are_waiting(reader->definitions)) return value;
+  require_unit(reader, xmlGetLineNo(node), is_angle ? "the angle" : component, value, unit_of(is_angle ? "rad" : "m"));
+  return value;
+}
+
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
+                                      const char *name) {
+  struct Quantity value = {.node = ZERO};
+  xmlNodePtr node = expression->node;
+  const struct Given *given = expression->given;
+  bool is_parameter = is_element(node, "parameter"), is_input = is_element(node, "input");
+  struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
+  if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
+    value = read_spatial(reader, node, name, expression->attribute);
+  else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  else if (is_parameter || is_input)
+    expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
+                         is_parameter ? IN_MASS : IN_OUTPUT, &value);
+  else value = read_component(reader, node, expression->attribute);
+  if (!definitions_are_waiting(reader->definitions) && (expression->attribute == NULL || is_parameter || is_input))
+    value = in_own_unit(reader, expression, value);
+  source_enter(reader, present);
+  return value;
+}
+
+void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value) {
+  bool is_parameter = is_element(node, "parameter");
+  if (!is_parameter && !is_element(node, "define") && !is_element(node, "input")) return;
+  struct Variable variable = {.name = copy_text(name),
+                              .description = attribute(node, "description"),
+                              .unit = attribute(node, "unit"),
+                              .dimension = value.dimension,
+                              .node = without_displacements(reader, xmlGetLineNo(node), "the definition", value.node)};
+  append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);
+}
+
+static void collect_planar(struct Reader *reader, xmlNodePtr node, const char *body) {
+  static const char *const components[] = {"x", "y", "z", "angle"};
+  for (size_t i = 0; i < sizeof components / sizeof *components; i++)
+    if (has_attribute(node, components[i]))
+      definitions_add(reader->definitions, format_text("%s.%s", body, components[i]),
+                      &(struct NamedExpression){node, components[i], reader->source, NULL});
+  if (is_element(node, "body")) collect_frame(reader, node, body);
+}
+
+/* Of several bodies of one name, which is reported later, the first one has the components. */
+static void collect_components(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  bool is_body = is_element(node, "body") || is_element(node, "particle");
+  if (is_body) reader->source->named_bodies++;
+  if (name == NULL && is_body) name = format_text("%sbody%zu", reader->source->prefix, reader->source->named_bodies);
+  if (name != NULL && is_spatial(node)) collect_spatial(reader, node, name);
+  else if (name != NULL) collect_planar(reader, node, name);
+  free(name);
+}
+
+void collect_named_expressions(struct Reader *reader, xmlNodePtr node) {
+  if (is_spatial(node) || is_element(node, "particle") || is_element(node, "body")) collect_components(reader, node);
+  bool is_definition = is_element(node, "define");
+  if (!is_definition && !is_element(node, "parameter") && !is_element(node, "input")) return;
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  const struct Given *given = is_definition ? NULL : given_for(reader, node, name);
+  if (!is_definition && !has_value(node, given)) {
+    free(name);
+    return;
+  }
+  if (scope_find(reader->scope, name) == NULL) {
+    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source,
+                                         is_given(given, "value") ? given : NULL};
+    definitions_add(reader->definitions, name, &expression);
+    return;
+  }
+  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
+  free(name);
+}

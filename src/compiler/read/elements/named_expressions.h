@@ -1,0 +1,30 @@
+/* The expressions of definitions.h: what each <define>, calculated <parameter>, particle and body gives. */
+#ifndef NAMED_EXPRESSIONS_H
+#define NAMED_EXPRESSIONS_H
+
+#include "read/context/includes.h"
+
+/* An expression and the element whose name it has. */
+struct NamedExpression {
+  xmlNodePtr node;
+  const char *attribute;     /* that holds the expression; NULL for the text */
+  struct Source *source;     /* in which the element stands */
+  const struct Given *given; /* where an <include> gives the expression; else NULL */
+};
+
+/* Whether a <parameter> or <input> has a value, its own or a given one, in place of a start. */
+bool has_value(xmlNodePtr node, const struct Given *given);
+
+/* Collects the named expressions of an element, if it has any. */
+void collect_named_expressions(struct Reader *reader, xmlNodePtr node);
+
+/* Its value; name: its own. */
+struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
+                                      const char *name);
+
+/*
+ * Enters the value of a <define>, <parameter> or <input> into the model, under its name; bodies enter their components.
+ */
+void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value);
+
+#endif

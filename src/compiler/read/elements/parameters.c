@@ -1,0 +1,160 @@
+#include "read/elements/parameters.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+#include "read/elements/elements.h"
+#include "read/elements/named_expressions.h"
+
+static const char *const type_names[] = {[TYPE_REAL] = "Real", [TYPE_INTEGER] = "Integer", [TYPE_BOOLEAN] = "Boolean"};
+
+static enum VariableType type_of(xmlNodePtr node) {
+  char *text = attribute(node, "type");
+  enum VariableType type = TYPE_BOOLEAN;
+  while (text != NULL && type > TYPE_REAL && strcmp(text, type_names[type]) != 0) type--;
+  if (text == NULL) type = TYPE_REAL;
+  free(text);
+  return type;
+}
+
+/* A given value goes before the file's start, min and max. */
+void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
+  static const char *const others[] = {"start", "min", "max", "type"};
+  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
+  if (is_given(given, "value")) node = given->node;
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (has_attribute(node, others[i]))
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                   "others, or start=\"...\" for one that is set",
+                   (const char *)node->name, others[i]);
+  source_enter(reader, present);
+}
+
+static bool is_whole(double number) {
+  return number == floor(number) && fabs(number) <= INT_MAX;
+}
+
+static void check_type(struct Reader *reader, const struct Variable *variable) {
+  struct Diagnostics *diagnostics = reader->diagnostics;
+  const char *type = type_names[variable->type];
+  if (variable->type == TYPE_REAL) return;
+  if (variable->unit != NULL && strcmp(variable->unit, "1") != 0)
+    report_error(diagnostics, variable->line, "'%s' has a unit and type=\"%s\", which has none; expected type=\"Real\"",
+                 variable->name, type);
+  const double numbers[] = {variable->start, variable->minimum, variable->maximum};
+  for (size_t i = 0; i < 3 && variable->type == TYPE_INTEGER; i++)
+    if (!isnan(numbers[i]) && !is_whole(numbers[i]))
+      report_error(diagnostics, variable->line, "'%s': %g is no Integer; expected a whole number of at most 9 digits",
+                   variable->name, numbers[i]);
+  if (variable->type != TYPE_BOOLEAN) return;
+  if (variable->start != 0.0 && variable->start != 1.0)
+    report_error(diagnostics, variable->line, "'%s': %g is no Boolean; expected true or false", variable->name,
+                 variable->start);
+  if (!isnan(variable->minimum) || !isnan(variable->maximum))
+    report_error(diagnostics, variable->line, "'%s': a Boolean has neither min nor max; expected none", variable->name);
+}
+
+/* A number, or true or false. */
+static void read_value(struct Reader *reader, xmlNodePtr node, const char *name, const char *text,
+                       struct Variable *variable) {
+  bool is_true = strcmp(text, "true") == 0, is_false = strcmp(text, "false") == 0;
+  if (variable->type == TYPE_BOOLEAN && (is_true || is_false)) variable->start = is_true ? 1.0 : 0.0;
+  else if (variable->type == TYPE_BOOLEAN && (strcasecmp(text, "true") == 0 || strcasecmp(text, "false") == 0))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "'%s': did you mean '%s'? It is written so", text,
+                 strcasecmp(text, "true") == 0 ? "true" : "false");
+  else if (!number_in(reader, node, name, text, &variable->start)) variable->start = 0.0;
+}
+
+/* The start value in an attribute, that an <include> may give. */
+static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable *variable) {
+  struct Source *present = source_enter(reader, is_given(given, "start") ? given->source : reader->source);
+  if (is_given(given, "start")) node = given->node;
+  char *text = attribute(node, "start");
+  if (text != NULL) read_value(reader, node, "start", text, variable);
+  source_enter(reader, present);
+  free(text);
+}
+
+static struct Variable variable_of(struct Reader *reader, xmlNodePtr node) {
+  struct Variable variable = common_attributes(reader, node);
+  variable.type = type_of(node);
+  if (variable.type != TYPE_REAL) variable.dimension = unit_of("1");
+  return variable;
+}
+
+/* With a start value that was read, and the range, which an <include> may give. */
+static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable variable) {
+  struct VariableList *list = &reader->model->parameters;
+  given_number_attribute(reader, node, given, "min", &variable.minimum);
+  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  check_range(reader, &variable);
+  check_type(reader, &variable);
+  variable.node =
+      scope_symbol(reader->scope, PARAMETER, (int)list->count, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
+  append_variable(list, variable);
+}
+
+static const char separators[] = " \t\r\n,;";
+
+/* values="1 2 3" of m: m[1], m[2] and m[3]. */
+static void read_list(struct Reader *reader, xmlNodePtr node) {
+  char *values = attribute(node, "values"), *name = name_attribute(reader, node, "name");
+  if (has_attribute(node, "start") || has_attribute(node, "value"))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "a <parameter> with values and a start or value; expected values=\"...\" alone");
+  if (name != NULL && strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "the parameter '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
+                 name);
+  size_t count = 0;
+  const char *next = values + strspn(values, separators);
+  while (*next != '\0' && name != NULL) {
+    char *text = format_text("%.*s", (int)strcspn(next, separators), next);
+    struct Variable variable = variable_of(reader, node);
+    free(variable.name);
+    variable.name = format_text("%s[%zu]", name, ++count);
+    const struct Given *given = given_for(reader, node, variable.name);
+    if (is_given(given, "value"))
+      report_error(reader->diagnostics, xmlGetLineNo(node),
+                   "'%s' is one of a list of values, to which an <include> can give a start; expected start in place "
+                   "of value",
+                   variable.name);
+    read_value(reader, node, "values", text, &variable);
+    read_start(reader, node, given, &variable);
+    declare(reader, node, given, variable);
+    next += strlen(text);
+    next += strspn(next, separators);
+    free(text);
+  }
+  if (count == 0 && name != NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "the parameter '%s' has no values; expected numbers", name);
+  free(values);
+  free(name);
+}
+
+void read_parameter(struct Reader *reader, xmlNodePtr node) {
+  if (has_attribute(node, "values")) {
+    read_list(reader, node);
+    return;
+  }
+  struct Variable variable = variable_of(reader, node);
+  const struct Given *given = given_for(reader, node, variable.name);
+  if (has_value(node, given)) {
+    check_calculated(reader, given, node);
+    variable_free(&variable);
+    return;
+  }
+  variable.start = 0.0;
+  read_start(reader, node, given, &variable);
+  declare(reader, node, given, variable);
+  if (!has_attribute(node, "start") && !is_given(given, "start"))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
+                 "follows from others, or values=\"...\" for name[1], name[2], ...");
+}

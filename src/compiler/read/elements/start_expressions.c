@@ -1,0 +1,45 @@
+#include "read/elements/start_expressions.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "read/context/includes.h"
+
+static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *attribute,
+                       struct Variable *variable) {
+  struct Quantity value = {.node = ZERO, .literal = true};
+  struct Source *present = source_enter(reader, is_given(given, attribute) ? given->source : reader->source);
+  if (is_given(given, attribute)) node = given->node;
+  expression_attribute(reader, node, attribute, IN_MASS, &value);
+  require_unit(reader, xmlGetLineNo(node), "the start value", value, variable->dimension);
+  variable->start_expression = value.node;
+  source_enter(reader, present);
+}
+
+void read_start_expressions(struct Reader *reader, xmlNodePtr node) {
+  size_t index = reader->started_coordinates++;
+  if (index >= reader->model->coordinates.count) return; /* a mistake that was reported already */
+  struct Variable *coordinate = &reader->model->coordinates.items[index];
+  const struct Given *given = given_for(reader, node, coordinate->name);
+  read_start(reader, node, given, "start", coordinate);
+  read_start(reader, node, given, "velocityStart", &reader->model->velocities.items[index]);
+}
+
+static void evaluate_start(struct Reader *reader, struct Variable *variable, const double *values) {
+  variable->start = values[variable->start_expression];
+  if (isfinite(variable->start)) return;
+  report_error(reader->diagnostics, variable->line,
+               "the start value of '%s' is %g at the start values of the parameters; expected a finite number",
+               variable->name, variable->start);
+}
+
+void evaluate_start_expressions(struct Reader *reader) {
+  struct Model *model = reader->model;
+  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  for (size_t i = 0; i < model->coordinates.count; i++) {
+    evaluate_start(reader, &model->coordinates.items[i], values);
+    evaluate_start(reader, &model->velocities.items[i], values);
+  }
+  free(values);
+  free(symbols);
+}

@@ -1,0 +1,13 @@
+/* Start values of coordinates and velocities: numbers, or expressions of parameters, which they then follow. */
+#ifndef START_EXPRESSIONS_H
+#define START_EXPRESSIONS_H
+
+#include "read/context/attributes.h"
+
+/* Those of a <coordinate>, in the order of the declarations. */
+void read_start_expressions(struct Reader *reader, xmlNodePtr node);
+
+/* Their values at the start values of the parameters; reports those that are not finite. */
+void evaluate_start_expressions(struct Reader *reader);
+
+#endif

@@ -1,0 +1,284 @@
+#include "read/elements/switching_reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/polynomials/rational.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/elements/constraint_reader.h"
+#include "read/elements/elements.h"
+#include "read/elements/forces.h"
+
+enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
+
+/* --- Declarations --- */
+
+Node new_mode(struct Reader *reader, const char *of, const char *what) {
+  struct Switches *switches = &reader->model->switches;
+  char *name = format_text("%s.%s", of, what);
+  Node mode = graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  free(name);
+  return mode;
+}
+
+/* One that expressions of events know by the name of the variable which tells it. */
+static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
+  Node mode = new_mode(reader, constraint->name, what);
+  char *name = format_text("%s.%s", constraint->name, what);
+  scope_define(reader->scope, name, (struct Quantity){.node = mode, .dimension = dimension_one}, constraint->line);
+  free(name);
+  return mode;
+}
+
+void declare_mode(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable mode = common_attributes(reader, node);
+  mode.start = 0.0;
+  number_attribute(reader, node, "start", &mode.start);
+  int index = (int)model->switches.mode_count++;
+  mode.node = scope_symbol(reader->scope, MODE, index, mode.name, mode.dimension, mode.line);
+  mode.line = scope_line(reader->scope, mode.line);
+  append_variable(&model->modes, mode);
+}
+
+/* A constraint of this name that holds in a mode; returns its number. */
+static size_t declare_held(struct Reader *reader, struct Variable constraint) {
+  struct VariableList *constraints = &reader->model->constraints;
+  struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
+  scope_define(reader->scope, constraint.name, word, constraint.line);
+  append_variable(constraints, constraint);
+  return constraints->count - 1;
+}
+
+static void append_contact(struct Reader *reader, struct Variable constraint) {
+  struct Switches *switches = &reader->model->switches;
+  switches->contacts = reallocate(switches->contacts, switches->contact_count + 1, sizeof *switches->contacts);
+  switches->contacts[switches->contact_count++] =
+      (struct Contact){.mode = new_told_mode(reader, &constraint, "closed")};
+  switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
+}
+
+void declare_contact(struct Reader *reader, xmlNodePtr node) {
+  append_contact(reader, common_attributes(reader, node));
+}
+
+/* The constraint of one end of a stop: x.min or x.max. */
+static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, const char *end) {
+  return (struct Variable){.name = format_text("%s.%s", coordinate, end),
+                           .description = format_text("stop of %s at its %simum", coordinate, end),
+                           .dimension = dimension_unknown,
+                           .start = NAN,
+                           .minimum = NAN,
+                           .maximum = NAN,
+                           .nominal = NAN,
+                           .line = xmlGetLineNo(node)};
+}
+
+void declare_stop(struct Reader *reader, xmlNodePtr node) {
+  char *coordinate = reference_attribute(reader, node, "coordinate");
+  if (!has_attribute(node, "min") && !has_attribute(node, "max"))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "a <stop> without min and max; expected one of them, or both");
+  if (coordinate != NULL && has_attribute(node, "min")) append_contact(reader, end_of_stop(node, coordinate, "min"));
+  if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
+  free(coordinate);
+}
+
+void declare_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Switches *switches = &reader->model->switches;
+  struct Variable constraint = common_attributes(reader, node);
+  switches->frictions = reallocate(switches->frictions, switches->friction_count + 1, sizeof *switches->frictions);
+  switches->frictions[switches->friction_count++] = (struct Friction){
+      .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
+  switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
+  reader->model->has_forces = true;
+}
+
+void number_modes(struct Reader *reader) {
+  struct Graph *graph = reader->model->graph;
+  struct Switches *switches = &reader->model->switches;
+  switches->first = reader->model->parameters.count;
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == MODE) graph->symbols[i].index += (int)switches->first;
+}
+
+/* --- Contacts --- */
+
+/* The constraint -gap = 0, whose force is positive where it presses, while the contact is closed. */
+static void set_contact(struct Reader *reader, xmlNodePtr node, Node gap) {
+  struct Model *model = reader->model;
+  struct Contact *contact = &model->switches.contacts[reader->contacts_read++];
+  struct Variable *constraint = &model->constraints.items[contact->constraint];
+  reader->constraints_read++;
+  struct Quantity restitution = {.node = ZERO};
+  if (expression_attribute(reader, node, "restitution", IN_CONDITION, &restitution))
+    require_unit(reader, constraint->line, "the restitution", restitution, dimension_one);
+  double value = graph_is_constant(model->graph, restitution.node) ? graph_value(model->graph, restitution.node) : 0.0;
+  if (!(value >= 0.0 && value <= 1.0))
+    report_error(reader->diagnostics, constraint->line, "the restitution %g; expected one from 0 to 1", value);
+  contact->gap = gap;
+  contact->restitution = restitution.node;
+  constraint->node = function(model->graph, GATE, contact->mode, negate(model->graph, gap));
+  if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
+}
+
+void read_contact(struct Reader *reader, xmlNodePtr node) {
+  struct Quantity gap = {.node = ZERO};
+  expression_attribute(reader, node, "gap", IN_GAP, &gap);
+  struct Variable *constraint =
+      &reader->model->constraints.items[reader->model->switches.contacts[reader->contacts_read].constraint];
+  if (constraint->unit != NULL) require_unit(reader, constraint->line, "the gap", gap, constraint->dimension);
+  set_contact(reader, node, gap.node);
+}
+
+void read_stop(struct Reader *reader, xmlNodePtr node) {
+  struct Graph *graph = reader->model->graph;
+  char *name = reference_attribute(reader, node, "coordinate");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  if (symbol == NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "a <stop> of '%s', which is no coordinate; expected one",
+                 name != NULL ? name : "");
+  static const char *const ends[] = {"min", "max"};
+  for (int end = 0; end < 2 && symbol != NULL; end++) {
+    struct Quantity limit;
+    if (!expression_attribute(reader, node, ends[end], IN_GAP, &limit)) continue;
+    const struct Variable *coordinate = &reader->model->coordinates.items[symbol->index];
+    if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
+    struct Switches *switches = &reader->model->switches;
+    reader->model->constraints.items[switches->contacts[reader->contacts_read].constraint].dimension =
+        coordinate->dimension;
+    Node way = subtract(graph, symbol->node, limit.node);
+    set_contact(reader, node, end == 0 ? way : negate(graph, way));
+  }
+  free(name);
+}
+
+/* --- Friction --- */
+
+/* Where friction acts: along the velocity of a coordinate, or one that is an expression. */
+static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
+  bool has_coordinate = has_attribute(node, "coordinate");
+  if (has_coordinate == has_attribute(node, "velocity")) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
+    return false;
+  }
+  if (!has_coordinate) return expression_attribute(reader, node, "velocity", IN_CONSTRAINT, velocity);
+  char *name = reference_attribute(reader, node, "coordinate");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  if (symbol == NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "a <friction> of '%s', which is no coordinate; expected one",
+                 name != NULL ? name : "");
+  else {
+    const struct Variable *variable = &reader->model->velocities.items[symbol->index];
+    *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
+  }
+  free(name);
+  return symbol != NULL;
+}
+
+static struct Quantity read_friction_force(struct Reader *reader, xmlNodePtr node, const char *attribute_name,
+                                           struct Dimension unit) {
+  struct Quantity force = {.node = ZERO};
+  if (expression_attribute(reader, node, attribute_name, IN_CONDITION | KIND(ACCELERATION), &force) && unit.known)
+    require_unit(reader, xmlGetLineNo(node), attribute_name, force, unit);
+  return force;
+}
+
+/* Of accelerations, a friction may follow from the forces of contacts and constraints alone, and linearly. */
+static void check_linear(struct Reader *reader, long line, const char *what, Node force) {
+  struct Graph *graph = reader->model->graph;
+  struct Gradient gradient = gradient_by_kinds(graph, force, KIND(ACCELERATION));
+  for (size_t i = 0; i < gradient.count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, gradient.symbols[i]);
+    if ((size_t)symbol->index < reader->model->coordinates.count)
+      report_error(reader->diagnostics, line,
+                   "the %s of a friction holds '%s'; expected the forces of contacts and constraints alone, as in "
+                   "mu*ground.force",
+                   what, symbol->name);
+    else if (graph_depends_on(graph, gradient.values[i], ACCELERATION))
+      report_error(reader->diagnostics, line,
+                   "the %s of a friction is not linear in '%s'; expected a force such as mu*%s", what, symbol->name,
+                   symbol->name);
+  }
+  gradient_free(&gradient);
+}
+
+/* Sliding, it pushes against the velocity; sticking, it is the force of the constraint velocity = 0. */
+void read_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Friction *friction = &model->switches.frictions[reader->frictions_read++];
+  struct Variable *constraint = &model->constraints.items[friction->constraint];
+  reader->constraints_read++;
+  struct Quantity velocity = {.node = ZERO};
+  if (!read_velocity(reader, node, &velocity)) return;
+  if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
+  struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
+  if (!velocity.dimension.known) unit = dimension_unknown;
+  struct Quantity sliding = read_friction_force(reader, node, "force", unit), stiction = sliding;
+  if (has_attribute(node, "stiction")) stiction = read_friction_force(reader, node, "stiction", unit);
+  if (reader->diagnostics->errors > 0) return;
+  check_linear(reader, constraint->line, "force", sliding.node);
+  check_linear(reader, constraint->line, "stiction", stiction.node);
+  friction->velocity = velocity.node;
+  friction->sliding = sliding.node;
+  friction->stiction = stiction.node;
+  constraint->dimension = unit.known ? dimension_multiply(unit_of("J"), unit, -1.0) : dimension_unknown;
+  Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
+  constraint->node = function(graph, GATE, sticks, velocity.node);
+  check_constraint(reader, constraint);
+  if (reader->diagnostics->errors > 0) return;
+  Node push = negate(graph, multiply(graph, friction->mode, sliding.node));
+  struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
+  for (size_t i = 0; i < levers.count; i++) {
+    struct Quantity *force = &model->forces[graph_symbol_of(graph, levers.symbols[i])->index];
+    force->node = add(graph, force->node, multiply(graph, push, levers.values[i]));
+  }
+  gradient_free(&levers);
+}
+
+void complete_friction_forces(struct Reader *reader) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Switches *switches = &model->switches;
+  if (switches->friction_count == 0) return;
+  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
+  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node force = model->constraint_forces[friction->constraint];
+    replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
+  }
+  for (size_t i = 0; i < switches->count; i++)
+    substitute(graph, &switches->items[i].indicator, 1, replacements, &switches->items[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
+      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
+                 &switches->events[i].assignments[j].value);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  free(replacements);
+}
+
+/* --- Branches --- */
+
+void undisplace_switches(struct Reader *reader) {
+  struct Graph *graph = reader->model->graph;
+  struct Switches *switches = &reader->model->switches;
+  for (size_t i = 0; i < switches->count; i++) {
+    struct Switch *item = &switches->items[i];
+    if (!graph_depends_on(graph, item->indicator, DISPLACEMENT)) continue;
+    item->indicator = without_displacements(reader, item->line, item->function, item->indicator);
+    if (simplify_fraction(graph, item->indicator) == ZERO)
+      report_error(reader->diagnostics, item->line,
+                   "%s turns where the displacements are 0, so that the force of reaction has no value there; expected "
+                   "it to turn elsewhere",
+                   item->function);
+  }
+}

@@ -1,0 +1,130 @@
+#include "read/expressions/conditions.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "algebra/simplify.h"
+#include "read/names/branches.h"
+#include "read/expressions/quantities.h"
+
+enum Comparison { NO_COMPARISON, MORE, MORE_OR_EQUAL, LESS_THAN_OTHER, LESS_OR_EQUAL };
+
+static bool accept_word(struct Parser *parser, const char *word) {
+  skip_space(parser);
+  size_t length = strlen(word);
+  char behind = parser->next[strncmp(parser->next, word, length) == 0 ? length : 0];
+  if (strncmp(parser->next, word, length) != 0 || isalnum((unsigned char)behind) || behind == '_') return false;
+  parser->next += length;
+  return true;
+}
+
+static enum Comparison parse_comparison(struct Parser *parser) {
+  bool is_more = accept_character(parser, '>'), is_less = !is_more && accept_character(parser, '<');
+  bool or_equal = (is_more || is_less) && *parser->next == '=';
+  if (or_equal) parser->next++;
+  if (is_more) return or_equal ? MORE_OR_EQUAL : MORE;
+  if (is_less) return or_equal ? LESS_OR_EQUAL : LESS_THAN_OTHER;
+  return NO_COMPARISON;
+}
+
+static Node is_positive(struct Graph *graph, Node condition) {
+  return function(graph, GATE, condition, ONE);
+}
+
+static Node negation(struct Graph *graph, Node condition) {
+  return subtract(graph, ONE, is_positive(graph, condition));
+}
+
+static Node both(struct Graph *graph, Node first, Node second) {
+  return function(graph, GATE, first, is_positive(graph, second));
+}
+
+/* What is compared must agree in its unit; a comparison by itself is a mode, or a Boolean parameter. */
+static Node parse_relation(struct Parser *parser) {
+  struct Graph *graph = parser->graph;
+  struct Quantity left = parse_sum(parser);
+  enum Comparison comparison = parser->failed ? NO_COMPARISON : parse_comparison(parser);
+  if (parser->failed) return ZERO;
+  if (comparison == NO_COMPARISON) {
+    if (graph_is_constant_in_time(graph, left.node)) return left.node;
+    FAIL(parser, "%s: a condition that is no comparison; expected one such as x > 0", parser->place.what);
+    return ZERO;
+  }
+  struct Quantity right = parse_sum(parser);
+  if (parser->failed) return ZERO;
+  bool is_more = comparison == MORE || comparison == MORE_OR_EQUAL;
+  struct Quantity difference = quantity_subtract(parser, is_more ? left : right, is_more ? right : left);
+  if (parser->failed) return ZERO;
+  Node sign = branch_of(parser->scope, difference.node, "a condition", current_line(parser));
+  return comparison == MORE || comparison == LESS_THAN_OTHER ? sign : negation(graph, negate(graph, sign));
+}
+
+/* Whether what is in the parenthesis at the reading position is a condition: no operator of sums follows it. */
+static bool is_group(const struct Parser *parser) {
+  const char *next = parser->next;
+  int depth = 0;
+  bool compares = false;
+  do {
+    depth += (*next == '(') - (*next == ')');
+    compares |= *next == '<' || *next == '>';
+    next++;
+  } while (*next != '\0' && depth > 0);
+  while (isspace((unsigned char)*next)) next++;
+  return compares && strchr("+-*/^<>", *next == '\0' ? ' ' : *next) == NULL;
+}
+
+static Node parse_group(struct Parser *parser) {
+  if (*parser->next != '(' || !is_group(parser)) return parse_relation(parser);
+  parser->next++;
+  if (++parser->nesting > 100) FAIL(parser, "%s: more than 100 nested conditions", parser->place.what);
+  Node condition = parser->failed ? ZERO : parse_condition(parser);
+  parser->nesting--;
+  expect_character(parser, ')', "to close a condition");
+  return condition;
+}
+
+/* Of not not ... the last two make 1 or 0 of the condition; those before change nothing but which of them it is. */
+static Node parse_factor(struct Parser *parser) {
+  long negations = 0;
+  for (; accept_word(parser, "not"); negations++) {
+  }
+  skip_space(parser);
+  Node condition = parse_group(parser);
+  for (long i = negations > 2 ? 2 - negations % 2 : negations; i > 0; i--)
+    condition = negation(parser->graph, condition);
+  return condition;
+}
+
+static Node parse_conjunction(struct Parser *parser) {
+  Node condition = parse_factor(parser);
+  while (!parser->failed && accept_word(parser, "and"))
+    condition = both(parser->graph, condition, parse_factor(parser));
+  return condition;
+}
+
+Node parse_condition(struct Parser *parser) {
+  struct Graph *graph = parser->graph;
+  Node condition = parse_conjunction(parser);
+  while (!parser->failed && accept_word(parser, "or")) {
+    Node neither = negation(graph, condition);
+    condition = negation(graph, both(graph, neither, negation(graph, parse_conjunction(parser))));
+  }
+  return condition;
+}
+
+struct Quantity parse_choice(struct Parser *parser) {
+  static const struct Quantity nothing = {.node = ZERO};
+  Node condition = parse_condition(parser);
+  expect_character(parser, ',', "after the condition of if(condition, expression, expression)");
+  /* An expression need not have a value where the other one counts. */
+  size_t requirements = parser->scope->requirements.count;
+  struct Quantity positive = parser->failed ? nothing : parse_sum(parser);
+  expect_character(parser, ',', "between the two expressions of if(condition, expression, expression)");
+  struct Quantity other = parser->failed ? nothing : parse_sum(parser);
+  parser->scope->requirements.count = requirements;
+  expect_character(parser, ')', "at the end of if(condition, expression, expression)");
+  if (parser->failed) return nothing;
+  struct Quantity result = quantity_add(parser, positive, other); /* their units agree */
+  result.node = choose_node(parser->graph, condition, positive.node, other.node);
+  return result;
+}

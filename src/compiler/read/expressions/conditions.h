@@ -1,0 +1,22 @@
+/*
+ * Conditions in expressions: comparisons, joined by and, or, not and parentheses. Modes and Boolean parameters are
+ * conditions too.
+ */
+#ifndef CONDITIONS_H
+#define CONDITIONS_H
+
+#include "read/expressions/parser_state.h"
+
+/* A node that is constant between events, and positive where the condition holds. */
+Node parse_condition(struct Parser *parser);
+
+/*
+ * Reads what an event waits for. True for a condition, see parse_condition(); false for an expression, or after reporting
+ * an error, when it is ZERO.
+ */
+bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value);
+
+/* The rest of if(condition, expression, expression). */
+struct Quantity parse_choice(struct Parser *parser);
+
+#endif

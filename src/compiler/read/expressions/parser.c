@@ -1,0 +1,499 @@
+#include "read/expressions/parser.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "algebra/cone.h"
+#include "algebra/functions.h"
+#include "algebra/simplify.h"
+#include "read/names/branches.h"
+#include "read/expressions/conditions.h"
+#include "read/names/hints.h"
+#include "read/expressions/quantities.h"
+#include "read/elements/tables.h"
+#include "read/expressions/unknown_names.h"
+
+enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 50 };
+
+static const char *const kind_names[SYMBOL_KIND_COUNT] = {
+    [PARAMETER] = "parameters",
+    [TIME] = "time",
+    [COORDINATE] = "coordinates",
+    [VELOCITY] = "velocities",
+    [INPUT] = "inputs",
+    [ACCELERATION] = "accelerations",
+    [DISPLACEMENT] = "displacements",
+    [REACTION] = "forces of reaction",
+    [MODE] = "modes",
+};
+
+/* What names the argument of der(...) in messages begins so. */
+static const char derived[] = "der(...) in ";
+static const char no_derivative[] = "; expected coordinates or velocities, whose derivatives the system knows";
+
+static bool is_derived(const char *what) {
+  return strncmp(what, derived, strlen(derived)) == 0;
+}
+
+static const struct Quantity nothing = {.node = ZERO};
+
+static struct Quantity parse_sign(struct Parser *parser);
+
+long current_line(struct Parser *parser) {
+  for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';
+  while (parser->counted > parser->next) parser->newlines -= *--parser->counted == '\n';
+  return parser->place.line + parser->newlines;
+}
+
+/* Recursion is bounded here, so that no input exhausts the stack. */
+static void enter(struct Parser *parser) {
+  if (++parser->nesting > NESTING_LIMIT + 1)
+    FAIL(parser, "%s: more than %d nested parentheses or powers; expected fewer, or a <define> for a part",
+         parser->place.what, NESTING_LIMIT);
+}
+
+void skip_space(struct Parser *parser) {
+  while (isspace((unsigned char)*parser->next)) parser->next++;
+}
+
+/* What stands at the reading position, for messages. */
+static const char *found(const struct Parser *parser, char buffer[32]) {
+  if (*parser->next == '\0') return "the end";
+  size_t length = 1;
+  if (isalnum((unsigned char)*parser->next))
+    while (length < 24 && isalnum((unsigned char)parser->next[length])) length++;
+  else
+    while (length < 4 && ((unsigned char)parser->next[length] & 0xC0u) == 0x80u) length++;
+  snprintf(buffer, 32, "'%.*s'", (int)length, parser->next);
+  return buffer;
+}
+
+bool accept_character(struct Parser *parser, char c) {
+  skip_space(parser);
+  if (*parser->next != c) return false;
+  parser->next++;
+  return true;
+}
+
+void expect_character(struct Parser *parser, char c, const char *context) {
+  char buffer[32];
+  if (parser->failed || accept_character(parser, c)) return;
+  FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
+       c == ']' ? "" : hint_for_text(parser->text, parser->next));
+}
+
+static struct Quantity parse_literal(struct Parser *parser) {
+  char *end;
+  if (parser->next[0] == '0' && (parser->next[1] == 'x' || parser->next[1] == 'X')) {
+    FAIL(parser, "%s: '0x' is no number here; expected a decimal number", parser->place.what);
+    return nothing;
+  }
+  double value = strtod(parser->next, &end);
+  if (isinf(value)) {
+    FAIL(parser, "%s: '%.*s' is too large for a number; expected one below 1e308", parser->place.what,
+         (int)(end - parser->next), parser->next);
+    return nothing;
+  }
+  if (end == parser->next || !isfinite(value) || isalnum((unsigned char)*end) || *end == '_' || *end == '.') {
+    FAIL(parser, "%s: '%.12s' is no number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
+         parser->place.what, parser->next);
+    return nothing;
+  }
+  parser->next = end;
+  /* 9.81 may carry a hidden unit, 2 and 0.5 are pure numbers. */
+  bool pure = 2 * value == floor(2 * value);
+  return (struct Quantity){.node = graph_constant(parser->graph, value),
+                           .dimension = pure ? dimension_one : dimension_unknown,
+                           .literal = true};
+}
+
+/* A whole number from an expression of compile-time numbers. */
+static long parse_whole(struct Parser *parser, const char *what) {
+  unsigned kinds = parser->place.kinds;
+  parser->place.kinds = 0;
+  struct Quantity value = parse_sum(parser);
+  parser->place.kinds = kinds;
+  if (parser->failed) return 0;
+  double number = graph_is_constant(parser->graph, value.node) ? graph_value(parser->graph, value.node) : NAN;
+  if (number == floor(number) && fabs(number) < 1e9) return (long)number;
+  FAIL(parser, "%s: %s is no whole number known when compiling", parser->place.what, what);
+  return 0;
+}
+
+static char *read_identifier(struct Parser *parser) {
+  size_t length = 0;
+  while (isalnum((unsigned char)parser->next[length]) || parser->next[length] == '_') length++;
+  char *identifier = format_text("%.*s", (int)length, parser->next);
+  parser->next += length;
+  return identifier;
+}
+
+/* The index after an identifier, if there is one. Takes and returns an allocated string. */
+static char *read_index(struct Parser *parser, char *name) {
+  if (*parser->next == '[') {
+    parser->next++;
+    long index = parse_whole(parser, "the index in brackets");
+    if (index < 0)
+      FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
+    expect_character(parser, ']', "after the only index of a name");
+    char *indexed = format_text("%s[%ld]", name, index);
+    free(name);
+    name = indexed;
+  }
+  return name;
+}
+
+/* The rest of a name after its first identifier. Takes and returns an allocated string. */
+static char *read_name_suffix(struct Parser *parser, char *name) {
+  name = read_index(parser, name);
+  while (!parser->failed && *parser->next == '.' &&
+         (isalpha((unsigned char)parser->next[1]) || parser->next[1] == '_')) {
+    parser->next++;
+    char *part = read_identifier(parser), *whole = format_text("%s.%s", name, part);
+    free(part);
+    free(name);
+    name = read_index(parser, whole);
+  }
+  return name;
+}
+
+/* Time derivatives that the system knows of an input. */
+static int derivatives_of_input(const struct Scope *scope, Node symbol) {
+  int count = 0;
+  while ((symbol = time_derivative_of_symbol(scope, symbol)) != ZERO) count++;
+  return count;
+}
+
+/* Where the motion rests on derivatives of the inputs in a node, which has this name. */
+static void require_input_derivatives(struct Parser *parser, Node node, const char *name) {
+  const struct Graph *graph = parser->graph;
+  int needed = parser->place.input_derivatives;
+  if (needed == 0 || parser->failed || !graph_depends_on(graph, node, INPUT)) return;
+  cone_collect(graph->cone, graph, &node, 1, NULL);
+  for (size_t i = 0; i < graph->cone->count; i++) {
+    Node symbol = graph->cone->nodes[i];
+    if (graph->vertices[symbol].operation != SYMBOL || !graph_depends_on(graph, symbol, INPUT)) continue;
+    int known = derivatives_of_input(parser->scope, symbol);
+    const char *input = graph_symbol_of(graph, symbol)->name;
+    if (known == 0 && is_derived(parser->place.what))
+      FAIL(parser, "%s cannot depend on inputs, but '%s' does%s, or an <input> with derivatives=\"%d\"",
+           parser->place.what, name, no_derivative, needed);
+    else if (known == 0)
+      FAIL(parser,
+           "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
+           "that says where a thing is moved to",
+           parser->place.what, name);
+    else if (known < needed && needed > 2)
+      FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->place.what, needed,
+           input);
+    else if (known < needed)
+      FAIL(parser, "%s needs 2 time derivatives of the input '%s', of which 1 is known; expected derivatives=\"2\"",
+           parser->place.what, input);
+  }
+}
+
+static struct Quantity look_up(struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Quantity *quantity = scope_find(parser->scope, full_name);
+  bool waits = quantity == NULL && definitions_wait_for(parser->scope->definitions, full_name);
+  free(full_name);
+  if (waits) return nothing;
+  if (quantity == NULL) {
+    report_unknown_name(parser, name);
+    return nothing;
+  }
+  if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
+  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~parser->place.kinds;
+  for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
+    if ((surplus >> kind & 1u) != 0)
+      FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
+           is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, parser->place.kinds));
+  if ((surplus & CONTACT_STATE) != 0)
+    FAIL(
+        parser,
+        "%s cannot depend on whether contacts are closed and frictions slide, but '%s' does; expected it in an <event> "
+        "or an <output>, such as an <event> that sets a <mode>",
+        parser->place.what, name);
+  require_input_derivatives(parser, quantity->node, name);
+  return *quantity;
+}
+
+/* Bounds with names may cross on purpose: sum(j, 2, i-1, ...) is empty for the first i. */
+static bool bounds_are_numbers(const char *begin, const char *end) {
+  while (begin < end && !isalpha((unsigned char)*begin)) begin++;
+  return begin == end;
+}
+
+/* Goes on to the parenthesis that closes the present one. What is passed over may name what is not there. */
+static void skip_to_end(struct Parser *parser) {
+  for (int depth = 0; *parser->next != '\0' && !(depth == 0 && *parser->next == ')'); parser->next++)
+    depth += (*parser->next == '(') - (*parser->next == ')');
+}
+
+/* sum(index, first, last, body): the body is read once for each value of the index. */
+static struct Quantity parse_repeated_sum(struct Parser *parser) {
+  char buffer[32];
+  skip_space(parser);
+  if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
+    FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
+         parser->place.what, found(parser, buffer));
+  char *index_name = read_identifier(parser), *index = scope_full_name(parser->scope, index_name);
+  expect_character(parser, ',', "after the index of sum(index, first, last, expression)");
+  const char *bounds = parser->next;
+  long first = parse_whole(parser, "the first index of sum(...)");
+  expect_character(parser, ',', "after the first index");
+  long last = parse_whole(parser, "the last index of sum(...)");
+  if (last < first - 1 && bounds_are_numbers(bounds, parser->next))
+    FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
+         first, last);
+  expect_character(parser, ',', "after the last index");
+  if (!parser->failed && scope_find(parser->scope, index) != NULL)
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
+         index_name);
+  const char *body = parser->next;
+  struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
+  if (first > last) skip_to_end(parser);
+  for (long i = first; !parser->failed && i <= last; i++) {
+    if (++parser->repetitions > REPETITION_LIMIT)
+      FAIL(parser, "%s: sum(...) has more than %d terms", parser->place.what, REPETITION_LIMIT);
+    parser->next = body;
+    scope_set_number(parser->scope, index, (double)i);
+    total = quantity_add(parser, total, parse_sum(parser));
+  }
+  scope_remove(parser->scope, index);
+  free(index_name);
+  free(index);
+  expect_character(parser, ')', "at the end of sum(...)");
+  return total;
+}
+
+/* Accelerations, forces of reaction, and inputs without derivatives of their own have none that a system knows. */
+static struct Quantity parse_derivative(struct Parser *parser) {
+  const struct Place place = parser->place;
+  parser->place.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
+  parser->place.input_derivatives++;
+  char *what = format_text("%s%s", derived, place.what);
+  parser->place.what = what;
+  struct Quantity value = parse_sum(parser);
+  parser->place = place;
+  free(what);
+  expect_character(parser, ')', "at the end of der(...)");
+  Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
+  for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
+    if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
+      FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
+           is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, place.kinds));
+  if (parser->failed) return nothing;
+  struct Dimension second;
+  const char *problem;
+  unit_parse("s", &second, &problem);
+  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
+}
+
+static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
+  bool has_two = table_has_two_arguments(table);
+  struct Quantity arguments[2] = {parse_sum(parser), nothing};
+  if (has_two) expect_character(parser, ',', "between the two arguments of a table");
+  if (has_two && !parser->failed) arguments[1] = parse_sum(parser);
+  expect_character(parser, ')', has_two ? "after the two arguments of a table" : "after the argument of a table");
+  return parser->failed ? nothing : table_at(parser, table, name, arguments);
+}
+
+/* The table of a name as the file calls it; NULL where there is none. */
+static const struct Table *find_table(const struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Table *table = table_named(parser->scope, full_name);
+  free(full_name);
+  return table;
+}
+
+static struct Quantity parse_call(struct Parser *parser, const char *name) {
+  const struct Table *table = find_table(parser, name);
+  if (table != NULL) return parse_table(parser, table, name);
+  if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
+  if (strcmp(name, "der") == 0) return parse_derivative(parser);
+  if (strcmp(name, "if") == 0) return parse_choice(parser);
+  bool is_root = strcmp(name, "sqrt") == 0;
+  enum Operation operation = is_root ? POWER : find_function(name);
+  if (operation == OPERATION_COUNT) {
+    report_unknown_function(parser, name);
+    return nothing;
+  }
+  int arity = is_root ? 1 : operation_arity(operation);
+  struct Quantity a = parse_sum(parser), b = nothing;
+  if (arity == 2) {
+    char *context = format_text("between the two arguments of %s", name);
+    expect_character(parser, ',', context);
+    free(context);
+    if (!parser->failed) b = parse_sum(parser);
+  }
+  char *context = format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name);
+  expect_character(parser, ')', context);
+  free(context);
+  if (parser->failed) return nothing;
+  if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
+  return operation == POWER ? quantity_power(parser, a, b) : quantity_function(parser, operation, a, b);
+}
+
+static void require_limits(struct Parser *parser) {
+  const char *limit = graph_limit(parser->graph);
+  if (limit == NULL) return;
+  if (parser->scope->diagnostics->errors > 0) parser->failed = true; /* said already */
+  else
+    FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->place.what, limit);
+}
+
+static struct Quantity parse_primary(struct Parser *parser) {
+  char buffer[32];
+  graph_work(parser->graph, PRIMARY_WORK);
+  require_limits(parser);
+  if (parser->failed) return nothing;
+  skip_space(parser);
+  char c = *parser->next;
+  if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1]))) return parse_literal(parser);
+  if (c == '(') {
+    parser->next++;
+    struct Quantity value = parse_sum(parser);
+    expect_character(parser, ')', "to close a parenthesis");
+    return value;
+  }
+  if (!isalpha((unsigned char)c) && c != '_') {
+    FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->place.what, found(parser, buffer),
+         hint_for_text(parser->text, parser->next));
+    return nothing;
+  }
+  char *name = read_identifier(parser);
+  const char *end = parser->next;
+  bool call = accept_character(parser, '(');
+  if (!call) {
+    parser->next = end; /* an error about the name is on its line */
+    name = read_name_suffix(parser, name);
+    end = parser->next;
+    call = !parser->failed && find_table(parser, name) != NULL && accept_character(parser, '(');
+    if (!call) parser->next = end;
+  }
+  struct Quantity value = nothing;
+  if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);
+  free(name);
+  return value;
+}
+
+static struct Quantity parse_power(struct Parser *parser) {
+  struct Quantity base = parse_primary(parser);
+  if (parser->failed || !accept_character(parser, '^')) return base;
+  enter(parser);
+  struct Quantity exponent = parser->failed ? nothing : parse_sign(parser);
+  parser->nesting--;
+  return parser->failed ? nothing : quantity_power(parser, base, exponent);
+}
+
+static struct Quantity parse_sign(struct Parser *parser) {
+  bool negative = false;
+  for (skip_space(parser); *parser->next == '-' || *parser->next == '+'; skip_space(parser))
+    negative ^= *parser->next++ == '-';
+  struct Quantity value = parse_power(parser);
+  if (negative) value.node = negate(parser->graph, value.node);
+  return value;
+}
+
+static struct Quantity parse_term(struct Parser *parser) {
+  struct Quantity value = parse_sign(parser);
+  while (!parser->failed) {
+    bool is_product = accept_character(parser, '*');
+    if (!is_product && !accept_character(parser, '/')) break;
+    struct Quantity factor = parse_sign(parser);
+    if (parser->failed) break;
+    value = (is_product ? quantity_multiply : quantity_divide)(parser, value, factor);
+  }
+  return value;
+}
+
+struct Quantity parse_sum(struct Parser *parser) {
+  enter(parser);
+  if (parser->failed) return nothing;
+  struct Quantity value = parse_term(parser);
+  while (!parser->failed) {
+    bool is_plus = accept_character(parser, '+');
+    if (!is_plus && !accept_character(parser, '-')) break;
+    struct Quantity term = parse_term(parser);
+    if (parser->failed) break;
+    value = (is_plus ? quantity_add : quantity_subtract)(parser, value, term);
+  }
+  parser->nesting--;
+  return value;
+}
+
+static struct Parser parser_of(struct Scope *scope, const char *text, struct Place place) {
+  return (struct Parser){
+      .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
+}
+
+/* False where the text has a mistake; the value is then nothing. */
+static bool read_text(struct Scope *scope, const char *text, struct Place place,
+                      struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
+  struct Parser parser = parser_of(scope, text, place);
+  char buffer[32];
+  scope->graph->not_finite = false;
+  *value = read(&parser);
+  skip_space(&parser);
+  if (!parser.failed && *parser.next == ')')
+    FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
+  if (!parser.failed && *parser.next != '\0')
+    FAIL(&parser, "%s: expected an operator or the end, found %s%s", place.what, found(&parser, buffer),
+         hint_for_text(text, parser.next));
+  require_limits(&parser);
+  if (parser.failed) *value = nothing;
+  return !parser.failed;
+}
+
+static bool read_expression(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
+  return read_text(scope, text, place, parse_sum, value);
+}
+
+struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
+  struct Quantity value;
+  read_expression(scope, text, place, &value);
+  return value;
+}
+
+static struct Quantity condition_as_quantity(struct Parser *parser) {
+  return (struct Quantity){.node = parse_condition(parser)};
+}
+
+bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value) {
+  bool compares = strpbrk(text, "<>") != NULL;
+  struct Quantity quantity;
+  bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
+  *value = is_right ? quantity.node : ZERO;
+  return is_right && (compares || graph_is_constant_in_time(scope->graph, quantity.node));
+}
+
+bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
+  place.kinds = 0;
+  struct Quantity quantity;
+  if (!read_expression(scope, text, place, &quantity)) return false;
+  *value = graph_value(scope->graph, quantity.node);
+  return true;
+}
+
+char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts) {
+  struct Parser parser = parser_of(scope, text, place);
+  char *name = NULL;
+  if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
+  if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
+    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]%s", place.what, text,
+         parts ? ", also of what is included, as in motor.theta" : "");
+  if (!parser.failed) return name;
+  free(name);
+  return NULL;
+}
+
+void define_language(struct Scope *scope) {
+  scope_set_number(scope, "pi", M_PI);
+  for (size_t i = 0; special_functions[i] != NULL; i++) scope_set_number(scope, special_functions[i], NAN);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
+}

@@ -1,0 +1,41 @@
+/* The expression language: plain infix text to nodes, with dimensions checked on the way. */
+#ifndef PARSER_H
+#define PARSER_H
+
+#include "read/names/scope.h"
+
+/* Where an expression stands, for messages, and what it may depend on. */
+struct Place {
+  long line;
+  const char *what;      /* such as "the potential" */
+  unsigned kinds;        /* bit k: may depend on symbols of kind k */
+  int input_derivatives; /* how many time derivatives inputs must have there */
+};
+
+/*
+ * Parses an expression. Errors are reported with their line, and the result is then 0 with an unknown dimension.
+ *
+ *   sum      = term { ("+" | "-") term }
+ *   term     = sign { ("*" | "/") sign }
+ *   sign     = { "-" | "+" } power
+ *   power    = primary [ "^" sign ]
+ *   primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
+ *            | "sum" "(" index "," first "," last "," sum ")" | "der" "(" sum ")"
+ *   name     = part { "." part }
+ *   part     = identifier [ "[" index expression "]" ]
+ */
+struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
+
+/* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
+bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
+
+/*
+ * Replaces the indices in a name by their values: theta[i+1] to theta[3]. parts: whether it may have several, as in
+ * motor.theta. Returns NULL after reporting an error.
+ */
+char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);
+
+/* Makes the names of the language itself known: pi and the functions. */
+void define_language(struct Scope *scope);
+
+#endif

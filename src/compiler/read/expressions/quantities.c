@@ -1,0 +1,130 @@
+#include "read/expressions/quantities.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "algebra/functions.h"
+#include "algebra/simplify.h"
+#include "read/names/branches.h"
+
+static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
+  if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
+  char *unit = unit_text(value.dimension);
+  FAIL(parser, "%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what, unit);
+  free(unit);
+}
+
+/* The dimension of a sum, a minimum and the like, whose operands must agree. */
+static struct Dimension common_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
+                                         const char *where) {
+  if (a.literal) return b.dimension;
+  if (b.literal) return a.dimension;
+  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) {
+    char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
+    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
+         where);
+    free(first);
+    free(second);
+  }
+  return a.dimension.known ? a.dimension : b.dimension;
+}
+
+/* All numbers made of numbers since the expression began must be finite. */
+static void require_finite(struct Parser *parser, const char *what) {
+  if (parser->graph->not_finite)
+    FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->place.what, what);
+}
+
+static struct Quantity sum_with(struct Parser *parser, struct Quantity a, struct Quantity b, Node node) {
+  struct Quantity result = {
+      .node = node, .dimension = common_dimension(parser, a, b, "sum"), .literal = a.literal && b.literal};
+  require_finite(parser, "a sum");
+  return result;
+}
+
+struct Quantity quantity_add(struct Parser *parser, struct Quantity a, struct Quantity b) {
+  return sum_with(parser, a, b, add(parser->graph, a.node, b.node));
+}
+
+struct Quantity quantity_subtract(struct Parser *parser, struct Quantity a, struct Quantity b) {
+  return sum_with(parser, a, b, subtract(parser->graph, a.node, b.node));
+}
+
+struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, struct Quantity b) {
+  struct Quantity result = {.node = multiply(parser->graph, a.node, b.node),
+                            .dimension = dimension_multiply(a.dimension, b.dimension, 1.0),
+                            .literal = a.literal && b.literal};
+  require_finite(parser, "a product");
+  return result;
+}
+
+struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct Quantity b) {
+  if (b.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
+  struct Quantity result = {.node = divide(parser->graph, a.node, b.node),
+                            .dimension = dimension_multiply(a.dimension, b.dimension, -1.0),
+                            .literal = a.literal && b.literal};
+  require_finite(parser, "a quotient");
+  return result;
+}
+
+static long line_after_reading(struct Parser *parser) {
+  return scope_line(parser->scope, current_line(parser));
+}
+
+/* A power or root of numbers that has a finite value, or of what may have one. */
+static void check_power(struct Parser *parser, Node base, Node exponent) {
+  const struct Graph *graph = parser->graph;
+  bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
+  double b = graph_value(graph, base), n = graph_value(graph, exponent);
+  if (base_given && exponent_given && graph->not_finite && n == 0.5)
+    FAIL(parser, "%s: sqrt(%g) is no real number; expected an argument %s", parser->place.what, b, domain_text(POWER));
+  else if (base_given && exponent_given && graph->not_finite)
+    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->place.what, b, n,
+         b < 0 ? "a positive base, or sign(x)*abs(x)^n for an odd root" : "another base or exponent");
+  else if (base_given && !exponent_given && b <= 0)
+    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
+  require_finite(parser, "a power");
+  if (!exponent_given || n != floor(n))
+    require_domain(&parser->scope->requirements, graph, POWER, base, line_after_reading(parser));
+}
+
+struct Quantity quantity_power(struct Parser *parser, struct Quantity base, struct Quantity exponent) {
+  require_dimensionless(parser, exponent, "an exponent");
+  struct Quantity result = {.node = power(parser->graph, base.node, exponent.node),
+                            .dimension = dimension_unknown,
+                            .literal = base.literal && exponent.literal};
+  check_power(parser, base.node, exponent.node);
+  if (graph_is_constant(parser->graph, exponent.node))
+    result.dimension = dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
+  else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
+  return result;
+}
+
+/* A function of numbers must have a finite value; one of variables must have one where these are. */
+static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
+  if (parser->graph->not_finite)
+    FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
+         operation_name(operation), graph_value(parser->graph, argument), domain_text(operation));
+  require_domain(&parser->scope->requirements, parser->graph, operation, argument, line_after_reading(parser));
+}
+
+struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
+                                  struct Quantity b) {
+  bool has_two = operation_arity(operation) == 2;
+  Node node = functions[operation].has_pieces
+                  ? pieces_of(parser->scope, operation, a.node, b.node, current_line(parser))
+                  : function(parser->graph, operation, a.node, b.node);
+  struct Quantity result = {.node = node, .dimension = dimension_one, .literal = a.literal && (!has_two || b.literal)};
+  check_function(parser, operation, a.node);
+  if (functions[operation].units == PURE_NUMBERS) {
+    char *what = format_text("the argument of %s", operation_name(operation));
+    require_dimensionless(parser, a, what);
+    if (has_two) require_dimensionless(parser, b, what);
+    free(what);
+    return result;
+  }
+  struct Dimension common = has_two ? common_dimension(parser, a, b, operation_name(operation)) : a.dimension;
+  if (functions[operation].units == UNIT_KEPT) result.dimension = common;
+  return result;
+}

@@ -1,0 +1,149 @@
+#include "read/expressions/unknown_names.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/functions.h"
+#include "base/memory.h"
+#include "read/names/definitions.h"
+#include "read/names/hints.h"
+#include "read/names/similar.h"
+#include "read/elements/tables.h"
+
+const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or", "not", NULL};
+
+enum Operation find_function(const char *name) {
+  int operation = 0;
+  while (operation < OPERATION_COUNT &&
+         (functions[operation].is_internal || strcmp(name, functions[operation].name) != 0))
+    operation++;
+  return (enum Operation)operation;
+}
+
+/* What may stand where numbers alone are allowed, or everything. */
+static const char *expected_names(const struct Parser *parser) {
+  if (parser->place.kinds == 1u << PARAMETER) return "a parameter or a constant";
+  return parser->place.kinds == 0 ? "a number, or a constant that stands further up"
+                                  : "a parameter, coordinate, velocity, input, definition or time";
+}
+
+static bool is_known(const struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  bool known =
+      scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+  free(full_name);
+  return known;
+}
+
+/* The components that a thing has, such as "bob.x or bob.y"; "" where there is none of this name. */
+static char *components_of(const struct Parser *parser, const char *body, size_t length) {
+  static const char *const components[] = {"x",      "y",      "z",      "angle",  "vx",     "vy",
+                                           "vz",     "ax",     "ay",     "az",     "omegaX", "omegaY",
+                                           "omegaZ", "alphaX", "alphaY", "alphaZ", "R11",    "R33"};
+  char *list = copy_text("");
+  for (size_t i = 0; i < sizeof components / sizeof *components; i++) {
+    char *name = format_text("%.*s.%s", (int)length, body, components[i]);
+    if (is_known(parser, name)) {
+      char *longer = format_text("%s%s%s", list, *list != '\0' ? " or " : "", name);
+      free(list);
+      list = longer;
+    }
+    free(name);
+  }
+  return list;
+}
+
+/* How many of name[1], name[2], ... there are. */
+static int count_indices(const struct Parser *parser, const char *name) {
+  enum { LIMIT = 1000 };
+  for (int i = 1; i <= LIMIT; i++) {
+    char *indexed = format_text("%s[%d]", name, i);
+    bool known = is_known(parser, indexed);
+    free(indexed);
+    if (!known) return i - 1;
+  }
+  return LIMIT;
+}
+
+void report_unknown_name(struct Parser *parser, const char *name) {
+  /* A search through all names is for messages that are shown. */
+  bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
+  const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
+  const char *point = strrchr(name, '.');
+  char *components = components_of(parser, name, point != NULL ? (size_t)(point - name) : strlen(name));
+  int indices = shown ? count_indices(parser, name) : 0;
+  const char *next = parser->next + strspn(parser->next, " \t\r\n");
+  if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
+  if (*components != '\0')
+    FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->place.what, name,
+         components);
+  else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->place.what, name, hint);
+  else if (indices > 0)
+    FAIL(parser, "%s: unknown name '%s'; expected %s[1], ..., %s[%d]", parser->place.what, name, name, name, indices);
+  else if (similar != NULL)
+    FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
+  else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));
+  free(components);
+}
+
+void report_reserved(struct Parser *parser, const char *name) {
+  bool is_function = find_function(name) < OPERATION_COUNT;
+  for (size_t i = 0; special_functions[i] != NULL; i++) is_function |= strcmp(name, special_functions[i]) == 0;
+  char *full_name = scope_full_name(parser->scope, name);
+  bool is_table = table_named(parser->scope, full_name) != NULL;
+  char *force = format_text("%s.force", full_name);
+  bool is_constraint = scope_find(parser->scope, force) != NULL;
+  free(full_name);
+  free(force);
+  if (is_constraint)
+    FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
+         name, name);
+  else if (is_function || is_table)
+    FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
+         parser->place.what, name, is_table ? "table" : "function", name);
+  else
+    FAIL(parser, "%s: '%s' is no variable but a result, which expressions cannot use; expected %s", parser->place.what,
+         name, expected_names(parser));
+}
+
+/* Those of one argument first. */
+static char *function_names(void) {
+  char *names = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&names, &length);
+  for (int arity = 1; arity <= 2; arity++)
+    for (int operation = 0; operation < OPERATION_COUNT; operation++)
+      if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
+        fprintf(file, "%s, ", functions[operation].name);
+  close_text(file, &names, &length);
+  return names;
+}
+
+/* Those of the file being read, as it calls them. */
+static void consider_tables(struct Similar *similar, const struct Scope *scope) {
+  size_t length = strlen(scope->prefix);
+  for (size_t i = 0; i < scope->tables->capacity; i++) {
+    const char *name = scope->tables->places[i].text;
+    if (name != NULL && strncmp(name, scope->prefix, length) == 0) similar_consider(similar, name + length);
+  }
+}
+
+void report_unknown_function(struct Parser *parser, const char *name) {
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
+  for (int operation = 0; operation < OPERATION_COUNT; operation++)
+    if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
+  consider_tables(&similar, parser->scope);
+  char *names = function_names(), *indexed = format_text("%s[1]", name);
+  if (similar.best != NULL && *hint_for_function(name) == '\0')
+    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
+  else if (is_known(parser, name))
+    FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
+  else if (*hint_for_function(name) != '\0')
+    FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
+  else if (is_known(parser, indexed))
+    FAIL(parser, "%s: '%s' is no function; write %s[...] for an index", parser->place.what, name, name);
+  else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
+  free(indexed);
+  free(names);
+}

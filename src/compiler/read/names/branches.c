@@ -1,0 +1,86 @@
+#include "read/names/branches.h"
+
+#include <stdlib.h>
+
+#include "algebra/cone.h"
+#include "algebra/functions.h"
+#include "algebra/simplify.h"
+#include "model/switches.h"
+#include "base/memory.h"
+
+/* Indicators that are compared in a step of work. */
+enum { COMPARISONS = 8 };
+
+static bool tells_of_contacts(const struct Switches *switches, const struct Cone *cone) {
+  bool tells = false;
+  for (size_t i = 0; i < switches->contact_count; i++) tells |= cone_has(cone, switches->contacts[i].mode);
+  for (size_t i = 0; i < switches->friction_count; i++) tells |= cone_has(cone, switches->frictions[i].told);
+  return tells;
+}
+
+unsigned kinds_that_decide(const struct Scope *scope, Node node) {
+  const struct Graph *graph = scope->graph;
+  unsigned kinds = graph->vertices[node].kinds;
+  if (scope->switches == NULL || !graph_depends_on(graph, node, MODE)) return kinds;
+  cone_collect(graph->cone, graph, &node, 1, NULL);
+  for (size_t i = 0; i < scope->switches->count; i++) {
+    const struct Switch *item = &scope->switches->items[i];
+    if (cone_has(graph->cone, item->mode)) kinds |= item->kinds;
+  }
+  if (tells_of_contacts(scope->switches, graph->cone)) kinds |= CONTACT_STATE;
+  return kinds;
+}
+
+/* The mode of the switch of this kind with this indicator; a new one where there is none. */
+static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_side) {
+  struct Switches *switches = scope->switches;
+  graph_work(scope->graph, switches->count / COMPARISONS);
+  for (size_t i = switches->count; i-- > 0;)
+    if (switches->items[i].indicator == indicator && switches->items[i].is_side == is_side)
+      return switches->items[i].mode;
+  char *name = format_text("%s in line %ld", function, scope_line(scope, line));
+  Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  free(name);
+  append_switch(switches, (struct Switch){.mode = mode,
+                                          .indicator = indicator,
+                                          .kinds = kinds_that_decide(scope, indicator),
+                                          .is_side = is_side,
+                                          .function = function,
+                                          .line = scope_line(scope, line)});
+  return mode;
+}
+
+static bool keeps_whole(const struct Scope *scope) {
+  return scope->switches == NULL || scope->keeps_whole;
+}
+
+static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_side) {
+  struct Graph *graph = scope->graph;
+  if (keeps_whole(scope) || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
+  Node base;
+  double factor = coefficient_of(graph, node, &base);
+  Node mode = mode_of(scope, base, function_name, line, is_side);
+  return factor < 0.0 ? negate(graph, mode) : mode;
+}
+
+Node branch_of(struct Scope *scope, Node node, const char *function_name, long line) {
+  return sign_of(scope, node, function_name, line, false);
+}
+
+Node side_of(struct Scope *scope, Node node, long line) {
+  return sign_of(scope, node, "the event", line, true);
+}
+
+Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
+  struct Graph *graph = scope->graph;
+  bool has_two = operation_arity(operation) == 2;
+  Node turning = has_two ? subtract(graph, left, right) : left;
+  if (keeps_whole(scope) || graph_is_constant_in_time(graph, turning)) return function(graph, operation, left, right);
+  Node sign = branch_of(scope, turning, functions[operation].name, line);
+  switch (operation) {
+  case ABSOLUTE: return multiply(graph, sign, left);
+  case SIGN: return sign;
+  case MAXIMUM: return choose_node(graph, sign, left, right);
+  default: return choose_node(graph, negate(graph, sign), left, right);
+  }
+}

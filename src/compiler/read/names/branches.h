@@ -1,0 +1,28 @@
+/*
+ * abs, sign, min, max, if and the knots of tables are smooth pieces. Which of them holds is a mode, the sign of a switching
+ * function, that events alone change: so every expression is smooth between events, and its pieces have series.
+ */
+#ifndef BRANCHES_H
+#define BRANCHES_H
+
+#include "read/names/scope.h"
+
+/*
+ * The sign of a node: -1, 0 or 1, a mode where it may change along the motion. function and line say what needs it, for
+ * messages.
+ */
+Node branch_of(struct Scope *scope, Node node, const char *function, long line);
+
+/* The side of 0 on which the expression of an event is: struct Switch.is_side. */
+Node side_of(struct Scope *scope, Node node, long line);
+
+/* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
+enum { CONTACT_STATE = 1 << 29 };
+
+/* The kinds of symbols that a node rests on, also by what decides on its pieces; CONTACT_STATE among them. */
+unsigned kinds_that_decide(const struct Scope *scope, Node node);
+
+/* abs, sign, min or max of nodes, by their pieces. */
+Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
+
+#endif

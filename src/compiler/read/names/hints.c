@@ -1,0 +1,156 @@
+#include "read/names/hints.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+struct Hint {
+  const char *written, *hint;
+};
+
+static const struct Hint of_text[] = {
+    {"**", "; write ^ for a power"},
+    {"*", "; write one * for a product and ^ for a power"},
+    {"%", "; there are no remainders and no percent"},
+    {"!", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"?", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"&", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
+    {"<", "; write if(x > 0, ..., ...) for values that depend on a condition"},
+    {">", "; write if(x > 0, ..., ...) for values that depend on a condition"},
+    {"=", "; write the value alone, without a name and ="},
+    {"[", "; write round parentheses, and [...] only for the index of a name"},
+    {"{", "; write round parentheses"},
+    {"|", "; write abs(...) for a magnitude"},
+    {"'", "; write der(...) for a time derivative"},
+    {";", "; write no ; at the end"},
+    {"\xc2\xb7", "; write * for a product"},
+    {"\xc3\x97", "; write * for a product"},
+    {"\xe2\x88\x92", "; write - for a minus sign"},
+    {"\xe2\x80\x93", "; write - for a minus sign"},
+    {"\xe2\x80\x94", "; write - for a minus sign"},
+    {"\xc2\xb2", "; write ^2 for a square"},
+    {"\xc2\xb3", "; write ^3 for a cube"},
+    {"\xc2\xb0", "; write radians, as in 30*pi/180"},
+    {"\xc2\xa0", "; write a plain blank, not one that keeps words together"},
+    {"\xe2\x80\x8b", "; an invisible character stands here: remove it"},
+};
+
+static const struct Hint of_functions[] = {
+    {"interp", "; write <table name=\"f\"> and f(x)"},
+    {"interpolate", "; write <table name=\"f\"> and f(x)"},
+    {"lookup", "; write <table name=\"f\"> and f(x)"},
+    {"table", "; write <table name=\"f\"> and f(x)"},
+    {"ln", "; write log for the natural logarithm"},
+    {"log10", "; write log(x)/log(10)"},
+    {"log2", "; write log(x)/log(2)"},
+    {"arcsin", "; write asin"},
+    {"arccos", "; write acos"},
+    {"arctan", "; write atan"},
+    {"arctan2", "; write atan2"},
+    {"fabs", "; write abs"},
+    {"sgn", "; write sign"},
+    {"diff", "; write der for a time derivative"},
+    {"ddt", "; write der for a time derivative"},
+    {"dot", "; write der for a time derivative"},
+    {"ddot", "; write der(v) of the velocity for an acceleration"},
+    {"sin2", "; write sin(...)^2"},
+    {"cos2", "; write cos(...)^2"},
+    {"ceil", "; there are no steps but those of sign"},
+    {"floor", "; there are no steps but those of sign"},
+    {"cbrt", "; write sign(x)*abs(x)^(1/3)"},
+};
+
+static const struct Hint of_names[] = {
+    {"t", "; write time for the time"},
+    {"e", "; write exp(x) for a power of e"},
+    {"nan", "; a value must be a finite number"},
+    {"NaN", "; a value must be a finite number"},
+    {"inf", "; a value must be a finite number, and a limit that is not there is left out"},
+    {"INF", "; a value must be a finite number, and a limit that is not there is left out"},
+    {"infinity", "; a value must be a finite number, and a limit that is not there is left out"},
+    {"Infinity", "; a value must be a finite number, and a limit that is not there is left out"},
+    {"true", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
+    {"false", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
+};
+
+static const struct Hint of_elements[] = {
+    {"lagrangian", "write the Lagrangian as <kinetic> and <potential>"},
+    {"Lagrangian", "write the Lagrangian as <kinetic> and <potential>"},
+    {"kineticEnergy", "write <kinetic>"},
+    {"potentialEnergy", "write <potential>"},
+    {"spring", "write <potential>k*x^2/2</potential> with the elongation x"},
+    {"damper", "write <dissipation>b*v^2/2</dissipation>"},
+    {"damping", "write <dissipation>b*v^2/2</dissipation>"},
+    {"mass", "write <particle mass=\"m\" x=\"...\"/>, or <body> with an inertia and an angle"},
+    {"link", "write <frame> and a <body> in it"},
+    {"joint", "write a <frame> that is turned or moved by a coordinate"},
+    {"variable", "write <parameter>, <input>, <coordinate>, <define> or <output>"},
+    {"import", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"system", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"subsystem", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"component", "write <include file=\"...\" as=\"...\"/> for another system as a part of this one"},
+    {"lookup", "write <table name=\"...\">, whose name is a function in expressions"},
+    {"curve", "write <table name=\"...\">, whose name is a function in expressions"},
+    {"array", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
+    {"vector", "write <parameter name=\"m\" values=\"1 2 3\"/> for m[1], m[2] and m[3]"},
+    {"collision", "write <contact gap=\"...\" restitution=\"...\"/>"},
+    {"impact", "write <contact gap=\"...\" restitution=\"...\"/>"},
+    {"limit", "write <stop coordinate=\"...\" min=\"...\" max=\"...\"/>"},
+    {"when", "write <event when=\"...\"> with <set> in it"},
+    {"state", "write <coordinate>, whose velocity is a state too"},
+};
+
+/* The hint for a text that is a word of the list, "" where it is none. */
+static const char *look_up(const struct Hint *list, size_t count, const char *text) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(text, list[i].written) == 0) return list[i].hint;
+  return "";
+}
+
+const char *hint_for_name(const char *name) {
+  size_t length = strlen(name);
+  if (length > 3 && strcmp(name + length - 3, "dot") == 0) return "; write der(...) for a time derivative";
+  return look_up(of_names, sizeof of_names / sizeof *of_names, name);
+}
+
+const char *hint_for_element(const char *name) {
+  return look_up(of_elements, sizeof of_elements / sizeof *of_elements, name);
+}
+
+/* Groups of three digits are as likely as decimals behind a comma. */
+static bool is_separator(const char *begin, const char *next) {
+  return next > begin && isdigit((unsigned char)next[-1]) && (*next == ',' || *next == '\'') &&
+         isdigit((unsigned char)next[1]);
+}
+
+const char *hint_for_text(const char *begin, const char *next) {
+  if (is_separator(begin, next))
+    return "; write a point in numbers, as in 9.81, and nothing between thousands, as in 1000";
+  if (next > begin && isdigit((unsigned char)*next) && next[-1] == ' ')
+    return "; write * for a product, and nothing between thousands, as in 1000";
+  if (strncmp(next, "deg", 3) == 0 && next > begin) return "; write radians, as in 30*pi/180";
+  if (next > begin && isalpha((unsigned char)*next) && next[-1] == ' ')
+    return "; write * for a product, and units in unit=\"...\"";
+  for (size_t i = 0; i < sizeof of_text / sizeof *of_text; i++)
+    if (strncmp(next, of_text[i].written, strlen(of_text[i].written)) == 0) return of_text[i].hint;
+  return ((unsigned char)*next & 0x80u) != 0 ? "; names have letters a to z, digits and _ alone" : "";
+}
+
+const char *hint_for_function(const char *name) {
+  return look_up(of_functions, sizeof of_functions / sizeof *of_functions, name);
+}
+
+const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
+  allowed &= ~(1u << MODE);
+  if (allowed == 0) return "; expected numbers and constants";
+  if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
+  if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
+  switch (kind) {
+  case INPUT: return "; expected it in a <force>";
+  case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
+  case DISPLACEMENT: return "; expected it in positions, angles, energies and forces";
+  case REACTION: return "; expected it in an <output>";
+  case ACCELERATION: return "; expected them in an <output> alone: inertia belongs in masses and <kinetic>";
+  default: return "";
+  }
+}

@@ -1,0 +1,76 @@
+/* The names that an expression may use, and what they stand for. */
+#ifndef SCOPE_H
+#define SCOPE_H
+
+#include "algebra/domain.h"
+#include "algebra/units/quantity.h"
+#include "base/diagnostics.h"
+#include "read/names/names.h"
+
+struct Definitions;
+struct Switches;
+
+struct Scope {
+  struct Graph *graph;
+  struct Diagnostics *diagnostics;
+  struct Names *names;              /* name -> struct Entry */
+  bool checks_units;                /* some variable has a unit; a file without any is free of them */
+  struct Requirements requirements; /* of all expressions read */
+  struct Names *tables;             /* full name -> struct Table, see tables.h */
+  struct Definitions *definitions;  /* names that may become known; NULL for none */
+  struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
+  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
+  size_t time_derivative_count;     /* of the symbols so far; branches make some without the scope */
+  const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
+  bool keeps_whole;                 /* the present expression stays whole */
+  long table_line;                  /* where the present table is used */
+  long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */
+};
+
+struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
+void scope_free(struct Scope *scope);
+
+/* Makes a name known. Where it is taken already, reports this and returns false. */
+bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line);
+
+/* A compile-time number; a second definition replaces the first. */
+void scope_set_number(struct Scope *scope, const char *name, double value);
+
+/* The same for the index of a loop, until it is removed. */
+void scope_set_index(struct Scope *scope, const char *name, double value);
+void scope_remove_index(struct Scope *scope, const char *name);
+void scope_remove(struct Scope *scope, const char *name);
+
+/* NULL where the name is unknown. */
+const struct Quantity *scope_find(const struct Scope *scope, const char *name);
+
+/*
+ * What the file being read calls by this name: with the prefix of the file, unless it is a word of the language. Free with
+ * free().
+ */
+char *scope_full_name(const struct Scope *scope, const char *name);
+
+/* The line in the system's own file for messages that come when no longer the file of the line is read. */
+long scope_line(const struct Scope *scope, long line);
+
+/* Whether a known name is a word of the language that has no value, such as that of a function. */
+bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity);
+
+/* The name of a value that was meant by an unknown one, as the file being read calls it, or NULL; see similar.h. */
+const char *scope_similar_name(const struct Scope *scope, const char *name);
+
+/* Whether two quantities may be added; always true where units are not checked. */
+bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second);
+
+/* Adds a symbol to graph and scope; its time derivative is set with scope_set_time_derivative. */
+Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
+                  long line);
+void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);
+
+/* As it was set; ZERO for a symbol of which none was. */
+Node time_derivative_of_symbol(const struct Scope *scope, Node symbol);
+
+/* d node / dt by the chain rule, the part explicit in time included. */
+Node total_time_derivative(struct Scope *scope, Node node);
+
+#endif

@@ -1,0 +1,72 @@
+#include "read/names/similar.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { NAME_LIMIT = 40 };
+
+static bool is_same_letter(char a, char b) {
+  return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+static size_t least(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
+/*
+ * The number of mistakes between two names, by optimal string alignment: Levenshtein's distance with exchanged
+ * neighbours as one mistake. Names of NAME_LIMIT letters and more are never near.
+ */
+static size_t edit_distance(const char *a, const char *b) {
+  size_t m = strlen(a), n = strlen(b);
+  if (m >= NAME_LIMIT || n >= NAME_LIMIT) return NAME_LIMIT;
+  size_t distance[NAME_LIMIT][NAME_LIMIT]; /* of the first i letters of a from the first j of b */
+  for (size_t i = 0; i <= m; i++) {
+    for (size_t j = 0; j <= n; j++) {
+      if (i == 0 || j == 0) {
+        distance[i][j] = i + j;
+        continue;
+      }
+      size_t best = distance[i - 1][j - 1] + !is_same_letter(a[i - 1], b[j - 1]);
+      best = least(best, least(distance[i - 1][j], distance[i][j - 1]) + 1);
+      if (i > 1 && j > 1 && is_same_letter(a[i - 1], b[j - 2]) && is_same_letter(a[i - 2], b[j - 1]))
+        best = least(best, distance[i - 2][j - 2] + 1);
+      distance[i][j] = best;
+    }
+  }
+  return distance[m][n];
+}
+
+/* How many mistakes a name has room for. */
+static size_t allowed_mistakes(const char *name) {
+  size_t length = strlen(name);
+  return length < 3 ? 0 : length < 6 ? 1 : 2;
+}
+
+static size_t common_beginning(const char *a, const char *b) {
+  size_t length = 0;
+  while (a[length] != '\0' && is_same_letter(a[length], b[length])) length++;
+  return length;
+}
+
+/* Whether a known name is better than the best so far. */
+static bool is_better(const struct Similar *similar, const char *known, size_t distance) {
+  if (similar->best == NULL) return true;
+  if (distance != similar->distance) return distance < similar->distance;
+  size_t same = common_beginning(similar->wanted, known), best = common_beginning(similar->wanted, similar->best);
+  return same != best ? same > best : strcmp(known, similar->best) < 0;
+}
+
+void similar_consider(struct Similar *similar, const char *known) {
+  size_t distance = edit_distance(similar->wanted, known);
+  size_t allowed = least(allowed_mistakes(similar->wanted), allowed_mistakes(known));
+  if (distance > allowed || !is_better(similar, known, distance)) return;
+  similar->best = known;
+  similar->distance = distance;
+}
+
+void similar_consider_all(struct Similar *similar, const struct Names *names) {
+  for (size_t i = 0; i < names->capacity; i++)
+    if (names->places[i].text != NULL) similar_consider(similar, names->places[i].text);
+}

@@ -1,0 +1,57 @@
+/* A robot as its URDF describes it: links, and joints that connect them to a tree. */
+#ifndef ROBOT_H
+#define ROBOT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "read/robots/rigid_body.h"
+
+enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, JOINT_TYPES };
+
+struct Link {
+  char *name;   /* as in the file */
+  char *symbol; /* the same as a name of the language */
+  long line;
+  struct RigidBody body; /* in the link's frame; without inertia where the file gives none */
+  /* What robot_connect() finds: */
+  struct Joint *joint;                     /* that carries the link; NULL of the root */
+  struct Link *first_child, *next_sibling; /* in the order of the file */
+  struct Link *next;                       /* parents before their children; NULL of the last */
+  struct Link *carrier;     /* the link that moves, or the root, to which this one is fixed; itself if it moves */
+  struct Placement place;   /* of this link in its carrier */
+  struct RigidBody carried; /* of a carrier: all that is fixed to it, in its frame */
+  bool moves_inertia;       /* of a carrier: it or what hangs on it has some */
+};
+
+struct Joint {
+  char *name, *symbol;
+  long line;
+  enum JointType type;
+  char *parent_name, *child_name;
+  struct Placement origin; /* of the child in the parent, where the joint's coordinates are 0 */
+  double axis[3];          /* of length 1, in the child */
+  double lower, upper;     /* NAN: no limit */
+  double damping, friction;
+  char *mimicked_name; /* NULL unless the joint's position is multiplier*(that of the mimicked one) + offset */
+  double multiplier, offset;
+  /* What robot_connect() finds: */
+  struct Link *parent, *child;
+  struct Joint *
+      leader; /* the joint with the coordinate that gives the position ratio*(that of the leader) + shift; itself mostly */
+  double ratio, shift;
+  bool is_mimicked;
+};
+
+struct Robot {
+  char *name;
+  long line;
+  struct Link **links;
+  struct Joint **joints;
+  size_t link_count, joint_count;
+  struct Link *root;
+};
+
+void robot_free(struct Robot *robot);
+
+#endif

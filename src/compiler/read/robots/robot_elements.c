@@ -1,0 +1,85 @@
+#include "read/robots/robot_elements.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/formula.h"
+#include "base/memory.h"
+
+enum { LINE_LIMIT = 65535 }; /* of what libxml2 has room for in an element */
+
+xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name) {
+  xmlNodePtr node = xmlNewChild(parent, NULL, (const xmlChar *)name, NULL);
+  node->line = (unsigned short)(writer->line < LINE_LIMIT ? writer->line : LINE_LIMIT);
+  return node;
+}
+
+xmlNodePtr write_element(const struct Writer *writer, const char *name) {
+  return write_element_in(writer, writer->system, name);
+}
+
+void set_attribute(xmlNodePtr node, const char *attribute, char *value) {
+  xmlNewProp(node, (const xmlChar *)attribute, (const xmlChar *)value);
+  free(value);
+}
+
+void set_content(xmlNodePtr node, char *text) {
+  xmlNodeAddContent(node, (const xmlChar *)text);
+  free(text);
+}
+
+void set_number(xmlNodePtr node, const char *attribute, double value) {
+  if (value != 0) set_attribute(node, attribute, number(value));
+}
+
+void write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description) {
+  xmlNodePtr parameter = write_element(writer, "parameter");
+  set_attribute(parameter, "name", name);
+  set_attribute(parameter, "start", number(value));
+  set_attribute(parameter, "unit", copy_text(unit));
+  set_attribute(parameter, "description", description);
+}
+
+void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description) {
+  xmlNodePtr output = write_element(writer, "output");
+  set_attribute(output, "name", name);
+  set_attribute(output, "unit", copy_text(unit));
+  set_attribute(output, "description", description);
+  set_content(output, expression);
+}
+
+xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description) {
+  xmlNodePtr coordinate = write_element(writer, "coordinate");
+  set_attribute(coordinate, "name", copy_text(name));
+  set_attribute(coordinate, "velocity", format_text("%s_velocity", name));
+  set_attribute(coordinate, "unit", copy_text(unit));
+  set_attribute(coordinate, "description", copy_text(description));
+  return coordinate;
+}
+
+void write_motor(const struct Writer *writer, const char *name, const char *unit, const char *description) {
+  bool is_length = strcmp(unit, "m") == 0;
+  const char *effort = is_length ? "force" : "torque";
+  write_coordinate(writer, name, unit, description);
+  xmlNodePtr input = write_element(writer, "input"), force = write_element(writer, "force");
+  set_attribute(input, "name", format_text("%s_%s", name, effort));
+  set_attribute(input, "unit", copy_text(is_length ? "N" : "N.m"));
+  set_attribute(input, "description", format_text("%s along %s", effort, name));
+  set_attribute(force, "coordinate", copy_text(name));
+  set_content(force, format_text("%s_%s", name, effort));
+}
+
+char *number(double value) {
+  char text[NUMBER_LENGTH];
+  number_text(value, text);
+  return copy_text(text);
+}
+
+char *term(double factor, const char *name) {
+  if (factor == 1) return copy_text(name);
+  if (factor == -1) return format_text("-%s", name);
+  char *text = number(factor), *product = format_text("%s*%s", text, name);
+  free(text);
+  return product;
+}

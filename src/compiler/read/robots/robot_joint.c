@@ -1,0 +1,205 @@
+#include "read/robots/robot_joint.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "read/robots/robot_tree.h"
+#include "read/robots/urdf.h"
+
+static const char *const axes[3] = {"x", "y", "z"};
+
+/*
+ * Velocities at which friction has 76 % (tanh 1) of its full force: small beside those of joints in motion, and large enough for
+ * solvers.
+ */
+static const double creep_rate = 0.01, creep_velocity = 0.001;
+
+static bool is_sliding(const struct Joint *joint) {
+  return joint->type == PRISMATIC;
+}
+
+static const char *unit_of_joint(const struct Joint *joint) {
+  return is_sliding(joint) ? "m" : "rad";
+}
+
+void write_friction_parameters(const struct Writer *writer, const struct Robot *robot) {
+  static const char meaning[] = "velocity at which friction has 76 % of its full force";
+  bool turns = false, slides = false;
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    const struct Joint *joint = robot->joints[i];
+    slides |= joint->friction > 0 && is_sliding(joint);
+    turns |= joint->friction > 0 && !is_sliding(joint);
+  }
+  if (turns) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
+  if (slides) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
+}
+
+/* The joint's velocity, and what it is times that of the joint with the coordinate. */
+struct Motion {
+  char *velocity, *ratio;
+};
+
+/* What the leader's position is multiplied by: where one of the two turns and the other slides a parameter, which has a unit. */
+static char *ratio_of(const struct Joint *joint) {
+  bool has_unit = is_sliding(joint) != is_sliding(joint->leader);
+  return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
+}
+
+/* Free with free(). */
+static char *position_of(const struct Joint *joint) {
+  if (joint->leader == joint) return copy_text(joint->symbol);
+  char *ratio = ratio_of(joint), *shift = number(fabs(joint->shift));
+  char *position = format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
+  free(ratio);
+  free(shift);
+  return position;
+}
+
+/* The position of what mimics another joint is an output, with no coordinate behind it. */
+static struct Motion write_follower(const struct Writer *writer, const struct Joint *joint, const char *description) {
+  const char *name = joint->symbol, *leader = joint->leader->symbol;
+  if (is_sliding(joint) != is_sliding(joint->leader))
+    write_parameter(writer, ratio_of(joint), joint->ratio, is_sliding(joint) ? "m/rad" : "rad/m",
+                    format_text("velocity of %s over that of %s", name, leader));
+  write_output(writer, copy_text(name), unit_of_joint(joint), position_of(joint), copy_text(description));
+  char *ratio = ratio_of(joint);
+  return (struct Motion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
+}
+
+static void write_losses(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+  const char *name = joint->symbol;
+  if (joint->damping > 0) {
+    write_parameter(writer, format_text("%s_damping", name), joint->damping, is_sliding(joint) ? "N.s/m" : "N.m.s/rad",
+                    format_text("viscous damping of %s", name));
+    set_content(write_element(writer, "dissipation"), format_text("%s_damping*%s^2/2", name, motion->velocity));
+  }
+  if (joint->friction > 0) {
+    write_parameter(writer, format_text("%s_friction", name), joint->friction, is_sliding(joint) ? "N" : "N.m",
+                    format_text("Coulomb friction of %s", name));
+    xmlNodePtr force = write_element(writer, "force");
+    set_attribute(force, "coordinate", copy_text(joint->leader->symbol));
+    set_content(force, format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
+                                   is_sliding(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
+  }
+}
+
+static void write_limits(const struct Writer *writer, const struct Joint *joint) {
+  if (isnan(joint->lower)) return;
+  const char *name = joint->symbol;
+  char *lower = number(joint->lower), *upper = number(joint->upper);
+  write_output(writer, format_text("%s_beyond", name), unit_of_joint(joint),
+               format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
+               format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
+  free(lower);
+  free(upper);
+}
+
+static void write_single(const struct Writer *writer, const struct Joint *joint, const char *description) {
+  struct Motion motion;
+  if (joint->leader == joint) {
+    write_motor(writer, joint->symbol, unit_of_joint(joint), description);
+    motion = (struct Motion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
+  } else motion = write_follower(writer, joint, description);
+  write_losses(writer, joint, &motion);
+  write_limits(writer, joint);
+  free(motion.velocity);
+  free(motion.ratio);
+}
+
+static void write_planar(const struct Writer *writer, const struct Joint *joint, const char *description) {
+  static const char *const coordinates[3][2] = {{"x", "m"}, {"y", "m"}, {"angle", "rad"}};
+  for (int i = 0; i < 3; i++) {
+    char *name = format_text("%s_%s", joint->symbol, coordinates[i][0]);
+    write_motor(writer, name, coordinates[i][1], description);
+    free(name);
+  }
+}
+
+void write_free_coordinates(const struct Writer *writer, const char *name, const char *description) {
+  static const char *const components[7] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
+  for (int i = 0; i < 7; i++) {
+    char *full_name = format_text("%s_%s", name, components[i]);
+    xmlNodePtr coordinate = write_coordinate(writer, full_name, i < 3 ? "m" : "1", description);
+    if (i == 3) set_attribute(coordinate, "start", number(1)); /* not turned */
+    free(full_name);
+  }
+}
+
+void write_joint(const struct Writer *writer, const struct Joint *joint) {
+  char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
+                                  joint->parent->name, joint->child->name);
+  if (joint_is_single(joint)) write_single(writer, joint, description);
+  else if (joint->type == PLANAR) write_planar(writer, joint, description);
+  else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, description);
+  free(description);
+}
+
+/* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */
+static void write_turn(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *angle) {
+  xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
+  int along = 0;
+  while (along < 3 && fabs(axis[along]) != 1) along++;
+  if (along < 3) {
+    set_attribute(rotation, "axis", copy_text(axes[along]));
+    set_attribute(rotation, "angle", term(axis[along], angle));
+    return;
+  }
+  char *text[3];
+  for (int i = 0; i < 3; i++) text[i] = number(axis[i]);
+  set_attribute(rotation, "axis", format_text("%s %s %s", text[0], text[1], text[2]));
+  set_attribute(rotation, "angle", copy_text(angle));
+  for (int i = 0; i < 3; i++) free(text[i]);
+}
+
+static void write_slide(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *length) {
+  xmlNodePtr translation = write_element_in(writer, frame, "translate");
+  for (int i = 0; i < 3; i++)
+    if (axis[i] != 0) set_attribute(translation, axes[i], term(axis[i], length));
+}
+
+/*
+ * Two axes that are at right angles to this one and to each other: x and y for z, y and z for x, z and x for y. For an axis between
+ * these, the first is as close as can be to that for the one of them which is nearest.
+ */
+static void axes_across(const double axis[3], double first[3], double second[3]) {
+  int nearest = 0;
+  for (int i = 1; i < 3; i++)
+    if (fabs(axis[i]) > fabs(axis[nearest])) nearest = i;
+  int next = (nearest + 1) % 3;
+  double length = sqrt(1 - axis[next] * axis[next]);
+  for (int i = 0; i < 3; i++) first[i] = ((i == next) - axis[next] * axis[i]) / length;
+  for (int i = 0; i < 3; i++)
+    second[i] = axis[(i + 1) % 3] * first[(i + 2) % 3] - axis[(i + 2) % 3] * first[(i + 1) % 3];
+}
+
+static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
+  double across[2][3];
+  axes_across(joint->axis, across[0], across[1]);
+  for (int i = 0; i < 2; i++) {
+    char *name = format_text("%s_%s", joint->symbol, axes[i]);
+    write_slide(writer, frame, across[i], name);
+    free(name);
+  }
+  char *angle = format_text("%s_angle", joint->symbol);
+  write_turn(writer, frame, joint->axis, angle);
+  free(angle);
+}
+
+void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name) {
+  xmlNodePtr translation = write_element_in(writer, frame, "translate"),
+             rotation = write_element_in(writer, frame, "rotate");
+  for (int i = 0; i < 3; i++) set_attribute(translation, axes[i], format_text("%s_%s", name, axes[i]));
+  set_attribute(rotation, "quaternion", format_text("%s_qw %s_qx %s_qy %s_qz", name, name, name, name));
+}
+
+void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
+  if (joint->type == FLOATING) write_free_motion(writer, frame, joint->symbol);
+  else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);
+  else if (joint_is_single(joint)) {
+    char *position = position_of(joint);
+    if (is_sliding(joint)) write_slide(writer, frame, joint->axis, position);
+    else write_turn(writer, frame, joint->axis, position);
+    free(position);
+  }
+}

@@ -1,0 +1,21 @@
+/* What a joint of a robot becomes: coordinates, motors, losses, limits, and the motion of a frame. */
+#ifndef ROBOT_JOINT_H
+#define ROBOT_JOINT_H
+
+#include "read/robots/robot.h"
+#include "read/robots/robot_elements.h"
+
+/* The parameters that the friction of joints shares. */
+void write_friction_parameters(const struct Writer *writer, const struct Robot *robot);
+
+/* Coordinates and what else there is of a joint beside its frame. */
+void write_joint(const struct Writer *writer, const struct Joint *joint);
+
+/* The six degrees of freedom of a free body, in coordinates whose names begin with this one. */
+void write_free_coordinates(const struct Writer *writer, const char *name, const char *description);
+
+/* Turns and moves the frame of the joint's child by the coordinates. */
+void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint);
+void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name);
+
+#endif

@@ -1,0 +1,154 @@
+#include "read/robots/robot_system.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/robots/robot_elements.h"
+#include "read/robots/robot_joint.h"
+#include "read/robots/robot_tree.h"
+#include "read/xml/schema.h"
+#include "read/robots/urdf.h"
+
+/* Of a floating base, and of the point at the tool. */
+static const char base[] = "base", tool[] = "tool";
+
+static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
+  static const char *const names[3] = {"x", "y", "z"};
+  const double *shift = placement->translation;
+  double angles[3];
+  placement_angles(placement, angles);
+  xmlNodePtr translation =
+      shift[0] != 0 || shift[1] != 0 || shift[2] != 0 ? write_element_in(writer, frame, "translate") : NULL;
+  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, names[i], shift[i]);
+  for (int i = 2; i >= 0; i--) {
+    if (angles[i] == 0) continue;
+    xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
+    set_attribute(rotation, "axis", copy_text(names[i]));
+    set_number(rotation, "angle", angles[i]);
+  }
+}
+
+/* All that is fixed to the link and moves with it, as one body, or particle where there is no moment of inertia. */
+static void write_body(const struct Writer *writer, const struct Link *link) {
+  static const char *const positions[3] = {"x", "y", "z"};
+  static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
+  const struct RigidBody *body = &link->carried;
+  if (!body_has_inertia(body)) return;
+  xmlNodePtr node = write_element(writer, "body");
+  set_attribute(node, "name", format_text("%s_body", link->symbol));
+  set_attribute(node, "in", copy_text(link->symbol));
+  set_attribute(node, "mass", number(body->mass));
+  for (int i = 0; i < 3; i++) set_number(node, positions[i], body->center[i]);
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
+}
+
+/* The frame of a link, in that of the link to which the joint's other side is fixed. */
+static void write_link(struct Writer *writer, const struct Link *link, bool floats) {
+  const struct Joint *joint = link->joint;
+  bool moves = joint_moves(joint);
+  if (moves) {
+    writer->line = joint->line;
+    write_joint(writer, joint);
+  }
+  writer->line = link->line;
+  if (joint == NULL && floats) write_free_coordinates(writer, base, "free motion of the base");
+  xmlNodePtr frame = write_element(writer, "frame");
+  set_attribute(frame, "name", copy_text(link->symbol));
+  if (joint != NULL) {
+    const struct Link *parent = joint->parent;
+    struct Placement placement = placement_within(&parent->place, &joint->origin);
+    set_attribute(frame, "in", copy_text(parent->carrier->symbol));
+    write_placement(writer, frame, &placement);
+    write_motion(writer, frame, joint);
+  } else if (floats) write_free_motion(writer, frame, base);
+  if (moves || (joint == NULL && floats)) write_body(writer, link);
+}
+
+/* The link without children, where there is one alone. */
+static const struct Link *only_end(const struct Robot *robot) {
+  const struct Link *end = NULL;
+  for (const struct Link *link = robot->root; link != NULL; link = link->next) {
+    if (link->first_child != NULL) continue;
+    if (end != NULL) return NULL;
+    end = link;
+  }
+  return end;
+}
+
+static void write_tool(struct Writer *writer, const struct Link *link) {
+  static const char *const names[3] = {"x", "y", "z"};
+  writer->line = link->line;
+  xmlNodePtr point = write_element(writer, "point");
+  set_attribute(point, "name", copy_text(tool));
+  set_attribute(point, "in", copy_text(link->symbol));
+  for (int i = 0; i < 3; i++)
+    write_output(writer, format_text("%s_%s", tool, names[i]), "m", format_text("%s.%s", tool, names[i]),
+                 format_text("position of '%s' along %s", link->name, names[i]));
+  for (int i = 0; i < 3; i++)
+    write_output(writer, format_text("%s_v%s", tool, names[i]), "m/s", format_text("%s.v%s", tool, names[i]),
+                 format_text("velocity of '%s' along %s", link->name, names[i]));
+}
+
+static bool has_losses(const struct Robot *robot) {
+  for (size_t i = 0; i < robot->joint_count; i++)
+    if (robot->joints[i]->damping > 0 || robot->joints[i]->friction > 0) return true;
+  return false;
+}
+
+static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end, bool floats) {
+  set_attribute(writer->system, "name", robot_symbol(robot->name));
+  set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
+  write_parameter(writer, copy_text("g"), 9.81, "m/s2", copy_text("gravitational acceleration, along -z"));
+  set_attribute(write_element(writer, "gravity"), "z", copy_text("-g"));
+  write_friction_parameters(writer, robot);
+  for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link, floats);
+  if (end != NULL) write_tool(writer, end);
+  writer->line = robot->line;
+  /* Nothing else in a robot can be stiff. */
+  if (!has_losses(robot)) set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
+  xmlNodePtr experiment = write_element(writer, "experiment");
+  set_attribute(experiment, "stopTime", number(1));
+  set_attribute(experiment, "stepSize", number(0.01));
+}
+
+/* Reports a robot in which nothing moves, or has no mass as a whole. */
+static void check_motion(const struct Robot *robot, bool floats, struct Diagnostics *diagnostics) {
+  bool moves = floats;
+  for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
+  if (!moves)
+    report_error(
+        diagnostics, robot->line,
+        "no joint of the robot moves; expected one of another type than fixed, or base=\"floating\" in an <include>");
+  else if (floats && !robot->root->moves_inertia)
+    report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
+}
+
+bool is_robot(xmlDocPtr document) {
+  return xmlStrEqual(xmlDocGetRootElement(document)->name, (const xmlChar *)"robot");
+}
+
+xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  int errors = diagnostics->errors;
+  bool floats = options->base != NULL && strcmp(options->base, "floating") == 0;
+  struct Robot *robot = urdf_read(xmlDocGetRootElement(document), diagnostics);
+  const struct Link *end = NULL;
+  if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
+    check_motion(robot, floats, diagnostics);
+    end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
+  }
+  xmlFreeDoc(document);
+  document = NULL;
+  if (diagnostics->errors == errors) {
+    document = xmlNewDoc((const xmlChar *)"1.0");
+    struct Writer writer = {.system = xmlNewNode(NULL, (const xmlChar *)"system"), .line = robot->line};
+    xmlDocSetRootElement(document, writer.system);
+    write_robot(&writer, robot, end, floats);
+    schema_check(document, diagnostics);
+  }
+  robot_free(robot);
+  if (diagnostics->errors == errors) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}

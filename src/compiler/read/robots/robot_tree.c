@@ -1,0 +1,302 @@
+#include "read/robots/robot_tree.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/names/names.h"
+#include "read/names/similar.h"
+#include "read/expressions/unknown_names.h"
+
+/* Links or joints by their names in the file, and by the symbols that are made of these. */
+struct Register {
+  const char *kind;
+  struct Names *names, *symbols; /* -> struct Entry */
+};
+
+struct Entry {
+  const char *name;
+  long line;
+  size_t index;
+};
+
+struct Connection {
+  struct Robot *robot;
+  struct Register links, joints;
+  struct Diagnostics *diagnostics;
+};
+
+bool joint_moves(const struct Joint *joint) {
+  return joint != NULL && joint->type != FIXED;
+}
+
+bool joint_is_single(const struct Joint *joint) {
+  return joint->type == REVOLUTE || joint->type == CONTINUOUS || joint->type == PRISMATIC;
+}
+
+static struct Register register_create(const char *kind) {
+  return (struct Register){.kind = kind, .names = names_create(), .symbols = names_create()};
+}
+
+static void register_free(struct Register *all) {
+  names_free(all->names);
+  names_free(all->symbols);
+}
+
+char *robot_symbol(const char *name) {
+  char *symbol = format_text("%s%s", isdigit((unsigned char)*name) ? "_" : "", name);
+  for (char *c = symbol; *c != '\0'; c++)
+    if (!isalnum((unsigned char)*c)) *c = '_';
+  return symbol;
+}
+
+/* The same for what is in a system, in which there are other names for each robot. */
+static char *symbol_in_system(const char *name) {
+  static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity", "pi", "time"};
+  bool is_taken = find_function(name) < OPERATION_COUNT;
+  for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) is_taken |= strcmp(name, taken[i]) == 0;
+  for (size_t i = 0; special_functions[i] != NULL; i++) is_taken |= strcmp(name, special_functions[i]) == 0;
+  return is_taken ? format_text("%s_", name) : robot_symbol(name);
+}
+
+/* The entry that has the text already; else NULL, and it has a new one. */
+static const struct Entry *enter(struct Names *names, const char *text, struct Entry entry) {
+  const struct Entry *before = names_find(names, text);
+  if (before != NULL) return before;
+  struct Entry *own = allocate(1, sizeof *own);
+  *own = entry;
+  names_set(names, text, own);
+  return NULL;
+}
+
+/* Returns the symbol of the name; reports a name or a symbol that was there before. */
+static char *enter_name(struct Connection *connection, struct Register *all, struct Entry entry) {
+  char *symbol = symbol_in_system(entry.name);
+  const struct Entry *same = enter(all->names, entry.name, entry);
+  const struct Entry *alike = same == NULL ? enter(all->symbols, symbol, entry) : NULL;
+  if (same != NULL)
+    report_error(connection->diagnostics, entry.line, "the %s '%s' is there on line %ld already; expected another name",
+                 all->kind, entry.name, same->line);
+  else if (alike != NULL)
+    report_error(
+        connection->diagnostics, entry.line,
+        "the %s '%s' and '%s' on line %ld both become '%s'; expected names that differ in letters, digits or _",
+        all->kind, entry.name, alike->name, alike->line, symbol);
+  return symbol;
+}
+
+static void enter_names(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->link_count; i++) {
+    struct Link *link = robot->links[i];
+    link->symbol = enter_name(connection, &connection->links, (struct Entry){link->name, link->line, i});
+  }
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    struct Joint *joint = robot->joints[i];
+    joint->symbol = enter_name(connection, &connection->joints, (struct Entry){joint->name, joint->line, i});
+  }
+}
+
+static void report_missing(const char *kind, const char *name, const char *what, long line,
+                           const struct Similar *similar, struct Diagnostics *diagnostics) {
+  report_error(diagnostics, line, "there is no %s '%s' for %s; %s%s%s", kind, name, what,
+               similar->best != NULL ? "did you mean '" : "expected one of the file",
+               similar->best != NULL ? similar->best : "", similar->best != NULL ? "'?" : "");
+}
+
+/* What the register has under this name; NULL after reporting that there is nothing. */
+static const struct Entry *find(const struct Connection *connection, const struct Register *all, const char *name,
+                                const char *what, long line) {
+  const struct Entry *entry = names_find(all->names, name);
+  if (entry != NULL) return entry;
+  struct Similar similar = {.wanted = name};
+  similar_consider_all(&similar, all->names);
+  report_missing(all->kind, name, what, line, &similar, connection->diagnostics);
+  return NULL;
+}
+
+static struct Link *find_link(const struct Connection *connection, const char *name, const char *role,
+                              const struct Joint *joint) {
+  char *what = format_text("the %s of the joint '%s'", role, joint->name);
+  const struct Entry *entry = find(connection, &connection->links, name, what, joint->line);
+  free(what);
+  return entry != NULL ? connection->robot->links[entry->index] : NULL;
+}
+
+/* Joints with their two links; from the last one, so that children are in the order of the file. */
+static void connect_links(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = robot->joint_count; i-- > 0;) {
+    struct Joint *joint = robot->joints[i];
+    struct Link *parent = joint->parent = find_link(connection, joint->parent_name, "parent", joint);
+    struct Link *child = joint->child = find_link(connection, joint->child_name, "child", joint);
+    if (parent == NULL || child == NULL) continue;
+    if (child->joint != NULL) {
+      report_error(
+          connection->diagnostics, child->joint->line,
+          "the link '%s' is the child of the joint '%s' and of '%s' on line %ld; expected a tree, in which each "
+          "link has one parent (a loop is closed by a <constraint> around an <include>)",
+          child->name, child->joint->name, joint->name, joint->line);
+      continue;
+    }
+    child->joint = joint;
+    child->next_sibling = parent->first_child;
+    parent->first_child = child;
+  }
+}
+
+/* The one link that no joint carries. */
+static void find_root(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->link_count; i++) {
+    struct Link *link = robot->links[i];
+    if (link->joint != NULL) continue;
+    if (robot->root == NULL) robot->root = link;
+    else
+      report_error(
+          connection->diagnostics, link->line,
+          "no joint has the link '%s' as its child, nor '%s' on line %ld; expected one such link, the root of all",
+          link->name, robot->root->name, robot->root->line);
+  }
+  if (robot->link_count == 0)
+    report_error(connection->diagnostics, robot->line, "the robot has no <link>; expected one at least");
+}
+
+/* The link after this one, parents before children, in the order of the file. */
+static struct Link *following(const struct Link *link) {
+  if (link->first_child != NULL) return link->first_child;
+  while (link->next_sibling == NULL && link->joint != NULL) link = link->joint->parent;
+  return link->next_sibling;
+}
+
+/* What a root does not reach hangs on a link that is its own ancestor. */
+static void order_links(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  bool *reached = allocate(robot->link_count, sizeof *reached);
+  for (struct Link *link = robot->root; link != NULL; link = link->next) {
+    const struct Entry *entry = names_find(connection->links.names, link->name);
+    reached[entry->index] = true;
+    link->next = following(link);
+  }
+  for (size_t i = 0; i < robot->link_count; i++) {
+    if (reached[i]) continue;
+    report_error(connection->diagnostics, robot->links[i]->joint->line,
+                 "the link '%s' is its own ancestor, or hangs on one that is; expected a tree", robot->links[i]->name);
+    break;
+  }
+  free(reached);
+}
+
+/* Sums and products of numbers in the file may be beyond all numbers. */
+static void check_numbers(struct Connection *connection, const struct Link *link) {
+  if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
+  report_error(
+      connection->diagnostics, link->line,
+      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is no finite number; "
+      "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
+      link->name, link->carrier->name);
+}
+
+/* Each link with the one that carries it; bodies that are fixed to each other become one. */
+static void join_fixed_links(struct Connection *connection) {
+  const struct Robot *robot = connection->robot;
+  int errors = connection->diagnostics->errors;
+  for (struct Link *link = robot->root; link != NULL && connection->diagnostics->errors == errors; link = link->next) {
+    link->carrier = link;
+    link->place = no_displacement;
+    if (link->joint != NULL && !joint_moves(link->joint)) {
+      const struct Link *parent = link->joint->parent;
+      link->carrier = parent->carrier;
+      link->place = placement_within(&parent->place, &link->joint->origin);
+    }
+    struct RigidBody body = body_seen_from(&link->place, &link->body);
+    link->carrier->carried = body_joined(&link->carrier->carried, &body);
+    check_numbers(connection, link);
+  }
+}
+
+/* The joint that this one mimics; NULL after reporting what is wrong. */
+static struct Joint *mimicked_by(struct Connection *connection, const struct Joint *joint) {
+  const struct Entry *entry = find(connection, &connection->joints, joint->mimicked_name, "a <mimic>", joint->line);
+  struct Joint *other = entry != NULL ? connection->robot->joints[entry->index] : NULL;
+  if (other == NULL || (joint_is_single(joint) && joint_is_single(other))) return other;
+  report_error(connection->diagnostics, joint->line,
+               "the joint '%s' mimics '%s'; expected both of them revolute, continuous or prismatic", joint->name,
+               other->name);
+  return NULL;
+}
+
+/* What mimics a joint that mimics another one follows that. */
+static void find_leader(struct Connection *connection, struct Joint *joint) {
+  struct Joint *leader = joint;
+  joint->ratio = 1;
+  for (size_t steps = 0; leader != NULL && leader->mimicked_name != NULL; steps++) {
+    if (steps == connection->robot->joint_count) {
+      report_error(connection->diagnostics, joint->line,
+                   "the joint '%s' mimics itself, or joints that mimic each other; expected one with a motor",
+                   joint->name);
+      return;
+    }
+    joint->shift += joint->ratio * leader->offset;
+    joint->ratio *= leader->multiplier;
+    leader = mimicked_by(connection, leader);
+  }
+  if (!isfinite(joint->ratio) || !isfinite(joint->shift))
+    report_error(
+        connection->diagnostics, joint->line,
+        "the joint '%s' follows '%s' by %g of its position and %g, which is more than a number can be; expected "
+        "smaller multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
+        joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift, joint->name);
+  joint->leader = leader;
+  if (leader != NULL && leader != joint) leader->is_mimicked = true;
+}
+
+/* A joint that has a coordinate must move some inertia with it, its own link's or that of what hangs on it. */
+static void check_inertia(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (const struct Link *link = robot->root; link != NULL; link = link->next) {
+    struct Link *ancestor = body_has_inertia(&link->carried) ? link->carrier : NULL;
+    while (ancestor != NULL && !ancestor->moves_inertia) {
+      ancestor->moves_inertia = true;
+      ancestor = ancestor->joint != NULL ? ancestor->joint->parent->carrier : NULL;
+    }
+  }
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    const struct Joint *joint = robot->joints[i];
+    if (!joint_moves(joint) || joint->is_mimicked || joint->leader != joint || joint->child->moves_inertia) continue;
+    report_error(connection->diagnostics, joint->line,
+                 "the joint '%s' moves no inertia: neither the link '%s' nor what hangs on it has a mass; expected an "
+                 "<inertial> there, or type=\"fixed\"",
+                 joint->name, joint->child->name);
+  }
+}
+
+struct Link *robot_link(const struct Robot *robot, const char *name, const char *what,
+                        struct Diagnostics *diagnostics) {
+  struct Similar similar = {.wanted = name};
+  for (size_t i = 0; i < robot->link_count; i++) {
+    if (strcmp(robot->links[i]->name, name) == 0) return robot->links[i];
+    similar_consider(&similar, robot->links[i]->name);
+  }
+  report_missing("link", name, what, 0, &similar, diagnostics);
+  return NULL;
+}
+
+bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
+  struct Connection connection = {
+      .robot = robot, .links = register_create("link"), .joints = register_create("joint"), .diagnostics = diagnostics};
+  int errors = diagnostics->errors;
+  enter_names(&connection);
+  if (diagnostics->errors == errors) connect_links(&connection);
+  if (diagnostics->errors == errors) find_root(&connection);
+  if (diagnostics->errors == errors) order_links(&connection);
+  for (size_t i = 0; i < robot->joint_count && diagnostics->errors == errors; i++)
+    find_leader(&connection, robot->joints[i]);
+  if (diagnostics->errors == errors) join_fixed_links(&connection);
+  if (diagnostics->errors == errors) check_inertia(&connection);
+  register_free(&connection.links);
+  register_free(&connection.joints);
+  return diagnostics->errors == errors;
+}

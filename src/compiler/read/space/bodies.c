@@ -1,0 +1,251 @@
+#include "read/space/bodies.h"
+
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/space/frames.h"
+#include "read/context/includes.h"
+
+static const char *const axes[3] = {"x", "y", "z"};
+
+/* Half of the term, as energy that the body has. */
+static void append_energy(struct Model *model, Node term) {
+  Node energy = scale(model->graph, 0.5, term);
+  model->kinetic.node = add(model->graph, model->kinetic.node, energy);
+  model->kinetic_energy.node = add(model->graph, model->kinetic_energy.node, energy);
+}
+
+/* 1/2 inertia rate^2 */
+static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node inertia, Node position) {
+  struct Graph *graph = model->graph;
+  Node rate = total_time_derivative(scope, position);
+  append_energy(model, multiply(graph, inertia, power_number(graph, rate, 2.0)));
+  model->driven |= graph_depends_on(graph, position, TIME);
+}
+
+/* Where the body of a name is: its place among the model's, and the line of its own file. */
+struct NamedBody {
+  size_t place;
+  long line;
+};
+
+const struct Body *find_body(const struct Reader *reader, const char *name) {
+  const struct NamedBody *named = names_find(reader->bodies, name);
+  return named != NULL ? &reader->model->bodies[named->place] : NULL;
+}
+
+/* Of several bodies of one name, which is reported, the first keeps it. */
+static void append_body(struct Reader *reader, struct Body body) {
+  struct Model *model = reader->model;
+  struct NamedBody *named = allocate(1, sizeof *named);
+  *named = (struct NamedBody){model->body_count, body.line};
+  if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
+  else free(named);
+  body.line = scope_line(reader->scope, body.line);
+  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
+  model->bodies[model->body_count++] = body;
+}
+
+/* A component that definitions.h has read; true where it is given. */
+static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
+                           struct Quantity *value, Node *displaced) {
+  if (!has_attribute(node, component)) return false;
+  char *name = format_text("%s.%s", body->name, component);
+  const struct Quantity *known = scope_find(reader->scope, name);
+  if (known != NULL) *value = *known;
+  *displaced = value->node;
+  reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
+  value->node = without_displacements(reader, body->line, name, value->node);
+  free(name);
+  return true;
+}
+
+/*
+ * Where mass joins or leaves, the equations depend on the momentum that it has, which a mass alone does not say:
+ * d(m v)/dt = F + dm/dt w. Lagrange's equation of m(t) v^2/2 is that of w = 0, and of m(q) v^2/2 that of w = v/2.
+ */
+static void require_fixed(const struct Reader *reader, long line, const char *what, struct Quantity inertia,
+                          const char *symbol, const char *rate) {
+  const struct Graph *graph = reader->model->graph;
+  if (graph_depends_on(graph, inertia.node, COORDINATE))
+    report_error(
+        reader->diagnostics, line,
+        "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
+        "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
+        "besides where it is mass that joins or leaves with the velocity w",
+        what, what, symbol, rate, rate, symbol, rate);
+  else if (graph_depends_on(graph, inertia.node, TIME))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
+                 "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
+                 "it has the velocity w, as for thrust",
+                 what, what, symbol, rate, symbol, rate, symbol);
+  else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
+    report_error(reader->diagnostics, line,
+                 "the %s cannot depend on displacements; expected them in positions and angles", what);
+}
+
+/* A mass feels the second derivatives of the inputs that its position depends on; a mere point does not. */
+static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
+  const struct Model *model = reader->model;
+  struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
+  for (size_t i = 0; i < levers.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
+    size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
+    Node rate = model->input_rates[input];
+    if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
+    report_error(reader->diagnostics, body->line,
+                 "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
+                 "mass=\"0\" for a mere point",
+                 body->name, model->inputs.items[input].name,
+                 is_input_rate(model, input) ? "the <input> itself in place of its derivative"
+                                             : "derivatives=\"2\" of this <input>");
+  }
+  gradient_free(&levers);
+}
+
+/* Its own name, or one by its number among the bodies and particles of the file. */
+static char *name_of(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  if (is_element(node, "point")) return name;
+  size_t number = ++reader->source->body_count;
+  return name != NULL ? name : format_text("%sbody%zu", reader->source->prefix, number);
+}
+
+static void read_mass(struct Reader *reader, xmlNodePtr node, struct Body *body) {
+  expression_attribute(reader, node, "mass", IN_INERTIA, &body->mass);
+  require_fixed(reader, body->line, "mass", body->mass, "m", "v");
+  require_unit(reader, body->line, "the mass", body->mass, unit_of("kg"));
+}
+
+static const struct Body *report_same_name(const struct Reader *reader, const struct Body *body) {
+  const struct Body *other = find_body(reader, body->name);
+  if (other != NULL)
+    report_error(reader->diagnostics, body->line,
+                 "a particle or body named '%s' is already defined on line %ld; expected another name", body->name,
+                 ((struct NamedBody *)names_find(reader->bodies, body->name))->line);
+  return other;
+}
+
+static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Body body = {.name = name_of(reader, node), .line = xmlGetLineNo(node)};
+  const struct Body *other = report_same_name(reader, &body);
+  read_mass(reader, node, &body);
+  for (int axis = 0; axis < 3 && other == NULL; axis++)
+    body.has_position[axis] =
+        take_component(reader, &body, node, axes[axis], &body.position[axis], &body.displaced[axis]);
+  body.has_angle = other == NULL && take_component(reader, &body, node, "angle", &body.angle, &body.displaced[3]);
+  if (body.has_angle) {
+    expression_attribute(reader, node, "inertia", IN_INERTIA, &body.inertia);
+    require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
+    require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
+  }
+  if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
+    report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
+  for (int component = 0; component < 4; component++) require_accelerations(reader, &body, component);
+  for (int axis = 0; axis < 3; axis++)
+    add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
+  add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
+  if (other == NULL) append_places(reader, node, body.name);
+  append_body(reader, body);
+}
+
+/* The moments and products of inertia, which are no other than symmetric. */
+static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *body) {
+  static const char *const names[3][3] = {{"Ixx", "Ixy", "Ixz"}, {"Ixy", "Iyy", "Iyz"}, {"Ixz", "Iyz", "Izz"}};
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      struct Quantity moment = {.node = ZERO};
+      if (!expression_attribute(reader, node, names[i][j], IN_MASS, &moment)) continue;
+      require_unit(reader, body->line, names[i][j], moment, unit_of("kg.m2"));
+      body->tensor.row[i].along[j] = body->tensor.row[j].along[i] = moment.node;
+    }
+}
+
+/* Where the body is and how it moves, as it was read with the definitions. */
+static void place_body(struct Reader *reader, const struct SpatialPoint *point, struct Body *body) {
+  const struct Model *model = reader->model;
+  body->is_in_frame = true;
+  body->frame = point->frame;
+  body->offset = vector_without_displacements(reader, body->line, body->name, point->offset);
+  body->displaced_velocity = point->velocity;
+  body->displaced_angular_velocity = model->frames[point->frame].pose.angular_velocity;
+  body->velocity = vector_without_displacements(reader, body->line, body->name, point->velocity);
+  body->angular_velocity =
+      vector_without_displacements(reader, body->line, body->name, body->displaced_angular_velocity);
+  struct Vector position = vector_without_displacements(reader, body->line, body->name, point->position);
+  for (int axis = 0; axis < 3; axis++) {
+    body->has_position[axis] = true;
+    body->displaced[axis] = point->position.along[axis];
+    body->position[axis] = (struct Quantity){.node = position.along[axis], .dimension = unit_of("m")};
+  }
+}
+
+/* Whether the direction of the frame depends on inputs whose second derivatives are not known. */
+static void require_angular_accelerations(const struct Reader *reader, const struct Body *body) {
+  const struct Matrix *rotation = &reader->model->frames[body->frame].pose.rotation;
+  struct Body turned = *body;
+  for (int i = 0; i < 9; i++) {
+    turned.displaced[0] = rotation->row[i / 3].along[i % 3];
+    require_accelerations(reader, &turned, 0);
+  }
+}
+
+static void add_spatial_energy(struct Model *model, const struct Body *body) {
+  struct Graph *graph = model->graph;
+  struct Vector momentum = matrix_apply(graph, &body->tensor, body->angular_velocity);
+  append_energy(model, multiply(graph, body->mass.node, vector_dot(graph, body->velocity, body->velocity)));
+  append_energy(model, vector_dot(graph, body->angular_velocity, momentum));
+  for (int i = 0; i < 3; i++)
+    model->driven |= graph_depends_on(graph, body->position[i].node, TIME) ||
+                     graph_depends_on(graph, body->angular_velocity.along[i], TIME);
+}
+
+/* A particle, body or point in a frame. */
+static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
+  struct Body body = {.name = name_of(reader, node), .line = xmlGetLineNo(node)};
+  struct SpatialPoint point;
+  if (body.name == NULL) return; /* reported */
+  const struct Body *other = report_same_name(reader, &body);
+  if (!is_element(node, "point")) read_mass(reader, node, &body);
+  if (is_element(node, "body")) read_tensor(reader, node, &body);
+  if (other != NULL || reader->diagnostics->errors > 0 || !find_spatial_point(reader, body.name, &point)) {
+    free(body.name);
+    return;
+  }
+  place_body(reader, &point, &body);
+  for (int axis = 0; axis < 3; axis++) require_accelerations(reader, &body, axis);
+  if (body.mass.node != ZERO) require_angular_accelerations(reader, &body);
+  add_spatial_energy(reader->model, &body);
+  append_places(reader, node, body.name);
+  append_body(reader, body);
+}
+
+/* A planar body has a position and an angle, one in a frame has neither. */
+static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
+  static const char *const moments[] = {"Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
+  bool is_in_frame = has_attribute(node, "in"), has_moments = false;
+  bool has_angle = has_attribute(node, "angle"), has_inertia = has_attribute(node, "inertia");
+  for (int i = 0; i < 6; i++) has_moments |= has_attribute(node, moments[i]);
+  if (!is_element(node, "body")) return true;
+  if (is_in_frame ? !has_angle && !has_inertia : has_angle && has_inertia && !has_moments) return true;
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               is_in_frame
+                   ? "a <body> in a frame turns with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
+                     "and inertia"
+                   : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
+                     "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
+  return false;
+}
+
+void read_body(struct Reader *reader, xmlNodePtr node) {
+  if (is_element(node, "frame")) {
+    char *name = name_attribute(reader, node, "name");
+    if (name != NULL) append_places(reader, node, name);
+    free(name);
+  } else if (!has_right_attributes(reader, node)) return;
+  else if (is_spatial(node)) read_spatial_body(reader, node);
+  else read_planar_body(reader, node);
+}

@@ -1,0 +1,13 @@
+/* <particle> and <body>, planar ones and those in frames, and <point>. */
+#ifndef BODIES_H
+#define BODIES_H
+
+#include "read/context/attributes.h"
+
+/* Enters a body, particle or point into the model, with its energy and its places; of a <frame>, the places. */
+void read_body(struct Reader *reader, xmlNodePtr node);
+
+/* NULL where there is none of this name. */
+const struct Body *find_body(const struct Reader *reader, const char *name);
+
+#endif

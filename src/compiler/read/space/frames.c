@@ -1,0 +1,387 @@
+#include "read/space/frames.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/names/definitions.h"
+#include "read/elements/elements.h"
+#include "read/context/includes.h"
+#include "read/names/similar.h"
+#include "read/space/turns.h"
+
+static const char *const frame_components[] = {"x",   "y",   "z",   "R11", "R12", "R13", "R21",
+                                               "R22", "R23", "R31", "R32", "R33", NULL};
+static const char *const point_components[] = {"x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", NULL};
+static const char *const particle_components[] = {"x", "y", "z", "vx", "vy", "vz", NULL};
+static const char *const planar_components[] = {"x", "y", "z", "angle", NULL};
+static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy",     "vz", "omegaX",
+                                              "omegaY", "omegaZ", "alphaX", "alphaY", "alphaZ", NULL};
+
+bool is_spatial(xmlNodePtr node) {
+  if (is_element(node, "frame") || is_element(node, "point")) return true;
+  return (is_element(node, "body") || is_element(node, "particle")) && has_attribute(node, "in");
+}
+
+static const char *const *components_of(xmlNodePtr node) {
+  if (!is_spatial(node)) return planar_components;
+  if (is_element(node, "frame")) return frame_components;
+  if (is_element(node, "point")) return point_components;
+  return is_element(node, "particle") ? particle_components : body_components;
+}
+
+/* The time derivatives of the components. */
+static struct Vector derivative_of(struct Scope *scope, struct Vector vector) {
+  for (int i = 0; i < 3; i++) vector.along[i] = total_time_derivative(scope, vector.along[i]);
+  return vector;
+}
+
+static void append_frame(struct Reader *reader, const char *name, struct ReferenceFrame frame) {
+  struct Model *model = reader->model;
+  size_t *place = allocate(1, sizeof *place);
+  *place = model->frame_count;
+  model->frames = reallocate(model->frames, model->frame_count + 1, sizeof *model->frames);
+  frame.name = copy_text(name);
+  model->frames[model->frame_count++] = frame;
+  names_set(reader->frames, name, place);
+}
+
+void frames_begin(struct Reader *reader) {
+  reader->frames = names_create();
+  reader->spatial_points = names_create();
+  append_frame(reader, "base", (struct ReferenceFrame){.pose = pose_of_base()});
+}
+
+void frames_end(struct Reader *reader) {
+  names_free(reader->frames);
+  names_free(reader->spatial_points);
+}
+
+void declare_frame(struct Reader *reader, xmlNodePtr node) {
+  xmlNodePtr turn = quaternion_of(node);
+  for (xmlNodePtr step = node->children; step != NULL; step = step->next)
+    if (is_element(step, "rotate")) check_turn(reader, step);
+  if (turn == NULL) return;
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  struct Variable norm = {.name = format_text("%s.norm", name),
+                          .description = format_text("norm of the quaternion of %s", name),
+                          .unit = copy_text("1"),
+                          .dimension = dimension_one,
+                          .line = xmlGetLineNo(turn)};
+  append_variable(&reader->model->constraints, norm);
+  free(name);
+}
+
+/* The names of definitions that nobody can write: of a frame, and of a point or body, as a whole. */
+static char *whole_name(bool is_frame, const char *name) {
+  return format_text("%s %s", is_frame ? "frame" : "point", name);
+}
+
+static void collect(struct Reader *reader, xmlNodePtr node, char *name, const char *attribute) {
+  enum { DEFINITION_WORK = 400 };
+  graph_work(reader->model->graph, DEFINITION_WORK);
+  definitions_add(reader->definitions, name, &(struct NamedExpression){node, attribute, reader->source, NULL});
+}
+
+static bool is_base(struct Reader *reader, xmlNodePtr node, const char *name) {
+  if (strcmp(name, "base") != 0) return false;
+  report_error(reader->diagnostics, xmlGetLineNo(node),
+               "the name 'base' is that of the frame which rests; expected another name");
+  return true;
+}
+
+void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
+  if (!is_base(reader, node, name)) collect(reader, node, whole_name(true, name), "");
+}
+
+/* Whether a frame, or else a point or body in a frame, of this name was collected. */
+static bool is_collected(const struct Reader *reader, bool is_frame, const char *name) {
+  char *whole = whole_name(is_frame, name);
+  bool collected = definitions_contain(reader->definitions, whole);
+  free(whole);
+  return collected;
+}
+
+/* Whether either was; reports it. */
+static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
+  bool taken = is_collected(reader, true, name) || is_collected(reader, false, name);
+  if (taken)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "a frame, point or body named '%s' is already defined; expected another name", name);
+  return taken;
+}
+
+void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name) {
+  const char *const *components = components_of(node);
+  if (is_base(reader, node, name) || is_taken(reader, node, name)) return;
+  collect(reader, node, whole_name(is_element(node, "frame"), name), "");
+  for (size_t i = 0; components[i] != NULL; i++)
+    collect(reader, node, format_text("%s.%s", name, components[i]), components[i]);
+}
+
+/* The full name of the frame that the element is in; "base" where it does not say. Free with free(); NULL after an error. */
+static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
+  char *text = attribute(node, attribute_name);
+  bool is_in_base = text == NULL || strcmp(text, "base") == 0;
+  free(text);
+  return is_in_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
+}
+
+/* What was collected and is no frame has failed, which is told. */
+static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Similar similar = {.wanted = name};
+  if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
+  similar_consider_all(&similar, reader->frames);
+  if (similar.best != NULL)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; did you mean '%s'?", name,
+                 similar.best);
+  else
+    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; expected the name of a <frame>",
+                 name);
+}
+
+const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {
+  const size_t *place = names_find(reader->frames, name);
+  if (place != NULL) return &reader->model->frames[*place];
+  const struct SpatialPoint *point = names_find(reader->spatial_points, name);
+  return point != NULL && point->is_body ? &reader->model->frames[point->frame] : NULL;
+}
+
+const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
+  char *frame_named = frame_name(reader, node, name);
+  const struct ReferenceFrame *frame = frame_named != NULL ? find_frame(reader, frame_named) : NULL;
+  if (frame == NULL && frame_named != NULL) report_unknown_frame(reader, node, frame_named);
+  free(frame_named);
+  return frame;
+}
+
+/* The frame that an element is in, for which the present definition waits where it is not read yet: NULL then. */
+static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr node) {
+  char *name = frame_name(reader, node, "in");
+  if (name == NULL) return NULL;
+  char *whole = whole_name(true, name);
+  const size_t *place = names_find(reader->frames, name);
+  bool waits = place == NULL && definitions_wait_for(reader->definitions, whole);
+  if (place == NULL && !waits) report_unknown_frame(reader, node, name);
+  free(whole);
+  free(name);
+  return place != NULL ? &reader->model->frames[*place] : NULL;
+}
+
+/* A length along each axis in the attributes x, y and z, and its time derivative. */
+static void read_offset(struct Reader *reader, xmlNodePtr node, struct Vector *offset, struct Vector *rate) {
+  static const char *const axes[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; i++) {
+    struct Quantity length = {.node = ZERO};
+    if (expression_attribute(reader, node, axes[i], IN_POSITION, &length) &&
+        !definitions_are_waiting(reader->definitions))
+      require_unit(reader, xmlGetLineNo(node), axes[i], length, unit_of("m"));
+    offset->along[i] = length.node;
+    rate->along[i] = total_time_derivative(reader->scope, length.node);
+  }
+}
+
+static void translate(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
+  struct Vector offset, rate;
+  read_offset(reader, node, &offset, &rate);
+  pose_translate(reader->model->graph, pose, offset, rate);
+}
+
+/* A component of a planar body, for which the present definition waits where it is not read yet. */
+static Node planar_component(struct Reader *reader, xmlNodePtr node, const char *body, const char *component) {
+  if (!has_attribute(node, component)) return ZERO;
+  char *name = format_text("%s.%s", body, component);
+  const struct Quantity *value = scope_find(reader->scope, name);
+  if (value == NULL) definitions_wait_for(reader->definitions, name);
+  free(name);
+  return value != NULL ? value->node : ZERO;
+}
+
+/* Its origin is the centre of mass. */
+static struct Pose pose_of_planar_body(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Pose pose = pose_of_base();
+  struct Vector origin = {{planar_component(reader, node, name, "x"), planar_component(reader, node, name, "y"),
+                           planar_component(reader, node, name, "z")}};
+  Node angle = planar_component(reader, node, name, "angle");
+  pose_translate(reader->model->graph, &pose, origin, derivative_of(reader->scope, origin));
+  pose_turn(reader->model->graph, &pose, (struct Vector){{ZERO, ZERO, ONE}}, angle,
+            total_time_derivative(reader->scope, angle));
+  return pose;
+}
+
+static struct Pose read_pose(struct Reader *reader, xmlNodePtr node, const char *name,
+                             const struct ReferenceFrame *parent) {
+  struct Pose pose = parent->pose;
+  if (is_element(node, "body")) return pose_of_planar_body(reader, node, name);
+  for (xmlNodePtr step = node->children; step != NULL; step = step->next) {
+    if (is_element(step, "translate")) translate(reader, step, &pose);
+    else if (is_element(step, "rotate")) turn(reader, step, &pose);
+  }
+  return pose;
+}
+
+static void read_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
+  const struct ReferenceFrame *parent = parent_of(reader, node);
+  if (parent == NULL) return;
+  size_t number = (size_t)(parent - reader->model->frames);
+  struct Pose pose = read_pose(reader, node, name, parent);
+  if (definitions_are_waiting(reader->definitions)) return;
+  struct Model *model = reader->model;
+  for (int i = 0; i < 3; i++) {
+    model->inputs_move |= graph_depends_on(model->graph, pose.origin.along[i], INPUT);
+    for (int j = 0; j < 3; j++)
+      model->inputs_move |= graph_depends_on(model->graph, pose.rotation.row[i].along[j], INPUT);
+  }
+  if (names_find(reader->frames, name) != NULL) return;
+  append_frame(reader, name,
+               (struct ReferenceFrame){.parent = number, .is_of_body = is_element(node, "body"), .pose = pose});
+}
+
+static void read_point(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Graph *graph = reader->model->graph;
+  const struct ReferenceFrame *frame = parent_of(reader, node);
+  if (frame == NULL) return;
+  struct SpatialPoint *point = allocate(1, sizeof *point);
+  struct Vector rate;
+  read_offset(reader, node, &point->offset, &rate);
+  point->is_body = is_element(node, "body");
+  point->frame = (size_t)(frame - reader->model->frames);
+  point->position = position_at(graph, &frame->pose, point->offset);
+  point->velocity = velocity_at(graph, &frame->pose, point->offset, rate);
+  bool is_new = !definitions_are_waiting(reader->definitions) && names_find(reader->spatial_points, name) == NULL;
+  if (is_new) names_set(reader->spatial_points, name, point);
+  else free(point);
+}
+
+bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point) {
+  const struct SpatialPoint *known = names_find(reader->spatial_points, name);
+  const struct ReferenceFrame *frame = known == NULL ? find_frame(reader, name) : NULL;
+  if (known != NULL) *point = *known;
+  else if (frame != NULL)
+    *point = (struct SpatialPoint){.frame = (size_t)(frame - reader->model->frames),
+                                   .position = frame->pose.origin,
+                                   .velocity = frame->pose.velocity};
+  return known != NULL || frame != NULL;
+}
+
+static struct Vector acceleration_of(struct Scope *scope, const struct Pose *pose, struct Vector velocity) {
+  struct Graph *graph = scope->graph;
+  struct Vector turning = vector_cross(graph, pose->angular_velocity, velocity);
+  return vector_add(graph, derivative_of(scope, velocity), turning);
+}
+
+/* What a component such as "vx" or "omegaX" is of. */
+static struct Vector vector_of(struct Scope *scope, const struct Pose *pose, const struct SpatialPoint *point,
+                               const char *component) {
+  struct Graph *graph = scope->graph;
+  if (strncmp(component, "omega", 5) == 0) return pose->angular_velocity;
+  if (strncmp(component, "alpha", 5) == 0) return derivative_of(scope, pose->angular_velocity);
+  if (component[0] == 'v') return matrix_apply(graph, &pose->rotation, point->velocity);
+  if (component[0] == 'a') return matrix_apply(graph, &pose->rotation, acceleration_of(scope, pose, point->velocity));
+  return point->position;
+}
+
+static const char *unit_of_component(const char *component) {
+  if (component[0] == 'R') return "1";
+  if (strcmp(component, "angle") == 0) return "rad";
+  if (strncmp(component, "omega", 5) == 0) return "rad/s";
+  if (strncmp(component, "alpha", 5) == 0) return "rad/s2";
+  return component[0] == 'v' ? "m/s" : component[0] == 'a' ? "m/s2" : "m";
+}
+
+static Node read_component(struct Reader *reader, const char *name, const char *component) {
+  struct SpatialPoint point;
+  if (!find_spatial_point(reader, name, &point)) return ZERO; /* reported */
+  const struct Pose *pose = &reader->model->frames[point.frame].pose;
+  if (component[0] == 'R') return pose->rotation.row[component[1] - '1'].along[component[2] - '1'];
+  char axis = component[strlen(component) - 1];
+  struct Vector vector = vector_of(reader->scope, pose, &point, component);
+  return vector.along[axis >= 'x' ? axis - 'x' : axis - 'X'];
+}
+
+struct Quantity read_spatial(struct Reader *reader, xmlNodePtr node, const char *name, const char *attribute) {
+  struct Quantity value = {.node = ZERO};
+  bool is_frame = is_element(node, "frame") || !is_spatial(node);
+  if (*attribute == '\0') {
+    const char *of = strchr(name, ' ') + 1;
+    if (is_frame) read_frame(reader, node, of);
+    else read_point(reader, node, of);
+    return value;
+  }
+  char *of = format_text("%.*s", (int)(strlen(name) - strlen(attribute) - 1), name), *whole = whole_name(is_frame, of);
+  if (!definitions_wait_for(reader->definitions, whole)) value.node = read_component(reader, of, attribute);
+  value.dimension = unit_of(unit_of_component(attribute));
+  free(whole);
+  free(of);
+  return value;
+}
+
+static char *description_of(const char *name, const char *component) {
+  if (strcmp(component, "angle") == 0) return format_text("angle of %s", name);
+  char axis = component[strlen(component) - 1];
+  const char *what = strncmp(component, "omega", 5) == 0   ? "angular velocity"
+                     : strncmp(component, "alpha", 5) == 0 ? "angular acceleration"
+                     : component[0] == 'v'                 ? "velocity"
+                     : component[0] == 'a'                 ? "acceleration"
+                                                           : "position";
+  if (component[0] == 'R')
+    return format_text("component along the base's %c of the %c axis of %s", "xyz"[component[1] - '1'],
+                       "xyz"[component[2] - '1'], name);
+  if (axis < 'x') return format_text("%s of %s along its own %c axis", what, name, axis - 'X' + 'x');
+  return format_text("%c %s of %s", axis, what, name);
+}
+
+void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
+  const char *const *components = components_of(node);
+  for (size_t i = 0; components[i] != NULL; i++) {
+    char *full_name = format_text("%s.%s", name, components[i]);
+    const struct Quantity *value = scope_find(reader->scope, full_name);
+    if (value == NULL) {
+      free(full_name);
+      continue;
+    }
+    struct Variable place = {.name = full_name,
+                             .description = description_of(name, components[i]),
+                             .unit = copy_text(unit_of_component(components[i])),
+                             .dimension = value->dimension,
+                             .node = without_displacements(reader, xmlGetLineNo(node), full_name, value->node)};
+    append_variable(&reader->model->places, place);
+  }
+}
+
+static bool is_inside(const struct Model *model, size_t frame, size_t outer) {
+  while (frame != outer && frame != 0) frame = model->frames[frame].parent;
+  return frame == outer;
+}
+
+/* Of the size of the moments of inertia that the quaternion turns, so that M stays well conditioned. */
+static Node inertia_of_norm(const struct Model *model, size_t frame) {
+  struct Graph *graph = model->graph;
+  Node sum = ZERO;
+  for (size_t i = 0; i < model->body_count; i++) {
+    const struct Body *body = &model->bodies[i];
+    if (!body->is_in_frame || !is_inside(model, body->frame, frame)) continue;
+    for (int axis = 0; axis < 3; axis++) {
+      Node lever = body->frame == frame ? body->offset.along[axis] : ZERO;
+      if (!graph_is_constant_in_time(graph, lever)) lever = ZERO;
+      Node moment = multiply(graph, body->mass.node, power_number(graph, lever, 2.0));
+      sum = add(graph, sum, add(graph, body->tensor.row[axis].along[axis], moment));
+    }
+  }
+  return scale(graph, 1.0 / 3.0, sum);
+}
+
+void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  if (quaternion_of(node) == NULL) return;
+  const struct Variable *norm = &model->constraints.items[reader->constraints_read++];
+  char *name = name_attribute(reader, node, "name");
+  const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
+  if (frame != NULL) {
+    model->stillnesses = reallocate(model->stillnesses, model->stillness_count + 1, sizeof *model->stillnesses);
+    model->stillnesses[model->stillness_count++] = (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
+  }
+  free(name);
+}

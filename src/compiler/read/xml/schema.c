@@ -1,0 +1,291 @@
+#include "read/xml/schema.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/xmlschemas.h>
+
+#include "base/memory.h"
+#include "read/names/hints.h"
+#include "read/names/similar.h"
+
+enum { CHOICE_LIMIT = 40 };
+
+/* Names that may stand in one place, those of the schema's document. */
+struct Choices {
+  char *names[CHOICE_LIMIT];
+  size_t count;
+};
+
+struct Check {
+  xmlDocPtr schema;
+  struct Diagnostics *diagnostics;
+  xmlNodePtr last; /* the element behind which nothing is checked; NULL for none */
+};
+
+/* libxml2 counts for each error all elements before: what follows the last one that is told is hidden from it. */
+static void hide_rest(struct Check *check, xmlNodePtr element) {
+  check->last = element;
+  for (xmlNodePtr node = element; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
+    node->_private = node->next;
+    node->next = NULL;
+  }
+}
+
+static void show_rest(struct Check *check) {
+  for (xmlNodePtr node = check->last; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
+    node->next = node->_private;
+    node->_private = NULL;
+  }
+  check->last = NULL;
+}
+
+static bool is_named(const xmlNode *node, const char *name) {
+  return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
+}
+
+static bool has_value(xmlNodePtr node, const char *attribute, const char *value) {
+  xmlChar *text = xmlGetProp(node, (const xmlChar *)attribute);
+  bool same = text != NULL && strcmp((const char *)text, value) == 0;
+  xmlFree(text);
+  return same;
+}
+
+/* What the schema declares below a node: the first <xs:kind name="..."> in the order of the file. */
+static xmlNodePtr find_declared(xmlNodePtr parent, const char *kind, const char *name) {
+  xmlNodePtr found = NULL;
+  for (xmlNodePtr node = parent->children; node != NULL && found == NULL; node = node->next)
+    found = is_named(node, kind) && has_value(node, "name", name) ? node : find_declared(node, kind, name);
+  return found;
+}
+
+static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices);
+
+/* What a reference such as <xs:group ref="..."> or <xs:extension base="..."> stands for. */
+static void collect_referred(xmlNodePtr schema, xmlNodePtr node, const char *reference, const char *kind_of_target,
+                             const char *kind, const char *key, struct Choices *choices) {
+  xmlChar *name = xmlGetProp(node, (const xmlChar *)reference);
+  xmlNodePtr target = name != NULL ? find_declared(schema, kind_of_target, (const char *)name) : NULL;
+  if (target != NULL) collect(schema, target, kind, key, choices);
+  xmlFree(name);
+}
+
+/* The values of `key` of each <xs:kind> that the schema allows in a place, such as the name of each attribute. */
+static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices) {
+  collect_referred(schema, place, "type", "complexType", kind, key, choices);
+  collect_referred(schema, place, "base", "complexType", kind, key, choices);
+  collect_referred(schema, place, "ref", (const char *)place->name, kind, key, choices);
+  for (xmlNodePtr node = place->children; node != NULL; node = node->next) {
+    xmlChar *name = is_named(node, kind) ? xmlGetProp(node, (const xmlChar *)key) : NULL;
+    if (name != NULL && choices->count < CHOICE_LIMIT) choices->names[choices->count++] = copy_text((const char *)name);
+    xmlFree(name);
+    if (node->type == XML_ELEMENT_NODE && !is_named(node, "element") && !is_named(node, "attribute"))
+      collect(schema, node, kind, key, choices);
+  }
+}
+
+/* What the schema says of an element: in the type named like its parent, if that declares it itself, or else anywhere. */
+static xmlNodePtr declaration_of(const struct Check *check, xmlNodePtr element) {
+  xmlNodePtr schema = xmlDocGetRootElement(check->schema);
+  bool is_inside = element->parent->type == XML_ELEMENT_NODE;
+  xmlNodePtr around = is_inside ? find_declared(schema, "complexType", (const char *)element->parent->name) : NULL;
+  xmlNodePtr own = around != NULL ? find_declared(around, "element", (const char *)element->name) : NULL;
+  return own != NULL ? own : find_declared(schema, "element", (const char *)element->name);
+}
+
+static struct Choices choices_in(const struct Check *check, xmlNodePtr element, const char *kind) {
+  struct Choices choices = {.count = 0};
+  xmlNodePtr place = declaration_of(check, element);
+  if (place != NULL) collect(xmlDocGetRootElement(check->schema), place, kind, "name", &choices);
+  return choices;
+}
+
+/* The values that the schema lists for an attribute, none where it lists none. */
+static struct Choices choices_of_value(const struct Check *check, const char *attribute) {
+  struct Choices choices = {.count = 0};
+  xmlNodePtr schema = xmlDocGetRootElement(check->schema), place = find_declared(schema, "attribute", attribute);
+  if (place != NULL) collect(schema, place, "enumeration", "value", &choices);
+  return choices;
+}
+
+static void choices_free(struct Choices *choices) {
+  for (size_t i = 0; i < choices->count; i++) free(choices->names[i]);
+}
+
+/*
+ * "did you mean 'unit'?", or "expected name, start or unit" without anything similar. Takes over the choices; free with
+ * free().
+ */
+static char *remedy(const char *wanted, struct Choices choices) {
+  struct Similar similar = {.wanted = wanted};
+  char *text = NULL;
+  size_t length = 0;
+  FILE *file = open_text(&text, &length);
+  for (size_t i = 0; i < choices.count; i++) similar_consider(&similar, choices.names[i]);
+  if (similar.best != NULL) fprintf(file, "did you mean '%s'?", similar.best);
+  else fputs(choices.count > 0 ? "expected " : "expected none", file);
+  for (size_t i = 0; similar.best == NULL && i < choices.count; i++)
+    fprintf(file, "%s%s", i == 0 ? "" : i + 1 == choices.count ? " or " : ", ", choices.names[i]);
+  close_text(file, &text, &length);
+  choices_free(&choices);
+  return text;
+}
+
+static void report_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
+  const char *of = (const char *)element->name;
+  char *what_then = remedy(name, choices_in(check, element, "attribute"));
+  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> has no attribute '%s'; %s", of, name, what_then);
+  free(what_then);
+}
+
+/* One that is there with another spelling was told with it. */
+static void report_missing_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
+  for (const xmlAttr *given = element->properties; given != NULL; given = given->next) {
+    struct Similar similar = {.wanted = (const char *)given->name};
+    similar_consider(&similar, name);
+    if (similar.best != NULL) return;
+  }
+  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> needs the attribute '%s'; expected %s=\"...\"",
+               (const char *)element->name, name, name);
+}
+
+static void report_element(const struct Check *check, xmlNodePtr element) {
+  const char *name = (const char *)element->name, *parent = (const char *)element->parent->name;
+  const char *hint = hint_for_element(name);
+  bool is_known = find_declared(xmlDocGetRootElement(check->schema), "element", name) != NULL;
+  char *what_then = remedy(name, choices_in(check, element->parent, "element"));
+  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> %s <%s>; %s", name,
+               is_known ? "cannot stand in" : "is no element of", parent, *hint != '\0' ? hint : what_then);
+  free(what_then);
+}
+
+/* The first element, or the first text that is not blank, in an element; NULL where there is none. */
+static xmlNodePtr first_of(xmlNodePtr element, xmlElementType type) {
+  xmlNodePtr node = element->children;
+  while (node != NULL && (node->type != type || xmlIsBlankNode(node))) node = node->next;
+  return node;
+}
+
+static void report_text(const struct Check *check, const xmlNode *node, const char *where, const char *expected) {
+  const char *word = (const char *)node->content + strspn((const char *)node->content, " \t\r\n");
+  long line = xmlGetLineNo(node);
+  for (const char *c = word; *c != '\0'; c++) line -= *c == '\n'; /* the line of a text is that of its end */
+  report_error(check->diagnostics, line, "the text '%.*s' stands in <%s>; expected it in %s",
+               (int)strcspn(word, " \t\r\n"), word, where, expected);
+}
+
+/* A text among elements, or an element or a text where there should be none. */
+static void report_content(const struct Check *check, xmlNodePtr element) {
+  const char *name = (const char *)element->name;
+  const xmlNode *text = first_of(element, XML_TEXT_NODE), *inner = first_of(element, XML_ELEMENT_NODE);
+  struct Choices elements = choices_in(check, element, "element");
+  if (elements.count > 0 && text != NULL)
+    report_text(check, text, name, "an element such as <potential>...</potential>, or in <!-- ... -->");
+  else if (inner != NULL)
+    report_error(check->diagnostics, xmlGetLineNo(inner),
+                 "<%s> stands inside of <%s>; expected the end of <%s> before it, by </%s> or />",
+                 (const char *)inner->name, name, name, name);
+  else if (text != NULL) report_text(check, text, name, "an attribute");
+  choices_free(&elements);
+}
+
+static void report_root(const struct Check *check, xmlNodePtr root) {
+  const char *name = (const char *)root->name;
+  if (root->ns != NULL)
+    report_error(check->diagnostics, xmlGetLineNo(root), "<%s> belongs to the namespace '%s'; expected no xmlns", name,
+                 (const char *)root->ns->href);
+  else
+    report_error(check->diagnostics, xmlGetLineNo(root),
+                 "the file begins with <%s>; expected <system name=\"...\">, <linearization of=\"...\" name=\"...\"> "
+                 "or <robot name=\"...\">",
+                 name);
+}
+
+/* The attribute that libxml2 speaks of, "" for the text of an element. */
+static char *attribute_in(const char *message) {
+  static const char before[] = "attribute '";
+  const char *begin = strstr(message, before);
+  if (begin == NULL) return copy_text("");
+  begin += strlen(before);
+  return format_text("%.*s", (int)strcspn(begin, "'"), begin);
+}
+
+static void report_value(const struct Check *check, const xmlError *error, xmlNodePtr element) {
+  char *name = attribute_in(error->message), *what_then = NULL;
+  char *value = (char *)xmlGetProp(element, (const xmlChar *)name);
+  bool is_text = *name == '\0';
+  char *what = is_text ? format_text("<%s>", (const char *)element->name)
+                       : format_text("%s=\"%.60s\" of <%s>", name, value, (const char *)element->name);
+  switch (error->code) {
+  case XML_SCHEMAV_CVC_MINLENGTH_VALID:
+    what_then = copy_text(is_text ? "is empty; expected an expression in it" : "is empty; expected a value");
+    break;
+  case XML_SCHEMAV_CVC_MAXLENGTH_VALID:
+    what_then = format_text("is too long; expected at most %s characters", (const char *)error->str3);
+    break;
+  case XML_SCHEMAV_CVC_PATTERN_VALID:
+    what_then = format_text("is no name; expected letters a to z, digits and _, with no digit first%s",
+                            strstr(error->str2, "\\[") != NULL ? ", and an index as in name[1]" : "");
+    break;
+  case XML_SCHEMAV_CVC_ENUMERATION_VALID: {
+    char *list = remedy(value, choices_of_value(check, name));
+    what_then = format_text("is not known; %s", list);
+    free(list);
+    break;
+  }
+  case XML_SCHEMAV_CVC_MINEXCLUSIVE_VALID: what_then = copy_text("is not above 0; expected a positive number"); break;
+  default: what_then = copy_text("is no number; expected one such as 2, 0.5 or 1e-3");
+  }
+  report_error(check->diagnostics, xmlGetLineNo(element), "%s %s", what, what_then);
+  free(what);
+  free(what_then);
+  free(name);
+  xmlFree(value);
+}
+
+static void report_schema_error(void *context, xmlErrorPtr error) {
+  struct Check *check = context;
+  xmlNodePtr element = error->node;
+  if (check->last != NULL) return;
+  if (element == NULL || error->message == NULL) {
+    report_error(check->diagnostics, error->line, "the file does not match the schema of system.xml");
+    return;
+  }
+  switch (error->code) {
+  case XML_SCHEMAV_CVC_TYPE_3_1_1:
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_3_2_1:
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_3_2_2: report_attribute(check, element, error->str1); break;
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_4: report_missing_attribute(check, element, error->str1); break;
+  case XML_SCHEMAV_ELEMENT_CONTENT: report_element(check, element); break;
+  case XML_SCHEMAV_CVC_TYPE_3_1_2:
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_2_1:
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_2_2:
+  case XML_SCHEMAV_CVC_COMPLEX_TYPE_2_3: report_content(check, element); break;
+  case XML_SCHEMAV_CVC_ELT_1: report_root(check, element); break;
+  default: report_value(check, error, element);
+  }
+  if (check->diagnostics->errors > ERROR_LIMIT && element->type == XML_ELEMENT_NODE) hide_rest(check, element);
+}
+
+void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
+  struct Check check = {.schema = xmlReadMemory(system_schema, (int)strlen(system_schema), NULL, NULL, 0),
+                        .diagnostics = diagnostics};
+  xmlSchemaParserCtxtPtr parser = check.schema != NULL ? xmlSchemaNewDocParserCtxt(check.schema) : NULL;
+  xmlSchemaPtr schema = parser != NULL ? xmlSchemaParse(parser) : NULL;
+  xmlSchemaValidCtxtPtr validation = schema != NULL ? xmlSchemaNewValidCtxt(schema) : NULL;
+  if (validation != NULL) {
+    int errors = diagnostics->errors;
+    xmlSchemaSetValidStructuredErrors(validation, (xmlStructuredErrorFunc)report_schema_error, &check);
+    bool is_right = xmlSchemaValidateDoc(validation, document) == 0;
+    show_rest(&check);
+    if (!is_right && diagnostics->errors == errors)
+      report_error(diagnostics, 0, "the file does not match the schema of system.xml");
+  } else {
+    report_error(diagnostics, 0, "the schema of system.xml cannot be used; expected libxml2 with schema support");
+  }
+  xmlSchemaFreeValidCtxt(validation);
+  xmlSchemaFree(schema);
+  xmlSchemaFreeParserCtxt(parser);
+  xmlFreeDoc(check.schema);
+}

@@ -1,0 +1,15 @@
+/* Holds a file against the schema of system.xml, in words of its author; fmu/system.xsd says what may stand where. */
+#ifndef SCHEMA_H
+#define SCHEMA_H
+
+#include <libxml/tree.h>
+
+#include "base/diagnostics.h"
+
+/* The text of fmu/system.xsd, built into the program. */
+extern const char system_schema[];
+
+/* Reports each place where the document does not follow the schema. */
+void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics);
+
+#endif

@@ -1,0 +1,88 @@
+#include "read/xml/source_text.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* An XML parser compares all attributes of an element with each other, and a schema's messages count what comes before. */
+enum { LENGTH_LIMIT = 10000000, ELEMENT_LIMIT = 40000, ATTRIBUTE_LIMIT = 200 };
+
+/* Where reading stands, and what it has counted. */
+struct Scan {
+  const char *next, *end;
+  long line;
+  size_t elements, attributes;
+};
+
+static bool begins(const struct Scan *scan, const char *text) {
+  size_t length = strlen(text);
+  return (size_t)(scan->end - scan->next) >= length && memcmp(scan->next, text, length) == 0;
+}
+
+/* Passes the next byte. */
+static char pass(struct Scan *scan) {
+  scan->line += *scan->next == '\n';
+  return *scan->next++;
+}
+
+/* Passes all up to the text and the text itself. */
+static void pass_behind(struct Scan *scan, const char *text) {
+  while (scan->next < scan->end && !begins(scan, text)) pass(scan);
+  if (scan->next < scan->end) scan->next += strlen(text);
+}
+
+/* Passes a tag, whose values may hold '>'. */
+static void pass_tag(struct Scan *scan) {
+  char quote = '\0';
+  scan->attributes = 0;
+  while (scan->next < scan->end) {
+    char c = pass(scan);
+    if (quote != '\0') quote = c == quote ? '\0' : quote;
+    else if (c == '"' || c == '\'') quote = c;
+    else if (c == '>') return;
+    else scan->attributes += c == '=';
+  }
+}
+
+/* Comments and the like count as elements: a parser keeps them too. */
+static bool pass_markup(struct Scan *scan, struct Diagnostics *diagnostics) {
+  long line = scan->line;
+  scan->elements += !begins(scan, "</");
+  scan->attributes = 0;
+  if (begins(scan, "<!--")) pass_behind(scan, "-->");
+  else if (begins(scan, "<![CDATA[")) pass_behind(scan, "]]>");
+  else if (begins(scan, "<?")) pass_behind(scan, "?>");
+  else pass_tag(scan);
+  if (scan->elements > ELEMENT_LIMIT)
+    report_error(diagnostics, line, "the file has more than %d elements; expected fewer, and <for> for what repeats",
+                 ELEMENT_LIMIT);
+  else if (scan->attributes > ATTRIBUTE_LIMIT)
+    report_error(diagnostics, line, "an element has more than %d attributes; expected fewer", ATTRIBUTE_LIMIT);
+  return scan->elements <= ELEMENT_LIMIT && scan->attributes <= ATTRIBUTE_LIMIT;
+}
+
+static bool is_readable(const char *text, size_t length, struct Diagnostics *diagnostics) {
+  struct Scan scan = {.next = text, .end = text + length, .line = 1};
+  while (scan.next < scan.end)
+    if (*scan.next != '<') pass(&scan);
+    else if (!pass_markup(&scan, diagnostics)) return false;
+  return true;
+}
+
+char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics) {
+  FILE *file = fopen(path, "rb");
+  if (file == NULL) return NULL;
+  char *text = allocate(LENGTH_LIMIT + 1, 1);
+  *length = fread(text, 1, LENGTH_LIMIT + 1, file);
+  bool is_right = ferror(file) == 0;
+  fclose(file);
+  if (is_right && *length > LENGTH_LIMIT)
+    report_error(diagnostics, 0, "the file is longer than %d bytes; expected a shorter one, and <for> for what repeats",
+                 LENGTH_LIMIT);
+  if (is_right && *length <= LENGTH_LIMIT && is_readable(text, *length, diagnostics)) return text;
+  free(text);
+  return NULL;
+}

@@ -1,0 +1,15 @@
+/* The text of an XML file, as far as it is not so large or so made that reading it would take long. */
+#ifndef SOURCE_TEXT_H
+#define SOURCE_TEXT_H
+
+#include <stddef.h>
+
+#include "base/diagnostics.h"
+
+/*
+ * The bytes of the file, to be freed with free(). NULL where it cannot be read, and after reporting that it is too long, or
+ * has too many elements, or attributes in one of them.
+ */
+char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics);
+
+#endif

@@ -1,0 +1,119 @@
+#include "read/xml/xml.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/parser.h>
+
+#include "base/memory.h"
+#include "read/robots/robot_system.h"
+#include "read/xml/schema.h"
+#include "read/xml/source_text.h"
+
+/* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. Free with free(). */
+static char *meaning_of(const xmlError *error) {
+  const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
+  if (strstr(message, "EntityRef") != NULL)
+    return copy_text("'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions");
+  if (strstr(message, "not proper UTF-8") != NULL)
+    return copy_text("the file has letters in another encoding than UTF-8; expected it saved in UTF-8");
+  switch (error->code) {
+  case XML_ERR_NAME_REQUIRED:
+    return copy_text("'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or "
+                     "sign for conditions");
+  case XML_ERR_LT_IN_ATTRIBUTE:
+    return copy_text("'<' stands in an attribute, or a quote is missing before it; write &lt; for the sign itself, and "
+                     "min, max, abs or sign for conditions");
+  case XML_ERR_ATTRIBUTE_NOT_STARTED:
+    return copy_text("the value of an attribute is not in straight quotes; expected name=\"value\"");
+  case XML_ERR_ATTRIBUTE_WITHOUT_VALUE:
+    return format_text("the attribute '%s' has no value; expected %s=\"...\"", name, name);
+  case XML_ERR_ATTRIBUTE_REDEFINED: return format_text("the attribute '%s' is given twice; expected it once", name);
+  case XML_ERR_SPACE_REQUIRED:
+    return copy_text(
+        "attributes do not follow each other; expected name=\"value\" name=\"value\", with both quotes and "
+        "a blank between them");
+  case XML_ERR_GT_REQUIRED: return format_text("<%s> is not closed; expected > or /> at its end", name);
+  case XML_ERR_TAG_NOT_FINISHED:
+    return copy_text("the file ends inside an element; expected its end, such as </system>");
+  case XML_ERR_TAG_NAME_MISMATCH:
+    return format_text(
+        "</%s> stands where <%s> of line %d is still open; expected </%s> before it, or /> at the end of "
+        "<%s>",
+        other, name, error->int1, name, name);
+  case XML_ERR_DOCUMENT_EMPTY:
+    return copy_text("the file does not begin with an element; expected <system name=\"...\"> and what is in it");
+  case XML_ERR_DOCUMENT_END:
+    return copy_text("the file goes on after the end of its first element; expected one <system> around everything");
+  case XML_ERR_RESERVED_XML_NAME:
+    return copy_text("<?xml ...?> stands further down; expected it at the very beginning of the file, or left out");
+  case XML_ERR_INVALID_ENCODING:
+  case XML_ERR_UNSUPPORTED_ENCODING:
+    return copy_text("the file is not in the encoding that its first line names, or that is not known; expected UTF-8");
+  case XML_ERR_HYPHEN_IN_COMMENT: return copy_text("'--' stands inside of <!-- ... -->; expected - or a colon");
+  case XML_ERR_COMMENT_NOT_FINISHED: return copy_text("a comment has no end; expected --> after <!--");
+  case XML_ERR_UNDECLARED_ENTITY:
+    return format_text("'&%s;' is not known; expected the character itself, and * for a product", name);
+  case XML_ERR_INVALID_CHAR:
+    return copy_text("an invisible character stands here that no text has; expected it removed");
+  case XML_WAR_UNKNOWN_VERSION:
+    return copy_text("the first line names another version of XML than 1.0; expected <?xml version=\"1.0\"?>, or no "
+                     "such line");
+  default: return NULL;
+  }
+}
+
+static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
+  const char *message = error->message != NULL ? error->message : "not readable";
+  struct Diagnostics *told = diagnostics;
+  if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
+  char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
+  if (meaning != NULL) message = meaning;
+  int length = (int)strcspn(message, "\n");
+  if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
+  else report_error(diagnostics, error->line, "%.*s", length, message);
+  free(meaning);
+}
+
+/*
+ * Ends the reading at a document type declaration, with which a short file can stand for one of any length. libxml2 hands
+ * its parser on as the first argument.
+ */
+static void refuse_document_type(void *context, const xmlChar *name, const xmlChar *external_id,
+                                 const xmlChar *system_id) {
+  (void)name, (void)external_id, (void)system_id;
+  xmlParserCtxtPtr parser = context;
+  report_error(parser->_private, parser->input->line,
+               "<!DOCTYPE ...> and entities are not read; expected the file without them, and <constant>, <define> or "
+               "<for> for what repeats");
+  xmlStopParser(parser);
+}
+
+static xmlDocPtr parse(const char *path, const char *text, size_t length, struct Diagnostics *diagnostics) {
+  xmlParserCtxtPtr parser = xmlNewParserCtxt();
+  if (parser == NULL) return NULL;
+  parser->_private = diagnostics;
+  parser->sax->internalSubset = refuse_document_type;
+  int errors = diagnostics->errors;
+  enum { OPTIONS = XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA };
+  xmlDocPtr document = xmlCtxtReadMemory(parser, text, (int)length, path, NULL, OPTIONS);
+  xmlFreeParserCtxt(parser);
+  if (diagnostics->errors == errors) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
+
+xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
+  size_t length;
+  char *text = source_text(path, &length, diagnostics);
+  xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
+  xmlDocPtr document = text != NULL ? parse(path, text, length, diagnostics) : NULL;
+  free(text);
+  if (document == NULL && diagnostics->errors == 0)
+    report_error(diagnostics, 0, "cannot be read; expected an XML file");
+  xmlSetStructuredErrorFunc(NULL, NULL);
+  if (document != NULL && !is_robot(document)) schema_check(document, diagnostics);
+  if (diagnostics->errors == 0) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}

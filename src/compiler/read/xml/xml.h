@@ -1,0 +1,15 @@
+/* Loads and validates a system.xml with libxml2; its messages become ours. */
+#ifndef XML_H
+#define XML_H
+
+#include <libxml/tree.h>
+
+#include "base/diagnostics.h"
+
+/*
+ * Reads the file and holds it against the schema, unless it is that of a robot, reporting every mistake. NULL where there is one: what else it means for
+ * names and expressions would hide it among messages that follow from it.
+ */
+xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics);
+
+#endif
