@@ -7,8 +7,8 @@
 #include <libxml/xmlwriter.h>
 
 #include "algebra/formula.h"
-#include "mathml.h"
 #include "base/memory.h"
+#include "mathml.h"
 #include "xml_output.h"
 
 static const char *const style =

@@ -7,9 +7,9 @@
 #include <libxml/xmlwriter.h>
 
 #include "algebra/formula.h"
+#include "base/memory.h"
 #include "common_elements.h"
 #include "interface/arrays.h"
-#include "base/memory.h"
 #include "model_structure.h"
 #include "scene.h"
 #include "xml_output.h"

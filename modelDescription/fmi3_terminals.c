@@ -4,9 +4,9 @@
 #include <libxml/xmlwriter.h>
 
 #include "algebra/differentiate.h"
+#include "base/memory.h"
 #include "fmi3_description.h"
 #include "interface/arrays.h"
-#include "base/memory.h"
 #include "xml_output.h"
 
 /* Names of what a flange is made of, by the unit of its coordinate. */

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "interface/dependencies.h"
 #include "base/memory.h"
+#include "interface/dependencies.h"
 #include "xml_output.h"
 
 /* How a version of FMI writes it. */

@@ -6,11 +6,11 @@
 
 #include <libxml/parser.h>
 
+#include "base/memory.h"
+#include "base/platform.h"
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
-#include "base/memory.h"
 #include "output.h"
-#include "base/platform.h"
 #include "program/program.h"
 #include "read/reader.h"
 

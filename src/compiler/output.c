@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/guid.h"
+#include "base/memory.h"
+#include "base/platform.h"
 #include "documentation.h"
 #include "fmi3_description.h"
 #include "model_description.h"
 #include "write/code.h"
-#include "base/guid.h"
-#include "base/memory.h"
-#include "base/platform.h"
 
 enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, CODE, FILE_COUNT };
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "algebra/functions.h"
+#include "base/memory.h"
 
 bool domain_contains(enum Operation operation, double argument) {
   const struct Domain *domain = &functions[operation].domain;

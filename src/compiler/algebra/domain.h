@@ -2,8 +2,8 @@
 #ifndef DOMAIN_H
 #define DOMAIN_H
 
-#include "base/diagnostics.h"
 #include "algebra/graph.h"
+#include "base/diagnostics.h"
 
 /* An argument that must be in the domain of its function. POWER: of a base whose exponent is no whole number. */
 struct Requirement {

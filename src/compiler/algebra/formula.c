@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/memory.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "algebra/cone.h"
-#include "base/memory.h"
 #include "algebra/functions.h"
+#include "base/memory.h"
 
 int operation_arity(enum Operation operation) {
   return functions[operation].of_one != NULL ? 1 : functions[operation].of_two != NULL ? 2 : 0;

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "algebra/kinks.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "interface/arrays.h"
-#include "mechanics/switching.h"
 #include "interface/symbol_names.h"
+#include "mechanics/switching.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {

@@ -7,8 +7,8 @@
 #include "algebra/formula.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
-#include "mechanics/switching.h"
 #include "base/memory.h"
+#include "mechanics/switching.h"
 
 /* Mere numbers and variables read as well by themselves. */
 static void add_names(struct NodeNames *names, const struct Graph *graph, const struct VariableList *list) {

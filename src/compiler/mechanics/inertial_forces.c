@@ -4,8 +4,8 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
-#include "mechanics/time_derivative.h"
 #include "base/memory.h"
+#include "mechanics/time_derivative.h"
 
 /* What moves, and the forces of inertia along it. */
 struct Motions {

@@ -7,12 +7,12 @@
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "mechanics/energies.h"
 #include "mechanics/inertial_forces.h"
 #include "mechanics/reactions.h"
-#include "mechanics/time_derivative.h"
 #include "mechanics/switching.h"
-#include "base/memory.h"
+#include "mechanics/time_derivative.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
 static Node *generalized_forces(const struct Model *model) {
@@ -217,7 +217,9 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   Node kinetic = add(graph, model->kinetic.node, energy_of_stillness(model));
   gradient_of(graph, subtract(graph, kinetic, model->potential.node), VELOCITY, n, momentum);
   equations->has_work = model->work_line > 0;
-  equations->inertia = inertia_derive(model, momentum, equations->constraints, diagnostics);
+  const struct Constraints *constraints = equations->constraints;
+  const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
+  equations->inertia = inertia_derive(model, momentum, &border, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     add_constraints(model, equations);

@@ -8,6 +8,7 @@
 #ifndef LAGRANGE_H
 #define LAGRANGE_H
 
+#include "mechanics/constraints.h"
 #include "mechanics/mass_matrix/inertia.h"
 
 /* What follows from a model. Its stages make new ones; they do not change the model. */

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 
 #include "algebra/differentiate.h"
-#include "base/memory.h"
 #include "algebra/formula.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 
 /* States, inputs and accelerations, which change in motion, with their values at the point and deviations from them. */
 struct Expansion {

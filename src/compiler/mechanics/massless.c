@@ -5,10 +5,10 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "mechanics/constraints.h"
 #include "mechanics/inertial_forces.h"
 #include "mechanics/mass_matrix/pivots.h"
-#include "base/memory.h"
 
 /* What is left of a diagonal element, or of the terms of a sum, by rounding. */
 static const double rounding = 1e-10;

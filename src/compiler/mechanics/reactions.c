@@ -5,9 +5,9 @@
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "mechanics/inertial_forces.h"
 #include "mechanics/time_derivative.h"
-#include "base/memory.h"
 
 /* sum weight . d position / d s for all symbols s of the kind, over positions as functions of displacements too. */
 struct Work {

@@ -5,8 +5,8 @@
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
-#include "mechanics/time_derivative.h"
 #include "base/memory.h"
+#include "mechanics/time_derivative.h"
 
 struct List {
   Node *nodes;

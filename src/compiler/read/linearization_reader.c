@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "read/elements/elements.h"
 #include "base/memory.h"
 #include "base/platform.h"
+#include "read/elements/elements.h"
 #include "read/expressions/parser.h"
 
 char *linearized_path(xmlNodePtr root, const char *path) {

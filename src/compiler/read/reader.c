@@ -4,19 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "read/context/attributes.h"
-#include "read/checks.h"
-#include "read/names/definitions.h"
-#include "read/elements/elements.h"
-#include "read/space/frames.h"
-#include "read/context/includes.h"
-#include "read/linearization_reader.h"
-#include "mechanics/massless.h"
 #include "base/memory.h"
-#include "read/expressions/parser.h"
-#include "read/robots/robot_system.h"
+#include "mechanics/massless.h"
+#include "read/checks.h"
+#include "read/context/attributes.h"
+#include "read/context/includes.h"
+#include "read/context/variables.h"
+#include "read/elements/elements.h"
+#include "read/elements/resolution.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
+#include "read/linearization_reader.h"
+#include "read/names/definitions.h"
+#include "read/names/words.h"
+#include "read/robots/robot_system.h"
+#include "read/space/frames.h"
+#include "read/tables/table.h"
 #include "read/xml/xml.h"
 
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
@@ -179,14 +182,6 @@ static void check_definitions_used(struct Reader *reader) {
                    reader->options->definitions[i]);
 }
 
-/* Results that every system has; their names must stay free. */
-static void reserve_result_names(struct Scope *scope) {
-  static const char *const results[] = {
-      "kineticEnergy",         "potentialEnergy",     "totalEnergy",    "nonConservativeWork", "solverSteps",
-      "derivativeEvaluations", "jacobianEvaluations", "eventIndicator", "solverHandovers",     "events"};
-  for (size_t i = 0; i < sizeof results / sizeof *results; i++) scope_set_number(scope, results[i], NAN);
-}
-
 static struct Model *model_create(void) {
   struct Model *model = allocate(1, sizeof *model);
   model->graph = graph_create();
@@ -216,7 +211,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   declare_constraint_forces(reader->model, reader->scope);
   append_reactions(reader->model, reader->scope);
   read_children(reader, root, DEFINITIONS);
-  definitions_resolve(reader->definitions, reader);
+  resolve_definitions(reader);
   read_children(reader, root, POSITIONS);
   evaluate_start_expressions(reader);
   read_children(reader, root, EXPRESSIONS);
@@ -278,6 +273,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
+  if (scope != NULL) tables_empty(scope->tables);
   scope_free(scope);
   if (model == NULL || options->solver == NULL) return model;
   model->method = method_named(options->solver);

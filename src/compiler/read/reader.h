@@ -4,16 +4,7 @@
 
 #include "base/diagnostics.h"
 #include "model/model.h"
-
-/* What the command line adds to the file. */
-struct ReaderOptions {
-  const char *const *definitions; /* "name=value" for <constant> elements */
-  size_t definition_count;
-  const char *solver;       /* the method in place of the system's own; NULL for none */
-  const char *const *point; /* "name=value" of a linearisation point; empty for none */
-  size_t point_count;
-  bool linearize; /* linearise at point even where it is empty */
-};
+#include "read/context/reader_options.h"
 
 /*
  * Reads a system, or the system that a <linearization> names together with its point. Every error is reported;

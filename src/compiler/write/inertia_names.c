@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "interface/symbol_names.h"
 #include "base/memory.h"
+#include "interface/symbol_names.h"
 
 /* The elimination of a row rests on the rows of the block up to it. */
 static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates, char **texts) {

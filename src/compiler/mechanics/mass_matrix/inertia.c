@@ -5,10 +5,9 @@
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
-#include "mechanics/mass_matrix/elimination.h"
-#include "mechanics/mass_matrix/mass_elements.h"
-#include "mechanics/mass_matrix/pivots.h"
 #include "base/memory.h"
+#include "mechanics/mass_matrix/elimination.h"
+#include "mechanics/mass_matrix/pivots.h"
 
 /* Where the block keeps an element of the lower triangle, in places; start[count] where it is not in the pattern. */
 static size_t find(const struct InertiaBlock *block, size_t row, size_t column) {
@@ -98,25 +97,25 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
 }
 
 /* The same matrix with the borders J and J^T. */
-static struct Inertia *border(const struct Graph *graph, size_t count, struct Elements *elements,
-                              const struct Constraints *constraints) {
-  const struct Elements *jacobian = &constraints->jacobian;
+static struct Inertia *create_bordered(const struct Graph *graph, size_t count, struct Elements *elements,
+                                       const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
-  struct Inertia *inertia = create_blocks(graph, count + constraints->count, constraints->count, elements);
-  add_oblique(inertia, &constraints->oblique);
+  struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements);
+  add_oblique(inertia, border->oblique);
   return inertia;
 }
 
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
                                struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   struct Elements elements = elements_of(model, momentum);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
-  if (!is_right || constraints->count > 0) {
+  if (!is_right || border->count > 0) {
     inertia_free(inertia);
-    inertia = is_right ? border(model->graph, count, &elements, constraints) : NULL;
+    inertia = is_right ? create_bordered(model->graph, count, &elements, border) : NULL;
   }
   elements_free(&elements);
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;

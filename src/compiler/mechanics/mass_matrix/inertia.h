@@ -6,8 +6,7 @@
 #ifndef INERTIA_H
 #define INERTIA_H
 
-#include "mechanics/constraints.h"
-#include "model/model.h"
+#include "mechanics/mass_matrix/mass_elements.h"
 
 /* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
 struct Pivot {
@@ -52,10 +51,18 @@ struct Inertia {
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * K from the momenta dL/dv of all coordinates and the constraints. Reports a coordinate without inertia and an M that is
+ * What borders M: the rows J of count constraints, and what their forces add beside J^T; both of constraints and coordinates.
+ */
+struct Border {
+  size_t count;
+  const struct Elements *jacobian, *oblique;
+};
+
+/*
+ * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
  * singular everywhere or not positive at the start values; NULL then. Free with inertia_free().
  */
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Constraints *constraints,
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
                                struct Diagnostics *diagnostics);
 void inertia_free(struct Inertia *inertia);
 

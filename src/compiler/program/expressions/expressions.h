@@ -2,13 +2,13 @@
 #ifndef EXPRESSIONS_H
 #define EXPRESSIONS_H
 
-#include "mechanics/mass_matrix/elimination.h"
 #include "interface/interface.h"
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
+#include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/switching.h"
-#include "program/values/node_list.h"
 #include "program/expressions/series_plan.h"
+#include "program/values/node_list.h"
 
 /*
  * d derivatives / d state by columns: column j has elements start[j] .. start[j + 1] - 1, their rows ascending. In

@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 
-#include "base/memory.h"
 #include "algebra/differentiate.h"
 #include "algebra/functions.h"
+#include "base/memory.h"
 
 static Node auxiliary_of(struct Graph *graph, Node node) {
   const struct Function *row = &functions[graph->vertices[node].operation];

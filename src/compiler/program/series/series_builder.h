@@ -2,10 +2,10 @@
 #ifndef SERIES_BUILDER_H
 #define SERIES_BUILDER_H
 
+#include "program/expressions/series_plan.h"
 #include "program/values/form.h"
 #include "program/values/node_list.h"
 #include "program/values/routine.h"
-#include "program/expressions/series_plan.h"
 #include "program/values/values.h"
 
 /* Spaces of a routine that is not complete yet: only then is known which nodes have rows. */

@@ -4,24 +4,8 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/units/other_units.h"
-#include "mechanics/reactions.h"
 #include "base/memory.h"
-
-bool is_element(xmlNodePtr node, const char *name) {
-  return xmlStrEqual(node->name, (const xmlChar *)name);
-}
-
-bool has_attribute(xmlNodePtr node, const char *name) {
-  return xmlHasProp(node, (const xmlChar *)name) != NULL;
-}
-
-char *attribute(xmlNodePtr node, const char *name) {
-  xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
-  if (value == NULL) return NULL;
-  char *copy = copy_text((const char *)value);
-  xmlFree(value);
-  return copy;
-}
+#include "mechanics/reactions.h"
 
 bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
   struct Place place = {.line = xmlGetLineNo(node), .what = name};
@@ -91,20 +75,6 @@ struct Vector vector_without_displacements(struct Reader *reader, long line, con
 struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix) {
   for (int i = 0; i < 3; i++) matrix.row[i] = vector_without_displacements(reader, line, what, matrix.row[i]);
   return matrix;
-}
-
-/* The element's text; a comment separates what stands before and after it. */
-static char *text_of(xmlNodePtr node) {
-  char *text = copy_text("");
-  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
-    bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
-    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
-    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
-    xmlFree(content);
-    free(text);
-    text = longer;
-  }
-  return text;
 }
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {

@@ -2,11 +2,11 @@
 #ifndef ATTRIBUTES_H
 #define ATTRIBUTES_H
 
-#include <libxml/tree.h>
-
-#include "read/names/branches.h"
+#include "model/model.h"
+#include "read/context/reader_options.h"
 #include "read/expressions/parser.h"
-#include "read/reader.h"
+#include "read/names/branches.h"
+#include "read/xml/nodes.h"
 
 /* Each pass uses the names that the ones before it made known, wherever in the file they stand. */
 enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
@@ -54,13 +54,6 @@ enum {
   IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(INPUT),
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION) | CONTACT_STATE,
 };
-
-/* Whether the element has this name, and whether it has an attribute of this name. */
-bool is_element(xmlNodePtr node, const char *name);
-bool has_attribute(xmlNodePtr node, const char *name);
-
-/* NULL where missing; to be freed with free(). */
-char *attribute(xmlNodePtr node, const char *name);
 
 /* True and *value set where the attribute is present and right; reports an error where it is not right. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);

@@ -5,9 +5,8 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/rational.h"
-#include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/elements/elements.h"
+#include "read/context/variables.h"
 
 void declare_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Variable constraint = common_attributes(reader, node);

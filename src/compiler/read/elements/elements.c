@@ -4,50 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "algebra/differentiate.h"
-#include "mechanics/energies.h"
+#include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/space/bodies.h"
+#include "mechanics/energies.h"
+#include "read/context/includes.h"
+#include "read/context/variables.h"
 #include "read/elements/constraint_reader.h"
 #include "read/elements/forces.h"
-#include "read/space/frames.h"
-#include "read/context/includes.h"
 #include "read/elements/named_expressions.h"
-#include "algebra/simplify.h"
 #include "read/elements/parameters.h"
-#include "read/names/similar.h"
-#include "read/elements/switching_reader.h"
 #include "read/elements/start_expressions.h"
-#include "read/elements/tables.h"
-
-struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
-  list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
-  list->items[list->count] = variable;
-  return &list->items[list->count++];
-}
-
-struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
-  struct Variable variable = {.name = name_attribute(reader, node, "name"),
-                              .description = attribute(node, "description"),
-                              .unit = attribute(node, "unit"),
-                              .dimension = unit_attribute(reader, node, "unit"),
-                              .start = NAN,
-                              .minimum = NAN,
-                              .maximum = NAN,
-                              .nominal = NAN,
-                              .line = xmlGetLineNo(node)};
-  if (variable.name == NULL) variable.name = copy_text("?"); /* reported already */
-  return variable;
-}
-
-void check_range(struct Reader *reader, const struct Variable *variable) {
-  if (variable->minimum > variable->maximum)
-    report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
-                 variable->minimum, variable->maximum);
-  else if (variable->start < variable->minimum || variable->start > variable->maximum)
-    report_error(reader->diagnostics, variable->line, "'%s': start %g is outside min and max", variable->name,
-                 variable->start);
-}
+#include "read/elements/switching_reader.h"
+#include "read/elements/table_reader.h"
+#include "read/space/bodies.h"
+#include "read/space/frames.h"
 
 static void read_constant(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");

@@ -11,13 +11,4 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass);
 void read_solver(struct Reader *reader, xmlNodePtr node);
 void read_experiment(struct Reader *reader, xmlNodePtr node);
 
-/* Name, description and unit; the rest is not there. */
-struct Variable common_attributes(struct Reader *reader, xmlNodePtr node);
-
-/* Reports a range or a start value that does not fit. */
-void check_range(struct Reader *reader, const struct Variable *variable);
-
-/* Appends a variable, whose strings the list owns from now on. */
-struct Variable *append_variable(struct VariableList *list, struct Variable variable);
-
 #endif

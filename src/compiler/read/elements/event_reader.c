@@ -3,12 +3,10 @@
 #include <string.h>
 
 #include "algebra/cone.h"
-#include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/names/branches.h"
-#include "read/expressions/conditions.h"
-#include "read/elements/elements.h"
 #include "read/elements/switching_reader.h"
+#include "read/expressions/conditions.h"
+#include "read/names/branches.h"
 
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 

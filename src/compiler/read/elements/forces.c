@@ -6,10 +6,10 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/space/bodies.h"
-#include "read/space/frames.h"
 #include "read/context/includes.h"
 #include "read/names/similar.h"
+#include "read/space/bodies.h"
+#include "read/space/frames.h"
 
 static const char *const axes[3] = {"x", "y", "z"};
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/context/variables.h"
 #include "read/names/definitions.h"
-#include "read/elements/elements.h"
 #include "read/space/frames.h"
 
 bool has_value(xmlNodePtr node, const struct Given *given) {

@@ -3,14 +3,7 @@
 #define NAMED_EXPRESSIONS_H
 
 #include "read/context/includes.h"
-
-/* An expression and the element whose name it has. */
-struct NamedExpression {
-  xmlNodePtr node;
-  const char *attribute;     /* that holds the expression; NULL for the text */
-  struct Source *source;     /* in which the element stands */
-  const struct Given *given; /* where an <include> gives the expression; else NULL */
-};
+#include "read/names/definitions.h"
 
 /* Whether a <parameter> or <input> has a value, its own or a given one, in place of a start. */
 bool has_value(xmlNodePtr node, const struct Given *given);

@@ -7,7 +7,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
-#include "read/elements/elements.h"
+#include "read/context/variables.h"
 #include "read/elements/named_expressions.h"
 
 static const char *const type_names[] = {[TYPE_REAL] = "Real", [TYPE_INTEGER] = "Integer", [TYPE_BOOLEAN] = "Boolean"};

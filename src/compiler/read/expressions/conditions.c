@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "algebra/simplify.h"
-#include "read/names/branches.h"
+#include "read/expressions/parser.h"
 #include "read/expressions/quantities.h"
+#include "read/names/branches.h"
 
 enum Comparison { NO_COMPARISON, MORE, MORE_OR_EQUAL, LESS_THAN_OTHER, LESS_OR_EQUAL };
 

@@ -5,7 +5,7 @@
 #ifndef CONDITIONS_H
 #define CONDITIONS_H
 
-#include "read/expressions/parser_state.h"
+#include "read/expressions/cursor.h"
 
 /* A node that is constant between events, and positive where the condition holds. */
 Node parse_condition(struct Parser *parser);

@@ -5,16 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
-#include "read/names/branches.h"
+#include "base/memory.h"
 #include "read/expressions/conditions.h"
-#include "read/names/hints.h"
 #include "read/expressions/quantities.h"
-#include "read/elements/tables.h"
 #include "read/expressions/unknown_names.h"
+#include "read/names/branches.h"
+#include "read/names/hints.h"
+#include "read/names/words.h"
+#include "read/tables/table.h"
 
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 50 };
 
@@ -42,47 +43,11 @@ static const struct Quantity nothing = {.node = ZERO};
 
 static struct Quantity parse_sign(struct Parser *parser);
 
-long current_line(struct Parser *parser) {
-  for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';
-  while (parser->counted > parser->next) parser->newlines -= *--parser->counted == '\n';
-  return parser->place.line + parser->newlines;
-}
-
 /* Recursion is bounded here, so that no input exhausts the stack. */
 static void enter(struct Parser *parser) {
   if (++parser->nesting > NESTING_LIMIT + 1)
     FAIL(parser, "%s: more than %d nested parentheses or powers; expected fewer, or a <define> for a part",
          parser->place.what, NESTING_LIMIT);
-}
-
-void skip_space(struct Parser *parser) {
-  while (isspace((unsigned char)*parser->next)) parser->next++;
-}
-
-/* What stands at the reading position, for messages. */
-static const char *found(const struct Parser *parser, char buffer[32]) {
-  if (*parser->next == '\0') return "the end";
-  size_t length = 1;
-  if (isalnum((unsigned char)*parser->next))
-    while (length < 24 && isalnum((unsigned char)parser->next[length])) length++;
-  else
-    while (length < 4 && ((unsigned char)parser->next[length] & 0xC0u) == 0x80u) length++;
-  snprintf(buffer, 32, "'%.*s'", (int)length, parser->next);
-  return buffer;
-}
-
-bool accept_character(struct Parser *parser, char c) {
-  skip_space(parser);
-  if (*parser->next != c) return false;
-  parser->next++;
-  return true;
-}
-
-void expect_character(struct Parser *parser, char c, const char *context) {
-  char buffer[32];
-  if (parser->failed || accept_character(parser, c)) return;
-  FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
-       c == ']' ? "" : hint_for_text(parser->text, parser->next));
 }
 
 static struct Quantity parse_literal(struct Parser *parser) {
@@ -294,12 +259,12 @@ static struct Quantity parse_derivative(struct Parser *parser) {
 }
 
 static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {
-  bool has_two = table_has_two_arguments(table);
+  bool has_two = table->has_two_arguments;
   struct Quantity arguments[2] = {parse_sum(parser), nothing};
   if (has_two) expect_character(parser, ',', "between the two arguments of a table");
   if (has_two && !parser->failed) arguments[1] = parse_sum(parser);
   expect_character(parser, ')', has_two ? "after the two arguments of a table" : "after the argument of a table");
-  return parser->failed ? nothing : table_at(parser, table, name, arguments);
+  return parser->failed ? nothing : quantity_of_table(parser, table, name, arguments);
 }
 
 /* The table of a name as the file calls it; NULL where there is none. */
@@ -489,11 +454,4 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place, bool
   if (!parser.failed) return name;
   free(name);
   return NULL;
-}
-
-void define_language(struct Scope *scope) {
-  scope_set_number(scope, "pi", M_PI);
-  for (size_t i = 0; special_functions[i] != NULL; i++) scope_set_number(scope, special_functions[i], NAN);
-  for (int operation = 0; operation < OPERATION_COUNT; operation++)
-    if (!functions[operation].is_internal) scope_set_number(scope, functions[operation].name, NAN);
 }

@@ -2,15 +2,7 @@
 #ifndef PARSER_H
 #define PARSER_H
 
-#include "read/names/scope.h"
-
-/* Where an expression stands, for messages, and what it may depend on. */
-struct Place {
-  long line;
-  const char *what;      /* such as "the potential" */
-  unsigned kinds;        /* bit k: may depend on symbols of kind k */
-  int input_derivatives; /* how many time derivatives inputs must have there */
-};
+#include "read/expressions/cursor.h"
 
 /*
  * Parses an expression. Errors are reported with their line, and the result is then 0 with an unknown dimension.
@@ -26,6 +18,9 @@ struct Place {
  */
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
 
+/* The same from the reading position on, as far as it goes. */
+struct Quantity parse_sum(struct Parser *parser);
+
 /* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
 
@@ -34,8 +29,5 @@ bool parse_number(struct Scope *scope, const char *text, struct Place place, dou
  * motor.theta. Returns NULL after reporting an error.
  */
 char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);
-
-/* Makes the names of the language itself known: pi and the functions. */
-void define_language(struct Scope *scope);
 
 #endif

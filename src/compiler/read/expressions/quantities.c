@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/memory.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "read/names/branches.h"
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
@@ -127,4 +127,26 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
   struct Dimension common = has_two ? common_dimension(parser, a, b, operation_name(operation)) : a.dimension;
   if (functions[operation].units == UNIT_KEPT) result.dimension = common;
   return result;
+}
+
+static bool check_argument(struct Parser *parser, struct Dimension unit, const char *name, const char *which,
+                           struct Quantity argument) {
+  if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
+  char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
+  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s", parser->place.what, which,
+       name, actual, expected);
+  free(actual);
+  free(expected);
+  return false;
+}
+
+struct Quantity quantity_of_table(struct Parser *parser, const struct Table *table, const char *name,
+                                  const struct Quantity arguments[2]) {
+  struct Quantity value = {.node = ZERO, .dimension = table->value};
+  const Node nodes[2] = {arguments[0].node, arguments[1].node};
+  bool has_two = table->has_two_arguments;
+  if (!check_argument(parser, table->arguments[0], name, has_two ? "first " : "", arguments[0])) return value;
+  if (has_two && !check_argument(parser, table->arguments[1], name, "second ", arguments[1])) return value;
+  value.node = table_at(parser->scope, table, nodes, current_line(parser));
+  return value;
 }

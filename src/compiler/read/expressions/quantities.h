@@ -5,7 +5,8 @@
 #ifndef QUANTITIES_H
 #define QUANTITIES_H
 
-#include "read/expressions/parser_state.h"
+#include "read/expressions/cursor.h"
+#include "read/tables/table.h"
 
 struct Quantity quantity_add(struct Parser *parser, struct Quantity a, struct Quantity b);
 struct Quantity quantity_subtract(struct Parser *parser, struct Quantity a, struct Quantity b);
@@ -16,5 +17,9 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
 /* A function of the language other than a power; b is ignored for one argument. */
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
                                   struct Quantity b);
+
+/* A table of this name at its one or two arguments. */
+struct Quantity quantity_of_table(struct Parser *parser, const struct Table *table, const char *name,
+                                  const struct Quantity arguments[2]);
 
 #endif

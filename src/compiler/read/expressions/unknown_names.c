@@ -8,17 +8,8 @@
 #include "read/names/definitions.h"
 #include "read/names/hints.h"
 #include "read/names/similar.h"
-#include "read/elements/tables.h"
-
-const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or", "not", NULL};
-
-enum Operation find_function(const char *name) {
-  int operation = 0;
-  while (operation < OPERATION_COUNT &&
-         (functions[operation].is_internal || strcmp(name, functions[operation].name) != 0))
-    operation++;
-  return (enum Operation)operation;
-}
+#include "read/names/words.h"
+#include "read/tables/table.h"
 
 /* What may stand where numbers alone are allowed, or everything. */
 static const char *expected_names(const struct Parser *parser) {
@@ -87,8 +78,6 @@ void report_unknown_name(struct Parser *parser, const char *name) {
 }
 
 void report_reserved(struct Parser *parser, const char *name) {
-  bool is_function = find_function(name) < OPERATION_COUNT;
-  for (size_t i = 0; special_functions[i] != NULL; i++) is_function |= strcmp(name, special_functions[i]) == 0;
   char *full_name = scope_full_name(parser->scope, name);
   bool is_table = table_named(parser->scope, full_name) != NULL;
   char *force = format_text("%s.force", full_name);
@@ -98,7 +87,7 @@ void report_reserved(struct Parser *parser, const char *name) {
   if (is_constraint)
     FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
          name, name);
-  else if (is_function || is_table)
+  else if (is_table || is_function_name(name))
     FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
          parser->place.what, name, is_table ? "table" : "function", name);
   else

@@ -5,8 +5,8 @@
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
-#include "model/switches.h"
 #include "base/memory.h"
+#include "model/switches.h"
 
 /* Indicators that are compared in a step of work. */
 enum { COMPARISONS = 8 };

@@ -4,32 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-
-/* The value of an index around a definition, and those further out. */
-struct Loop {
-  char *index;
-  double value;
-  struct Loop *outer, *previous; /* previous: the one made before, of all */
-};
-
-/* ACTIVE: it has been found to need others, which are read now. */
-enum DefinitionState { UNREAD, ACTIVE, READ };
-
-struct Definition {
-  char *name;
-  struct NamedExpression expression;
-  const struct Loop *loop;
-  enum DefinitionState state;
-};
-
-struct Definitions {
-  struct Definition *items;
-  size_t count, capacity;
-  struct Names *numbers; /* name -> size_t, its place among the items */
-  struct Loop *last, *present;
-  size_t *stack; /* those to be read, the present one on top */
-  size_t stack_count, stack_capacity, waiting;
-};
+#include "read/names/names.h"
 
 struct Definitions *definitions_create(void) {
   struct Definitions *definitions = allocate(1, sizeof *definitions);
@@ -73,7 +48,7 @@ void definitions_add(struct Definitions *definitions, char *name, const struct N
   definitions->items[definitions->count++] = (struct Definition){name, *expression, definitions->present, UNREAD};
 }
 
-static void push(struct Definitions *definitions, size_t number) {
+void definitions_push(struct Definitions *definitions, size_t number) {
   definitions->stack =
       make_room(definitions->stack, definitions->stack_count, &definitions->stack_capacity, sizeof *definitions->stack);
   definitions->stack[definitions->stack_count++] = number;
@@ -82,7 +57,7 @@ static void push(struct Definitions *definitions, size_t number) {
 bool definitions_wait_for(struct Definitions *definitions, const char *name) {
   const size_t *number = definitions != NULL ? names_find(definitions->numbers, name) : NULL;
   if (number == NULL || definitions->stack_count == 0 || definitions->items[*number].state == READ) return false;
-  push(definitions, *number);
+  definitions_push(definitions, *number);
   definitions->waiting++;
   return true;
 }
@@ -93,91 +68,4 @@ bool definitions_contain(const struct Definitions *definitions, const char *name
 
 bool definitions_are_waiting(const struct Definitions *definitions) {
   return definitions != NULL && definitions->waiting > 0;
-}
-
-/* Sets the indices around a definition, or takes them back. A name that has another meaning is told later, see reader.c. */
-static void bind(struct Scope *scope, const struct Loop *loop, bool back) {
-  for (; loop != NULL; loop = loop->outer) {
-    const struct Quantity *known = scope_find(scope, loop->index);
-    if (back && known != NULL) scope_remove_index(scope, loop->index);
-    else if (!back && known == NULL) scope_set_index(scope, loop->index, loop->value);
-  }
-}
-
-/* Of a circle that is closed by the definition with this number: a -> b -> a. */
-static void report_circle(const struct Definitions *definitions, struct Reader *reader, size_t top, size_t closing) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
-  bool inside = false;
-  for (size_t i = 0; i <= top; i++) {
-    const struct Definition *definition = &definitions->items[definitions->stack[i]];
-    inside = inside || definitions->stack[i] == closing;
-    if (inside && definition->state == ACTIVE) fprintf(file, "%s -> ", definition->name);
-  }
-  close_text(file, &text, &length);
-  const struct NamedExpression *expression = &definitions->items[closing].expression;
-  struct Source *present = source_enter(reader, expression->source);
-  report_error(reader->diagnostics, xmlGetLineNo(expression->node),
-               "definitions need each other in a circle: %s%s; expected one of them without the next", text,
-               definitions->items[closing].name);
-  source_enter(reader, present);
-  free(text);
-}
-
-/* Those that the present one waits for come before it, unless one of them waits for it. */
-static void keep_waiting(struct Definitions *definitions, struct Reader *reader, size_t top) {
-  size_t *stack = definitions->stack, closing = 0;
-  bool is_circle = false;
-  definitions->items[stack[top]].state = ACTIVE;
-  for (size_t i = top + 1; i < definitions->stack_count && !is_circle; i++) {
-    closing = stack[i];
-    is_circle = definitions->items[closing].state == ACTIVE;
-  }
-  if (!is_circle) return;
-  report_circle(definitions, reader, top, closing);
-  for (size_t i = 0; i < definitions->stack_count; i++) { /* all of it fails, without a further word */
-    struct Definition *definition = &definitions->items[stack[i]];
-    struct Quantity nothing = {.node = ZERO};
-    if (definition->state == ACTIVE)
-      scope_define(reader->scope, definition->name, nothing, xmlGetLineNo(definition->expression.node));
-    if (definition->state == ACTIVE) definition->state = READ;
-  }
-}
-
-static void read_on_stack(struct Definitions *definitions, struct Reader *reader) {
-  while (definitions->stack_count > 0) {
-    size_t top = definitions->stack_count - 1;
-    struct Definition *definition = &definitions->items[definitions->stack[top]];
-    if (definition->state == READ) {
-      definitions->stack_count--;
-      continue;
-    }
-    struct Requirements *requirements = &reader->scope->requirements;
-    size_t requirement_count = requirements->count;
-    definitions->waiting = 0;
-    bind(reader->scope, definition->loop, false);
-    struct Quantity value = read_named_expression(reader, &definition->expression, definition->name);
-    bind(reader->scope, definition->loop, true);
-    if (definitions->waiting > 0) {
-      requirements->count = requirement_count;
-      definitions->waiting = 0;
-      keep_waiting(definitions, reader, top);
-    } else {
-      xmlNodePtr node = definition->expression.node;
-      struct Source *present = source_enter(reader, definition->expression.source);
-      bool is_new = scope_define(reader->scope, definition->name, value, xmlGetLineNo(node));
-      if (is_new) keep_named_expression(reader, node, definition->name, value);
-      source_enter(reader, present);
-      definition->state = READ;
-    }
-  }
-}
-
-void definitions_resolve(struct Definitions *definitions, struct Reader *reader) {
-  for (size_t i = 0; i < definitions->count && graph_limit(reader->model->graph) == NULL; i++) {
-    if (definitions->items[i].state == READ) continue;
-    push(definitions, i);
-    read_on_stack(definitions, reader);
-  }
 }

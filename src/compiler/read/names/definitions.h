@@ -5,7 +5,47 @@
 #ifndef DEFINITIONS_H
 #define DEFINITIONS_H
 
-#include "read/elements/named_expressions.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <libxml/tree.h>
+
+struct Source;
+struct Given;
+
+/* An expression and the element whose name it has. */
+struct NamedExpression {
+  xmlNodePtr node;
+  const char *attribute;     /* that holds the expression; NULL for the text */
+  struct Source *source;     /* in which the element stands */
+  const struct Given *given; /* where an <include> gives the expression; else NULL */
+};
+
+/* The value of an index around a definition, and those further out. */
+struct Loop {
+  char *index;
+  double value;
+  struct Loop *outer, *previous; /* previous: the one made before, of all */
+};
+
+/* ACTIVE: it has been found to need others, which are read now. */
+enum DefinitionState { UNREAD, ACTIVE, READ };
+
+struct Definition {
+  char *name;
+  struct NamedExpression expression;
+  const struct Loop *loop;
+  enum DefinitionState state;
+};
+
+struct Definitions {
+  struct Definition *items;
+  size_t count, capacity;
+  struct Names *numbers; /* name -> size_t, its place among the items */
+  struct Loop *last, *present;
+  size_t *stack; /* those to be read, the present one on top */
+  size_t stack_count, stack_capacity, waiting;
+};
 
 struct Definitions *definitions_create(void);
 void definitions_free(struct Definitions *definitions);
@@ -17,8 +57,8 @@ void definitions_leave(struct Definitions *definitions);
 /* Collects an expression under its name, which is taken over, as it is for the present indices. */
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression);
 
-/* Reads all expressions and makes their names known; names those that need each other in a circle. */
-void definitions_resolve(struct Definitions *definitions, struct Reader *reader);
+/* That of this number is to be read before those on the stack. */
+void definitions_push(struct Definitions *definitions, size_t number);
 
 /* Whether the name is that of an expression which has not been read yet; the present one then waits for it. */
 bool definitions_wait_for(struct Definitions *definitions, const char *name);

@@ -7,7 +7,6 @@
 #include "algebra/differentiate.h"
 #include "base/memory.h"
 #include "read/names/similar.h"
-#include "read/elements/tables.h"
 
 struct Entry {
   struct Quantity quantity;
@@ -28,7 +27,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
 void scope_free(struct Scope *scope) {
   if (scope == NULL) return;
   names_free(scope->names);
-  tables_free(scope->tables);
+  names_free(scope->tables);
   free(scope->time_derivatives);
   free(scope->requirements.items);
   free(scope);

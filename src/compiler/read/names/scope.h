@@ -16,7 +16,7 @@ struct Scope {
   struct Names *names;              /* name -> struct Entry */
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
-  struct Names *tables;             /* full name -> struct Table, see tables.h */
+  struct Names *tables;             /* full name -> struct Table, see table.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
   struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */

@@ -7,8 +7,8 @@
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_tree.h"
-#include "read/xml/schema.h"
 #include "read/robots/urdf.h"
+#include "read/xml/schema.h"
 
 /* Of a floating base, and of the point at the tool. */
 static const char base[] = "base", tool[] = "tool";
@@ -123,10 +123,6 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
         "no joint of the robot moves; expected one of another type than fixed, or base=\"floating\" in an <include>");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
-}
-
-bool is_robot(xmlDocPtr document) {
-  return xmlStrEqual(xmlDocGetRootElement(document)->name, (const xmlChar *)"robot");
 }
 
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {

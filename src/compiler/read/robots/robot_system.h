@@ -15,8 +15,6 @@ struct RobotOptions {
       tool; /* the link whose position and velocity are outputs; NULL: the only one without children, if there is one */
 };
 
-bool is_robot(xmlDocPtr document);
-
 /*
  * Frees the document of a <robot>, and returns that of its <system>, which follows the schema, with the lines of the file.
  * NULL after reporting mistakes.

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "read/names/names.h"
 #include "read/names/similar.h"
-#include "read/expressions/unknown_names.h"
+#include "read/names/words.h"
 
 /* Links or joints by their names in the file, and by the symbols that are made of these. */
 struct Register {
@@ -55,9 +55,8 @@ char *robot_symbol(const char *name) {
 /* The same for what is in a system, in which there are other names for each robot. */
 static char *symbol_in_system(const char *name) {
   static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity", "pi", "time"};
-  bool is_taken = find_function(name) < OPERATION_COUNT;
+  bool is_taken = is_function_name(name);
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) is_taken |= strcmp(name, taken[i]) == 0;
-  for (size_t i = 0; special_functions[i] != NULL; i++) is_taken |= strcmp(name, special_functions[i]) == 0;
   return is_taken ? format_text("%s_", name) : robot_symbol(name);
 }
 

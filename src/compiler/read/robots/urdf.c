@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/context/attributes.h"
+#include "read/xml/nodes.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed", "revolute", "continuous", "prismatic", "floating", "planar"};
 

@@ -5,8 +5,8 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/space/frames.h"
 #include "read/context/includes.h"
+#include "read/space/frames.h"
 
 static const char *const axes[3] = {"x", "y", "z"};
 

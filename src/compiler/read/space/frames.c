@@ -5,9 +5,8 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/context/variables.h"
 #include "read/names/definitions.h"
-#include "read/elements/elements.h"
-#include "read/context/includes.h"
 #include "read/names/similar.h"
 #include "read/space/turns.h"
 

@@ -6,7 +6,7 @@
 #include <libxml/parser.h>
 
 #include "base/memory.h"
-#include "read/robots/robot_system.h"
+#include "read/xml/nodes.h"
 #include "read/xml/schema.h"
 #include "read/xml/source_text.h"
 

@@ -1,9 +1,17 @@
-/* What the files that read expressions share. */
-#ifndef PARSER_STATE_H
-#define PARSER_STATE_H
+/* The reading position in the text of an expression. */
+#ifndef CURSOR_H
+#define CURSOR_H
 
 #include "read/names/definitions.h"
-#include "read/expressions/parser.h"
+#include "read/names/scope.h"
+
+/* Where an expression stands, for messages, and what it may depend on. */
+struct Place {
+  long line;
+  const char *what;      /* such as "the potential" */
+  unsigned kinds;        /* bit k: may depend on symbols of kind k */
+  int input_derivatives; /* how many time derivatives inputs must have there */
+};
 
 struct Parser {
   struct Scope *scope;
@@ -17,9 +25,6 @@ struct Parser {
   bool failed;
 };
 
-/* An expression from the reading position on, as far as it goes. */
-struct Quantity parse_sum(struct Parser *parser);
-
 void skip_space(struct Parser *parser);
 
 /* Whether the character comes next, which is then passed. */
@@ -27,6 +32,9 @@ bool accept_character(struct Parser *parser, char c);
 
 /* The same of one that must come; context completes "expected '('". */
 void expect_character(struct Parser *parser, char c, const char *context);
+
+/* What stands at the reading position, for messages. */
+const char *found(const struct Parser *parser, char buffer[32]);
 
 /* The line of the reading position. */
 long current_line(struct Parser *parser);

@@ -1,24 +1,15 @@
-#include "read/elements/tables.h"
+#include "read/elements/table_reader.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/elements/grid_reader.h"
-#include "read/tables/pieces.h"
 #include "read/elements/table_lines.h"
+#include "read/tables/table.h"
 
 enum { POINT_LIMIT = 500 };
-
-struct Table {
-  bool has_two_arguments;
-  struct Curve curve;     /* of one */
-  struct Surface surface; /* of two */
-  bool is_constant_outside;
-  struct Dimension arguments[2], value;
-};
 
 /* The points as they are read. */
 struct Points {
@@ -135,11 +126,6 @@ static struct Table *read_surface(struct Reader *reader, xmlNodePtr node, const 
   return table;
 }
 
-static void table_free(struct Table *table) {
-  curve_free(&table->curve);
-  surface_free(&table->surface);
-}
-
 void read_table(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name"), *file = attribute(node, "file");
   struct Table *table = NULL;
@@ -156,61 +142,4 @@ void read_table(struct Reader *reader, xmlNodePtr node) {
   }
   free(file);
   free(name);
-}
-
-const struct Table *table_named(const struct Scope *scope, const char *full_name) {
-  return names_find(scope->tables, full_name);
-}
-
-bool table_has_two_arguments(const struct Table *table) {
-  return table->has_two_arguments;
-}
-
-static bool check_argument(struct Parser *parser, struct Dimension unit, const char *name, const char *which,
-                           struct Quantity argument) {
-  if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
-  char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
-  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s", parser->place.what, which,
-       name, actual, expected);
-  free(actual);
-  free(expected);
-  return false;
-}
-
-static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i, Node s) {
-  Node inner = scale(graph, curve->d[i], s);
-  inner = add(graph, graph_constant(graph, curve->c[i]), inner);
-  inner = multiply(graph, s, inner);
-  inner = add(graph, graph_constant(graph, curve->b[i]), inner);
-  return multiply(graph, s, inner);
-}
-
-/* The first value and what each interval adds to it: its cubic of the way in it. */
-static Node curve_at(struct Scope *scope, const struct Curve *curve, bool is_constant_outside, Node x) {
-  struct Graph *graph = scope->graph;
-  size_t last = curve->count - 1;
-  Node value = graph_constant(graph, curve->y[0]);
-  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], way_before(scope, x, curve->x[0])));
-  for (size_t i = 0; i < last; i++)
-    value = add(graph, value, polynomial(graph, curve, i, way_in(scope, x, curve->x[i], curve->x[i + 1])));
-  if (is_constant_outside) return value;
-  return add(graph, value, scale(graph, curve->b[last], way_behind(scope, x, curve->x[last])));
-}
-
-struct Quantity table_at(struct Parser *parser, const struct Table *table, const char *name,
-                         const struct Quantity arguments[2]) {
-  struct Quantity value = {.node = ZERO, .dimension = table->value};
-  bool outside = table->is_constant_outside, has_two = table->has_two_arguments;
-  if (!check_argument(parser, table->arguments[0], name, has_two ? "first " : "", arguments[0])) return value;
-  if (has_two && !check_argument(parser, table->arguments[1], name, "second ", arguments[1])) return value;
-  parser->scope->table_line = current_line(parser);
-  value.node = has_two ? surface_at(parser->scope, &table->surface, outside, arguments[0].node, arguments[1].node)
-                       : curve_at(parser->scope, &table->curve, outside, arguments[0].node);
-  return value;
-}
-
-void tables_free(struct Names *tables) {
-  for (size_t i = 0; i < tables->capacity; i++)
-    if (tables->places[i].text != NULL) table_free(tables->places[i].meaning);
-  names_free(tables);
 }

@@ -1,0 +1,16 @@
+/* What elements declare becomes variables of the model. */
+#ifndef VARIABLES_H
+#define VARIABLES_H
+
+#include "read/context/attributes.h"
+
+/* Name, description and unit; the rest is not there. */
+struct Variable common_attributes(struct Reader *reader, xmlNodePtr node);
+
+/* Reports a range or a start value that does not fit. */
+void check_range(struct Reader *reader, const struct Variable *variable);
+
+/* Appends a variable, whose strings the list owns from now on. */
+struct Variable *append_variable(struct VariableList *list, struct Variable variable);
+
+#endif

@@ -1,0 +1,38 @@
+#include "read/xml/nodes.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+
+bool is_element(xmlNodePtr node, const char *name) {
+  return xmlStrEqual(node->name, (const xmlChar *)name);
+}
+
+bool has_attribute(xmlNodePtr node, const char *name) {
+  return xmlHasProp(node, (const xmlChar *)name) != NULL;
+}
+
+char *attribute(xmlNodePtr node, const char *name) {
+  xmlChar *value = xmlGetProp(node, (const xmlChar *)name);
+  if (value == NULL) return NULL;
+  char *copy = copy_text((const char *)value);
+  xmlFree(value);
+  return copy;
+}
+
+char *text_of(xmlNodePtr node) {
+  char *text = copy_text("");
+  for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
+    bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
+    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
+    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
+    xmlFree(content);
+    free(text);
+    text = longer;
+  }
+  return text;
+}
+
+bool is_robot(xmlDocPtr document) {
+  return xmlStrEqual(xmlDocGetRootElement(document)->name, (const xmlChar *)"robot");
+}
