@@ -8,8 +8,8 @@
 
 #include "base/memory.h"
 #include "base/platform.h"
-#include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
+#include "mechanics/motion.h"
 #include "output.h"
 #include "program/program.h"
 #include "read/reader.h"
@@ -82,18 +82,6 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   return arguments->system != NULL && consistent;
 }
 
-/* The equations of motion as they are, or linearised where the model asks for it; NULL after reporting errors. */
-static struct Equations *derive(const struct Model *model, struct Diagnostics *diagnostics) {
-  struct Equations *equations = equations_derive(model, diagnostics);
-  if (equations != NULL && model->linearized) {
-    struct Equations *linear = linearize(model, equations, diagnostics);
-    equations_free(equations);
-    equations = linear;
-  }
-  if (equations != NULL) equations_check_finite(model, equations, diagnostics);
-  return equations;
-}
-
 static void compile(struct Model *model, const struct Equations *equations, const struct Arguments *arguments,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
@@ -123,7 +111,7 @@ static int run(const struct Arguments *arguments) {
                                   .point_count = arguments->point_count,
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
-  struct Equations *equations = model != NULL ? derive(model, &diagnostics) : NULL;
+  struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
   else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
   equations_free(equations);

@@ -4,6 +4,7 @@
 
 #include "expressions.h"
 #include "mechanics/mass_matrix/inertia.h"
+#include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
 #include "read/reader.h"
 

@@ -11,8 +11,7 @@
 #include <libxml/tree.h>
 
 #include "documentation.h"
-#include "mechanics/lagrange.h"
-#include "mechanics/linearize.h"
+#include "mechanics/motion.h"
 #include "base/memory.h"
 #include "model_description.h"
 #include "program/program.h"
@@ -51,13 +50,7 @@ static void compile_file(const char *path) {
   struct ReaderOptions options = {0};
   struct Model *model = model_read(path, &options, &diagnostics);
   if ((model == NULL) != (diagnostics.errors > 0)) abort();
-  struct Equations *equations = model != NULL ? equations_derive(model, &diagnostics) : NULL;
-  if (equations != NULL && model->linearized) {
-    struct Equations *linear = linearize(model, equations, &diagnostics);
-    equations_free(equations);
-    equations = linear;
-  }
-  if (equations != NULL) equations_check_finite(model, equations, &diagnostics);
+  struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors == 0) compile(model, equations, &diagnostics);
   equations_free(equations);
   model_free(model);

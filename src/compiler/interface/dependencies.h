@@ -2,7 +2,7 @@
 #ifndef DEPENDENCIES_H
 #define DEPENDENCIES_H
 
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 
 /* Not at all, with a constant factor, with a factor of parameters, or otherwise. */
 enum Dependency { INDEPENDENT, CONSTANT_FACTOR, TUNABLE_FACTOR, DEPENDENT };

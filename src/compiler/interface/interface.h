@@ -6,7 +6,7 @@
 #define INTERFACE_H
 
 #include "lagrangian.h"
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 
 struct InterfaceVariable {
   struct ScalarVariable entry; /* as in the generated table; the name belongs to this structure */

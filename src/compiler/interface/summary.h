@@ -3,7 +3,7 @@
 #define SUMMARY_H
 
 #include "algebra/formula.h"
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 
 enum { SHOWN_LIMIT = 100 }; /* equations of motion, outputs, and definitions, that a page shows */
 

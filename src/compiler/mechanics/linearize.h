@@ -2,7 +2,7 @@
 #ifndef LINEARIZE_H
 #define LINEARIZE_H
 
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 
 /* The matrices of a linear system; state order: coordinates, then velocities. Element (i, j) at i * columns + j. */
 struct LinearSystem {

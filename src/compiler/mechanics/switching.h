@@ -2,7 +2,7 @@
 #ifndef SWITCHING_H
 #define SWITCHING_H
 
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 
 struct SwitchingExpressions {
   const struct Switch **branches; /* those that the motion rests on */

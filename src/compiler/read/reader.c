@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "mechanics/massless.h"
 #include "read/checks.h"
 #include "read/context/attributes.h"
 #include "read/context/includes.h"
@@ -219,7 +218,6 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   complete_friction_forces(reader);
   reader->model->has_forces |= reader->model->inputs_move;
   check_system(reader);
-  if (reader->diagnostics->errors == 0) hold_massless_coordinates(reader->model);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
                  graph_limit(reader->model->graph));

@@ -2,7 +2,7 @@
 #ifndef ACCELERATIONS_H
 #define ACCELERATIONS_H
 
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 #include "program/values/values.h"
 
 /* A block of M that is factored at run time, and its part of the spaces for masses and right sides. */

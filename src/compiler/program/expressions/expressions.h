@@ -3,7 +3,7 @@
 #define EXPRESSIONS_H
 
 #include "interface/interface.h"
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 #include "mechanics/linearize.h"
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/switching.h"

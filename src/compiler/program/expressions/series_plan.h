@@ -2,7 +2,7 @@
 #ifndef SERIES_PLAN_H
 #define SERIES_PLAN_H
 
-#include "mechanics/lagrange.h"
+#include "mechanics/equations.h"
 #include "program/values/node_list.h"
 
 /*

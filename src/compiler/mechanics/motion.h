@@ -1,0 +1,13 @@
+/* From a model to the equations that its FMU has. */
+#ifndef MOTION_H
+#define MOTION_H
+
+#include "mechanics/equations.h"
+
+/*
+ * The equations of motion, linearised where the model asks for it. Coordinates without inertia get one in the model, see
+ * massless.h. NULL after reporting errors; else free with equations_free().
+ */
+struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics);
+
+#endif
