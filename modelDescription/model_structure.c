@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sorting.h"
 #include "interface/dependencies.h"
 #include "xml_output.h"
 
@@ -49,11 +50,6 @@ static const char *kind_name(enum Dependency dependency, enum VariableType type,
   return dependency == TUNABLE_FACTOR && !initial ? "tunable" : "dependent";
 }
 
-static int compare(const void *first, const void *second) {
-  size_t a = *(const size_t *)first, b = *(const size_t *)second;
-  return (a > b) - (a < b);
-}
-
 /* The place of the array that the variable is an element of, or of itself. */
 static size_t place_of_whole(const struct Structure *structure, size_t place) {
   while (structure->form->has_arrays && structure->interface->variables[place].is_further_element) place--;
@@ -80,7 +76,7 @@ static size_t find_places(const struct Structure *structure, size_t unknown, boo
   const struct InterfaceVariable *variable = &structure->interface->variables[unknown];
   size_t elements = structure->form->has_arrays && variable->array_count > 0 ? variable->array_count : 1, count = 0;
   for (size_t i = 0; i < elements; i++) count = add_places(structure, count, variable[i].node, initial);
-  qsort(structure->places, count, sizeof *structure->places, compare);
+  sort_sizes(structure->places, count);
   return count;
 }
 

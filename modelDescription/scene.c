@@ -55,7 +55,6 @@ static void write_body(xmlTextWriterPtr writer, const struct Model *model, const
 }
 
 static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
-  static const char *const axes[] = {"x", "y", "z"};
   const Node *gravity = model->gravity.along;
   if (gravity[0] == ZERO && gravity[1] == ZERO && gravity[2] == ZERO) return;
   xmlTextWriterStartElement(writer, BAD_CAST "gravity");

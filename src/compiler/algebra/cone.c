@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/node_list.h"
 #include "base/memory.h"
 
 struct Cone *cone_create(void) {
@@ -41,11 +42,6 @@ static void grow(struct Cone *cone, size_t capacity) {
   cone->capacity = capacity;
 }
 
-static int compare(const void *first, const void *second) {
-  Node a = *(const Node *)first, b = *(const Node *)second;
-  return (a > b) - (a < b);
-}
-
 /* A visit comes with the algebra that the sweep is for. */
 enum { VISIT_WORK = 8 };
 
@@ -58,7 +54,7 @@ static void sort(struct Cone *cone) {
     if (cone->nodes[i] > last) last = cone->nodes[i];
   }
   if (cone->count == 0 || (last - first) / SPARSENESS > cone->count) {
-    qsort(cone->nodes, cone->count, sizeof *cone->nodes, compare);
+    sort_nodes(cone->nodes, cone->count);
     for (size_t i = 0; i < cone->count; i++) cone->place[cone->nodes[i]] = i;
     return;
   }

@@ -23,8 +23,6 @@ double operation_evaluate(enum Operation operation, double left, double right) {
 
 struct Graph *graph_create(void) {
   struct Graph *graph = allocate(1, sizeof *graph);
-  graph->capacity = 1024;
-  graph->vertices = allocate(graph->capacity, sizeof *graph->vertices);
   graph->bucket_count = 4096;
   graph->buckets = allocate(graph->bucket_count, sizeof *graph->buckets);
   graph->cone = cone_create();
@@ -73,7 +71,7 @@ static void insert(struct Graph *graph, Node node) {
 }
 
 static void grow(struct Graph *graph) {
-  graph->vertices = make_room(graph->vertices, graph->count, &graph->capacity, sizeof *graph->vertices);
+  graph->vertices = make_room(graph->vertices, graph->count, sizeof *graph->vertices);
   if (2 * graph->count < graph->bucket_count) return;
   graph->bucket_count *= 2;
   free(graph->buckets);
@@ -114,7 +112,7 @@ Node graph_constant(struct Graph *graph, double value) {
 
 Node graph_symbol(struct Graph *graph, enum SymbolKind kind, int index, const char *name) {
   size_t number = graph->symbol_count++;
-  graph->symbols = reallocate(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
+  graph->symbols = make_room(graph->symbols, number, sizeof *graph->symbols);
   Node node = intern(graph, (struct Vertex){.operation = SYMBOL, .left = (Node)number, .kinds = 1u << kind});
   graph->symbols[number] = (struct Symbol){.kind = kind, .index = index, .name = copy_text(name), .node = node};
   return node;

@@ -81,7 +81,7 @@ struct Cone;
 
 struct Graph {
   struct Vertex *vertices;
-  size_t count, capacity;
+  size_t count;
   Node *buckets; /* hash table of node + 1, 0 where empty */
   size_t bucket_count;
   struct Symbol *symbols;

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,10 +32,9 @@ void *reallocate(void *block, size_t count, size_t size) {
   return resized;
 }
 
-void *make_room(void *items, size_t count, size_t *capacity, size_t size) {
-  if (count < *capacity) return items;
-  *capacity = 2 * *capacity + 16;
-  return reallocate(items, *capacity, size);
+void *make_room(void *items, size_t count, size_t size) {
+  bool is_full = (count & (count - 1)) == 0;
+  return is_full ? reallocate(items, count > 0 ? 2 * count : 1, size) : items;
 }
 
 FILE *open_text(char **text, size_t *length) {

@@ -16,10 +16,10 @@ void *allocate(size_t count, size_t size);
 void *reallocate(void *block, size_t count, size_t size);
 
 /*
- * The items of a list that count and *capacity describe, each of size bytes, with room for one more: where there is none,
- * the capacity is doubled. New bytes are not initialised; never NULL.
+ * The items of a list, each of size bytes, with room for one behind the count that are there. It begins as NULL and grows by
+ * this alone: at every power of two the room is doubled. New bytes are not initialised; never NULL.
  */
-void *make_room(void *items, size_t count, size_t *capacity, size_t size);
+void *make_room(void *items, size_t count, size_t size);
 
 /* A stream that writes a string, complete after close_text() of the same and to be freed with free(); never NULL. */
 FILE *open_text(char **text, size_t *length);

@@ -13,7 +13,7 @@
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
                                         const char *name, const char *description) {
-  interface->variables = reallocate(interface->variables, interface->count + 1, sizeof *interface->variables);
+  interface->variables = make_room(interface->variables, interface->count, sizeof *interface->variables);
   if (index == 0) interface->first[kind] = interface->count;
   struct InterfaceVariable *variable = &interface->variables[interface->count++];
   *variable = (struct InterfaceVariable){

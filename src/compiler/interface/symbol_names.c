@@ -13,7 +13,7 @@ static void add_symbol(struct SymbolNames *names, size_t symbol) {
   size_t place = names->count;
   while (place > 0 && names->symbols[place - 1] > symbol) place--;
   if (place > 0 && names->symbols[place - 1] == symbol) return;
-  names->symbols = reallocate(names->symbols, names->count + 1, sizeof *names->symbols);
+  names->symbols = make_room(names->symbols, names->count, sizeof *names->symbols);
   memmove(names->symbols + place + 1, names->symbols + place, (names->count - place) * sizeof *names->symbols);
   names->symbols[place] = symbol;
   names->count++;

@@ -6,6 +6,7 @@
 
 #include "algebra/differentiate.h"
 #include "algebra/formula.h"
+#include "algebra/node_list.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -143,11 +144,6 @@ static void find_values(struct Expansion *expansion, const struct Model *model, 
   free(right);
 }
 
-static int compare(const void *first, const void *second) {
-  Node a = *(const Node *)first, b = *(const Node *)second;
-  return (a > b) - (a < b);
-}
-
 /* The symbols of the gradients, ascending, each once; returns their number. */
 static size_t join_symbols(const struct Gradient *gradients, size_t count, Node **symbols) {
   size_t all = 0, kept = 0;
@@ -156,7 +152,7 @@ static size_t join_symbols(const struct Gradient *gradients, size_t count, Node 
   all = 0;
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < gradients[i].count; k++) (*symbols)[all++] = gradients[i].symbols[k];
-  qsort(*symbols, all, sizeof **symbols, compare);
+  sort_nodes(*symbols, all);
   for (size_t k = 0; k < all; k++)
     if (kept == 0 || (*symbols)[kept - 1] != (*symbols)[k]) (*symbols)[kept++] = (*symbols)[k];
   return kept;

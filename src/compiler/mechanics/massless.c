@@ -208,7 +208,7 @@ static void append_stillnesses(const struct Matrices *matrices, struct Model *mo
   for (size_t j = 0; j < model->constraints.count; j++) {
     if (!matrices->is_held[j]) continue;
     Node inertia = harmonic_inertia(matrices, j, inertias);
-    model->stillnesses = reallocate(model->stillnesses, model->stillness_count + 1, sizeof *model->stillnesses);
+    model->stillnesses = make_room(model->stillnesses, model->stillness_count, sizeof *model->stillnesses);
     model->stillnesses[model->stillness_count++] = (struct Stillness){
         model->constraints.items[j].node, scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)};
   }

@@ -4,39 +4,30 @@
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
+#include "algebra/node_list.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/time_derivative.h"
 
-struct List {
-  Node *nodes;
-  size_t count;
-};
-
-static void append(struct List *list, Node node) {
-  list->nodes = reallocate(list->nodes, list->count + 1, sizeof *list->nodes);
-  list->nodes[list->count++] = node;
-}
-
 /* What decides on the motion. */
-static struct List roots_of(const struct Model *model, const struct Equations *equations) {
+static struct NodeList roots_of(const struct Model *model, const struct Equations *equations) {
   const struct Switches *switches = &model->switches;
-  struct List roots = {0};
-  for (size_t i = 0; i < row_count(equations); i++) append(&roots, equations->residual[i]);
-  append(&roots, equations->power);
-  for (size_t i = 0; i < model->constraints.count; i++) append(&roots, model->constraints.items[i].node);
+  struct NodeList roots = {0};
+  for (size_t i = 0; i < row_count(equations); i++) append_node(&roots, equations->residual[i]);
+  append_node(&roots, equations->power);
+  for (size_t i = 0; i < model->constraints.count; i++) append_node(&roots, model->constraints.items[i].node);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    append(&roots, switches->contacts[i].gap);
-    append(&roots, switches->contacts[i].restitution);
+    append_node(&roots, switches->contacts[i].gap);
+    append_node(&roots, switches->contacts[i].restitution);
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
-    append(&roots, switches->frictions[i].velocity);
-    append(&roots, switches->frictions[i].stiction);
+    append_node(&roots, switches->frictions[i].velocity);
+    append_node(&roots, switches->frictions[i].stiction);
   }
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct Event *event = &switches->events[i];
-    append(&roots, event->condition);
-    for (size_t j = 0; j < event->assignment_count; j++) append(&roots, event->assignments[j].value);
+    append_node(&roots, event->condition);
+    for (size_t j = 0; j < event->assignment_count; j++) append_node(&roots, event->assignments[j].value);
   }
   return roots;
 }
@@ -58,13 +49,13 @@ static void find_energies(const struct Model *model, const struct Equations *equ
 }
 
 /* The branches whose modes stand in the roots, or in the indicators of such branches. */
-static void find_branches(const struct Model *model, struct List *roots, struct SwitchingExpressions *switching) {
+static void find_branches(const struct Model *model, struct NodeList *roots, struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
   bool *is_used = allocate(switches->count, sizeof *is_used);
   for (size_t i = 0; i < switches->count; i++) {
     is_used[i] = switching->holds_energy[i];
-    if (is_used[i]) append(roots, switches->items[i].indicator);
+    if (is_used[i]) append_node(roots, switches->items[i].indicator);
   }
   for (bool grown = switches->count > 0; grown;) {
     grown = false;
@@ -74,7 +65,7 @@ static void find_branches(const struct Model *model, struct List *roots, struct 
       is_used[i] = grown = true;
     }
     for (size_t i = 0; i < switches->count && grown; i++)
-      if (is_used[i]) append(roots, switches->items[i].indicator);
+      if (is_used[i]) append_node(roots, switches->items[i].indicator);
   }
   switching->branches = allocate(switches->count, sizeof(const struct Switch *));
   for (size_t i = 0; i < switches->count; i++) {
@@ -107,67 +98,69 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
 }
 
 static void append_indicators(const struct Model *model, const struct SwitchingExpressions *switching,
-                              struct List *list) {
+                              struct NodeList *list) {
   const struct Switches *switches = &model->switches;
-  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switching->branch_count; i++) append_node(list, switching->branches[i]->indicator);
   for (size_t i = 0; i < switches->contact_count; i++)
-    append(list, indicator_of_contact(model, &switches->contacts[i]));
+    append_node(list, indicator_of_contact(model, &switches->contacts[i]));
   for (size_t i = 0; i < switches->friction_count; i++)
-    append(list, indicator_of_friction(model, &switches->frictions[i]));
+    append_node(list, indicator_of_friction(model, &switches->frictions[i]));
 }
 
-static void append_watched(const struct Model *model, const struct SwitchingExpressions *switching, struct List *list) {
+static void append_watched(const struct Model *model, const struct SwitchingExpressions *switching,
+                           struct NodeList *list) {
   const struct Switches *switches = &model->switches;
-  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
-  for (size_t i = 0; i < switches->contact_count; i++) append(list, switches->contacts[i].gap);
+  for (size_t i = 0; i < switching->branch_count; i++) append_node(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switches->contact_count; i++) append_node(list, switches->contacts[i].gap);
   for (size_t i = 0; i < switches->friction_count; i++) {
-    append(list, switches->frictions[i].velocity);
-    append(list, switches->frictions[i].stiction);
+    append_node(list, switches->frictions[i].velocity);
+    append_node(list, switches->frictions[i].stiction);
   }
 }
 
 /* The energies and the momenta, where branches hold them. */
 static void append_energies(const struct Model *model, const struct Equations *equations,
-                            struct SwitchingExpressions *switching, struct List *list) {
+                            struct SwitchingExpressions *switching, struct NodeList *list) {
   size_t n = model->coordinates.count, first = list->count;
   bool any = false;
   for (size_t i = 0; i < switching->branch_count; i++) any |= switching->holds_energy[i];
   if (!any) return;
-  append(list, equations->kinetic);
-  append(list, equations->potential);
+  append_node(list, equations->kinetic);
+  append_node(list, equations->potential);
   Node *momentum = allocate(n, sizeof *momentum);
   gradient_of(model->graph, model->kinetic.node, VELOCITY, n, momentum);
-  for (size_t i = 0; i < n && graph_depends_on(model->graph, model->kinetic.node, MODE); i++) append(list, momentum[i]);
+  for (size_t i = 0; i < n && graph_depends_on(model->graph, model->kinetic.node, MODE); i++)
+    append_node(list, momentum[i]);
   free(momentum);
   switching->energy_count = list->count - first;
 }
 
 static void append_values(const struct Model *model, const struct Equations *equations,
-                          struct SwitchingExpressions *switching, struct List *list) {
+                          struct SwitchingExpressions *switching, struct NodeList *list) {
   const struct Switches *switches = &model->switches;
   Node *seeds = time_seeds(model, true);
-  for (size_t i = 0; i < switching->branch_count; i++) append(list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switching->branch_count; i++) append_node(list, switching->branches[i]->indicator);
   for (size_t i = 0; i < switching->branch_count; i++)
-    append(list, rate_of(model, switching->branches[i]->indicator, seeds));
+    append_node(list, rate_of(model, switching->branches[i]->indicator, seeds));
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
     Node rate = rate_of(model, contact->gap, seeds);
-    append(list, contact->gap);
-    append(list, rate);
-    append(list, rate_of(model, rate, seeds));
-    append(list, contact->restitution);
+    append_node(list, contact->gap);
+    append_node(list, rate);
+    append_node(list, rate_of(model, rate, seeds));
+    append_node(list, contact->restitution);
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
-    append(list, friction->velocity);
-    append(list, rate_of(model, friction->velocity, seeds));
-    append(list, friction->stiction);
-    append(list, friction->sliding);
+    append_node(list, friction->velocity);
+    append_node(list, rate_of(model, friction->velocity, seeds));
+    append_node(list, friction->stiction);
+    append_node(list, friction->sliding);
   }
-  for (size_t i = 0; i < switches->event_count; i++) append(list, switches->events[i].condition);
+  for (size_t i = 0; i < switches->event_count; i++) append_node(list, switches->events[i].condition);
   for (size_t i = 0; i < switches->event_count; i++)
     for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
-      append(list, switches->events[i].assignments[j].value);
+      append_node(list, switches->events[i].assignments[j].value);
       switching->assignment_count++;
     }
   append_energies(model, equations, switching, list);
@@ -177,7 +170,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
-  struct List roots = roots_of(model, equations), indicators = {0}, watched = {0}, values = {0};
+  struct NodeList roots = roots_of(model, equations), indicators = {0}, watched = {0}, values = {0};
   find_energies(model, equations, switching);
   find_branches(model, &roots, switching);
   append_indicators(model, switching, &indicators);

@@ -2,6 +2,8 @@
 
 #include "algebra/simplify.h"
 
+const char *const axes[3] = {"x", "y", "z"};
+
 struct Vector vector_add(struct Graph *graph, struct Vector a, struct Vector b) {
   for (int i = 0; i < 3; i++) a.along[i] = add(graph, a.along[i], b.along[i]);
   return a;

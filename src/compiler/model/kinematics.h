@@ -8,6 +8,9 @@
 
 #include "algebra/graph.h"
 
+/* "x", "y" and "z". */
+extern const char *const axes[3];
+
 struct Vector {
   Node along[3];
 };

@@ -3,7 +3,23 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "algebra/simplify.h"
 #include "base/memory.h"
+
+void add_term(struct Model *model, struct Quantity *sum, Node term) {
+  sum->node = add(model->graph, sum->node, term);
+}
+
+struct Variable variable_create(char *name, char *description, long line) {
+  return (struct Variable){.name = name,
+                           .description = description,
+                           .dimension = dimension_unknown,
+                           .start = NAN,
+                           .minimum = NAN,
+                           .maximum = NAN,
+                           .nominal = NAN,
+                           .line = line};
+}
 
 void variable_free(struct Variable *variable) {
   free(variable->name);

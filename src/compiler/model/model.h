@@ -138,7 +138,14 @@ void model_free(struct Model *model);
 /* Whether the input is the time derivative of the one before it. */
 bool is_input_rate(const struct Model *model, size_t input);
 
-/* Frees what a variable that is in no list owns. */
+/* Adds a term to one of the sums. */
+void add_term(struct Model *model, struct Quantity *sum, Node term);
+
+/*
+ * Without dimension, start value, range and nominal value. Takes the texts over; variable_free() frees what a variable that is in
+ * no list owns.
+ */
+struct Variable variable_create(char *name, char *description, long line);
 void variable_free(struct Variable *variable);
 
 /* Whether the start value is an expression of parameters. */

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 
 void append_switch(struct Switches *switches, struct Switch item) {
-  switches->items = reallocate(switches->items, switches->count + 1, sizeof *switches->items);
+  switches->items = make_room(switches->items, switches->count, sizeof *switches->items);
   switches->items[switches->count++] = item;
 }
 

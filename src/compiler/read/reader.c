@@ -138,14 +138,9 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
 
 /* The name and unit of a force that does work along a variable. */
 static void append_reaction(struct Model *model, struct Scope *scope, const struct Variable *along, const char *what) {
-  struct Variable force = {.name = format_text("%s.force", along->name),
-                           .description = format_text("%s %s", what, along->name),
-                           .dimension = dimension_multiply(unit_of("J"), along->dimension, -1.0),
-                           .minimum = NAN,
-                           .maximum = NAN,
-                           .nominal = NAN,
-                           .line = along->line};
-  if (!along->dimension.known) force.dimension = dimension_unknown;
+  struct Variable force =
+      variable_create(format_text("%s.force", along->name), format_text("%s %s", what, along->name), along->line);
+  force.dimension = dimension_multiply(unit_of("J"), along->dimension, -1.0);
   force.node = scope_symbol(scope, REACTION, (int)model->reactions.count, force.name, force.dimension, force.line);
   append_variable(&model->reactions, force);
 }

@@ -183,7 +183,7 @@ static bool is_usable(const struct Fraction *fraction) {
 static void note_large(struct Graph *graph, Node node) {
   size_t count = graph->large_count;
   if (node >= count) {
-    graph->large_count = graph->capacity;
+    graph->large_count = 2 * graph->count;
     graph->is_large = reallocate(graph->is_large, graph->large_count, sizeof *graph->is_large);
     memset(graph->is_large + count, 0, (graph->large_count - count) * sizeof *graph->is_large);
   }

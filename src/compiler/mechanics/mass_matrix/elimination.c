@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sorting.h"
 
 /* Steps for each item that two sets have when they are joined, which takes memory too. */
 enum { JOIN_WORK = 4 };
@@ -21,7 +22,7 @@ struct Waiting {
 
 struct Queue {
   struct Waiting *items;
-  size_t count, capacity;
+  size_t count;
 };
 
 static bool precedes(struct Waiting a, struct Waiting b) {
@@ -29,7 +30,7 @@ static bool precedes(struct Waiting a, struct Waiting b) {
 }
 
 static void push(struct Queue *queue, struct Waiting entry) {
-  queue->items = make_room(queue->items, queue->count, &queue->capacity, sizeof *queue->items);
+  queue->items = make_room(queue->items, queue->count, sizeof *queue->items);
   size_t place = queue->count++;
   for (; place > 0 && precedes(entry, queue->items[(place - 1) / 2]); place = (place - 1) / 2)
     queue->items[place] = queue->items[(place - 1) / 2];
@@ -49,11 +50,6 @@ static struct Waiting pop(struct Queue *queue) {
   return top;
 }
 
-static int compare(const void *first, const void *second) {
-  size_t a = *(const size_t *)first, b = *(const size_t *)second;
-  return (a > b) - (a < b);
-}
-
 static struct Set *neighbours_of(size_t count, const struct Position *positions, size_t position_count) {
   struct Set *sets = allocate(count, sizeof *sets);
   size_t *degree = allocate(count, sizeof *degree);
@@ -69,7 +65,7 @@ static struct Set *neighbours_of(size_t count, const struct Position *positions,
     sets[row].items[sets[row].count++] = column;
     sets[column].items[sets[column].count++] = row;
   }
-  for (size_t i = 0; i < count; i++) qsort(sets[i].items, sets[i].count, sizeof(size_t), compare);
+  for (size_t i = 0; i < count; i++) sort_sizes(sets[i].items, sets[i].count);
   free(degree);
   return sets;
 }

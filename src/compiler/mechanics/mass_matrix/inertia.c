@@ -26,15 +26,16 @@ static size_t find_coordinates(const struct Inertia *inertia, size_t i, size_t j
   return find(inertia_block_of(inertia, i), a > b ? a : b, a > b ? b : a);
 }
 
-/* The block of these elements; members: its rows, ascending. */
+/* The block of the elements from one to before another; members: its rows, ascending. */
 static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
-                         struct Position *positions, const Node *nodes, size_t position_count) {
+                         const struct Elements *elements, size_t from, size_t to) {
   struct InertiaBlock *block = &inertia->blocks[number];
-  struct Position *local = allocate(position_count, sizeof *local);
-  for (size_t k = 0; k < position_count; k++)
-    local[k] = (struct Position){inertia->place_of[positions[k].row], inertia->place_of[positions[k].column]};
+  struct Position *local = allocate(to - from, sizeof *local);
+  for (size_t k = from; k < to; k++)
+    local[k - from] = (struct Position){inertia->place_of[elements->positions[k].row],
+                                        inertia->place_of[elements->positions[k].column]};
   size_t late = block->count - block->constraint_count;
-  struct Elimination elimination = eliminate(graph, block->count, late, local, position_count);
+  struct Elimination elimination = eliminate(graph, block->count, late, local, to - from);
   block->start = elimination.start;
   block->column = elimination.column;
   block->coordinates = elimination.order;
@@ -43,8 +44,9 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
     inertia->place_of[block->coordinates[place]] = place;
   }
   block->mass = allocate(block->start[block->count], sizeof(Node));
-  for (size_t k = 0; k < position_count; k++)
-    block->mass[find_coordinates(inertia, positions[k].row, positions[k].column)] = nodes[k];
+  for (size_t k = from; k < to; k++)
+    block->mass[find_coordinates(inertia, elements->positions[k].row, elements->positions[k].column)] =
+        elements->nodes[k];
   free(local);
 }
 
@@ -66,8 +68,7 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
   for (size_t b = 0; b < components.count; b++) {
-    create_block(graph, inertia, b, members[b], elements->positions + start[b], elements->nodes + start[b],
-                 start[b + 1] - start[b]);
+    create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
     free(members[b]);
   }
   free(members);
@@ -80,9 +81,11 @@ static size_t oblique_column(struct InertiaBlock *block, size_t force) {
   for (size_t k = 0; k < block->force_count; k++)
     if (block->forces[k] == force) return k;
   size_t count = block->force_count++;
-  block->forces = reallocate(block->forces, count + 1, sizeof *block->forces);
-  block->oblique = reallocate(block->oblique, (count + 1) * block->count, sizeof *block->oblique);
-  for (size_t i = 0; i < block->count; i++) block->oblique[count * block->count + i] = ZERO;
+  block->forces = make_room(block->forces, count, sizeof *block->forces);
+  for (size_t i = 0; i < block->count; i++) {
+    block->oblique = make_room(block->oblique, count * block->count + i, sizeof *block->oblique);
+    block->oblique[count * block->count + i] = ZERO;
+  }
   block->forces[count] = force;
   return count;
 }

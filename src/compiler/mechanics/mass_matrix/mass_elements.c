@@ -6,18 +6,9 @@
 #include "algebra/polynomials/shorten.h"
 #include "base/memory.h"
 
-static struct Elements elements_create(size_t capacity) {
-  return (struct Elements){.positions = allocate(capacity, sizeof(struct Position)),
-                           .nodes = allocate(capacity, sizeof(Node)),
-                           .capacity = capacity};
-}
-
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node) {
-  if (elements->count == elements->capacity) {
-    elements->capacity = 2 * elements->capacity + 1;
-    elements->positions = reallocate(elements->positions, elements->capacity, sizeof *elements->positions);
-    elements->nodes = reallocate(elements->nodes, elements->capacity, sizeof *elements->nodes);
-  }
+  elements->positions = make_room(elements->positions, elements->count, sizeof *elements->positions);
+  elements->nodes = make_room(elements->nodes, elements->count, sizeof *elements->nodes);
   elements->positions[elements->count] = (struct Position){row, column};
   elements->nodes[elements->count++] = node;
 }
@@ -31,7 +22,7 @@ void elements_free(struct Elements *elements) {
 static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
   struct Graph *graph = model->graph;
   size_t count = model->coordinates.count;
-  struct Elements elements = elements_create(count);
+  struct Elements elements = {0};
   for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
     if (model->drives[i].given) {
       elements_append(&elements, i, i, ONE);
@@ -67,7 +58,7 @@ struct Components find_components(size_t count, const struct Elements *elements)
 }
 
 size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
-  struct Elements sorted = elements_create(elements->count);
+  struct Elements sorted = {0};
   size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
   size_t *first = allocate(components->count, sizeof *first);
   for (size_t k = elements->count; k-- > 0;) {
@@ -127,7 +118,7 @@ static void try_columns(const struct Model *model, const Node *momentum, const s
   struct ColumnPart *parts = allocate(count, sizeof *parts);
   size_t columns = 0;
   for (size_t k = 0; k < count; k++) parts[k] = (struct ColumnPart){positions[k].column, k};
-  if (count > 0) qsort(parts, count, sizeof *parts, compare_columns);
+  qsort(parts, count, sizeof *parts, compare_columns);
   for (size_t k = 0; k < count; k++) columns += k == 0 || parts[k].column != parts[k - 1].column;
   if (columns > 1 && 4 * count >= columns * columns) {
     Node *others = allocate(count, sizeof *others);
@@ -144,6 +135,7 @@ static void shorten_elements(const struct Model *model, const Node *momentum, st
   size_t *start = sort_by_components(elements, &components), kept = 0;
   for (size_t component = 0; component < components.count; component++) {
     size_t first = start[component], count = start[component + 1] - first;
+    if (count == 0) continue;
     try_columns(model, momentum, elements->positions + first, count, elements->nodes + first);
     shorten(model->graph, count, elements->nodes + first);
   }

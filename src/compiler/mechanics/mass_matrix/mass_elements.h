@@ -9,7 +9,7 @@
 struct Elements {
   struct Position *positions; /* coordinates */
   Node *nodes;
-  size_t count, capacity;
+  size_t count;
 };
 
 /* From the momenta dL/dv of all coordinates; none is ZERO. */

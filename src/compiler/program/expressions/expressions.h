@@ -8,7 +8,7 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/switching.h"
 #include "program/expressions/series_plan.h"
-#include "program/values/node_list.h"
+#include "algebra/node_list.h"
 
 /*
  * d derivatives / d state by columns: column j has elements start[j] .. start[j + 1] - 1, their rows ascending. In

@@ -16,11 +16,11 @@ struct Element {
 
 struct ElementList {
   struct Element *items;
-  size_t count, capacity;
+  size_t count;
 };
 
 static void append(struct ElementList *list, size_t row, size_t column, Node value) {
-  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
+  list->items = make_room(list->items, list->count, sizeof *list->items);
   list->items[list->count++] = (struct Element){row, column, value};
 }
 

@@ -3,7 +3,7 @@
 #define SERIES_PLAN_H
 
 #include "mechanics/equations.h"
-#include "program/values/node_list.h"
+#include "algebra/node_list.h"
 
 /*
  * The nodes whose series are computed: accelerations (or M and the right side of large blocks), the power of the

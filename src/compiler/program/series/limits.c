@@ -42,7 +42,7 @@ struct Check {
 struct CheckList {
   const struct SeriesBuilder *builder;
   struct Check *items;
-  size_t count, capacity;
+  size_t count;
   size_t *first;                 /* for each node: 1 + the first check of this row, 0 for none */
   const struct Openers *openers; /* under which the present node matters; NULL for always */
 };
@@ -61,7 +61,7 @@ static void append_under(struct CheckList *list, struct Check check, Node opener
   }
   size_t number = list->count + 1;
   *end = number;
-  list->items = make_room(list->items, list->count, &list->capacity, sizeof *list->items);
+  list->items = make_room(list->items, list->count, sizeof *list->items);
   list->items[list->count++] = check;
 }
 
@@ -184,10 +184,7 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
 }
 
 struct LimitChecks limits_of(struct SeriesBuilder *builder) {
-  struct CheckList list = {.builder = builder,
-                           .capacity = 16,
-                           .items = allocate(16, sizeof *list.items),
-                           .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct CheckList list = {.builder = builder, .first = allocate(builder->graph->count, sizeof(size_t))};
   struct Openers *openers = openers_of(builder->graph, builder->plan);
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];

@@ -4,7 +4,7 @@
 
 #include "program/expressions/series_plan.h"
 #include "program/values/form.h"
-#include "program/values/node_list.h"
+#include "algebra/node_list.h"
 #include "program/values/routine.h"
 #include "program/values/values.h"
 

@@ -2,7 +2,7 @@
 #ifndef PREPARED_H
 #define PREPARED_H
 
-#include "program/values/node_list.h"
+#include "algebra/node_list.h"
 
 struct Prepared {
   Node *nodes; /* ascending */

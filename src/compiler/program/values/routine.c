@@ -88,8 +88,7 @@ void routine_free(struct Routine *routine) {
 }
 
 static void append(struct Routine *routine, struct Instruction instruction) {
-  routine->instructions =
-      make_room(routine->instructions, routine->count, &routine->capacity, sizeof *routine->instructions);
+  routine->instructions = make_room(routine->instructions, routine->count, sizeof *routine->instructions);
   routine->instructions[routine->count++] = instruction;
   routine->operation_count += facts[instruction.opcode].operations;
   if (opcode_has_result(instruction.opcode)) routine->spaces |= 1u << space_of(instruction.result);

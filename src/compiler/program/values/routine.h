@@ -21,7 +21,7 @@ struct Instruction {
 
 struct Routine {
   struct Instruction *instructions;
-  size_t count, capacity;
+  size_t count;
   size_t local_count;
   size_t operation_count; /* additions, multiplications, functions, ... */
   uint32_t spaces;        /* bit s: some operand or result is in enum Space s */

@@ -1,26 +1,19 @@
 #include "read/context/variables.h"
 
-#include <math.h>
-
 #include "base/memory.h"
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
-  list->items = reallocate(list->items, list->count + 1, sizeof *list->items);
+  list->items = make_room(list->items, list->count, sizeof *list->items);
   list->items[list->count] = variable;
   return &list->items[list->count++];
 }
 
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
-  struct Variable variable = {.name = name_attribute(reader, node, "name"),
-                              .description = attribute(node, "description"),
-                              .unit = attribute(node, "unit"),
-                              .dimension = unit_attribute(reader, node, "unit"),
-                              .start = NAN,
-                              .minimum = NAN,
-                              .maximum = NAN,
-                              .nominal = NAN,
-                              .line = xmlGetLineNo(node)};
-  if (variable.name == NULL) variable.name = copy_text("?"); /* reported already */
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) name = copy_text("?"); /* reported already */
+  struct Variable variable = variable_create(name, attribute(node, "description"), xmlGetLineNo(node));
+  variable.unit = attribute(node, "unit");
+  variable.dimension = unit_attribute(reader, node, "unit");
   return variable;
 }
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/energies.h"
 #include "read/context/includes.h"
@@ -41,14 +40,10 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
 static Node append_input_rate(struct Reader *reader) {
   struct VariableList *inputs = &reader->model->inputs;
   const struct Variable *of = &inputs->items[inputs->count - 1];
-  struct Variable rate = {.name = format_text("der(%s)", of->name),
-                          .description = format_text("time derivative of %s", of->name),
-                          .dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0),
-                          .minimum = NAN,
-                          .maximum = NAN,
-                          .nominal = NAN,
-                          .line = of->line};
-  if (!of->dimension.known) rate.dimension = dimension_unknown;
+  struct Variable rate =
+      variable_create(format_text("der(%s)", of->name), format_text("time derivative of %s", of->name), of->line);
+  rate.start = 0.0;
+  rate.dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0);
   rate.node = scope_symbol(reader->scope, INPUT, (int)inputs->count, rate.name, rate.dimension, rate.line);
   scope_set_time_derivative(reader->scope, of->node, rate.node);
   append_variable(inputs, rate);
@@ -67,12 +62,9 @@ static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const ch
 static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable position = common_attributes(reader, node);
-  struct Variable velocity = {.name = name_attribute(reader, node, "velocity"),
-                              .description = attribute(node, "velocityDescription"),
-                              .dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0),
-                              .minimum = NAN,
-                              .maximum = NAN,
-                              .line = position.line};
+  struct Variable velocity =
+      variable_create(name_attribute(reader, node, "velocity"), attribute(node, "velocityDescription"), position.line);
+  velocity.dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0);
   if (velocity.name == NULL) velocity.name = copy_text("?");
   given_for(reader, node, position.name); /* is there, and read with the start values */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
@@ -88,7 +80,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   position.line = velocity.line = scope_line(reader->scope, position.line);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
-  model->drives = reallocate(model->drives, model->coordinates.count, sizeof *model->drives);
+  model->drives = make_room(model->drives, (size_t)index, sizeof *model->drives);
   model->drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
   model->drive_count += model->drives[index].given;
   model->has_forces |= model->drives[index].given;
@@ -107,10 +99,6 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
   scope_set_time_derivative(reader->scope, displacement.node, rate);
   append_variable(&model->displacements, displacement);
   free(name);
-}
-
-static void add_term(struct Model *model, struct Quantity *sum, Node term) {
-  sum->node = add(model->graph, sum->node, term);
 }
 
 /* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
@@ -210,10 +198,11 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
     report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
                  derivatives);
-  model->input_rates = reallocate(model->input_rates, model->inputs.count + 2, sizeof *model->input_rates);
   size_t index = model->inputs.count - 1;
-  for (int k = 1; k <= 2; k++) model->input_rates[index++] = derivatives >= k ? append_input_rate(reader) : ZERO;
-  if (derivatives >= 2) model->input_rates[index] = ZERO;
+  for (int k = 0; k == 0 || (k <= 2 && derivatives >= k); k++, index++) {
+    model->input_rates = make_room(model->input_rates, index, sizeof *model->input_rates);
+    model->input_rates[index] = k < 2 && derivatives >= k + 1 ? append_input_rate(reader) : ZERO;
+  }
 }
 
 static void read_input(struct Reader *reader, xmlNodePtr node) {
@@ -266,7 +255,7 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
   size_t count = reader->dissipation_count++;
-  reader->dissipations = reallocate(reader->dissipations, count + 1, sizeof *reader->dissipations);
+  reader->dissipations = make_room(reader->dissipations, count, sizeof *reader->dissipations);
   reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
   model->has_forces = true;
 }

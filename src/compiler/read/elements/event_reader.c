@@ -58,7 +58,7 @@ static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event
   const struct Quantity *target = scope_find(reader->scope, name);
   if (target != NULL && target->dimension.known)
     require_unit(reader, xmlGetLineNo(node), "the value of <set>", value, target->dimension);
-  event->assignments = reallocate(event->assignments, event->assignment_count + 1, sizeof *event->assignments);
+  event->assignments = make_room(event->assignments, event->assignment_count, sizeof *event->assignments);
   event->assignments[event->assignment_count++] = (struct Assignment){symbol, value.node};
 }
 
@@ -135,6 +135,6 @@ void read_event(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
   if (reader->diagnostics->errors == 0) check_forces(reader, &event, xmlGetLineNo(node));
   event.text = when;
-  switches->events = reallocate(switches->events, switches->event_count + 1, sizeof *switches->events);
+  switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);
   switches->events[switches->event_count++] = event;
 }

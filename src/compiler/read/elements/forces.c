@@ -11,8 +11,6 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-static const char *const axes[3] = {"x", "y", "z"};
-
 /* A search through all names is for messages that are shown. */
 static bool are_shown(const struct Reader *reader) {
   return reader->diagnostics->errors < ERROR_LIMIT;
@@ -46,10 +44,6 @@ const struct Symbol *find_coordinate(const struct Reader *reader, const char *na
   return symbol->kind == COORDINATE && strcmp(symbol->name, name) == 0 ? symbol : NULL;
 }
 
-static void add_term(struct Model *model, struct Quantity *sum, Node term) {
-  sum->node = add(model->graph, sum->node, term);
-}
-
 static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const char *coordinate) {
   struct Model *model = reader->model;
   const struct Symbol *symbol = find_coordinate(reader, coordinate);
@@ -80,7 +74,7 @@ static void add_force(struct Model *model, Node position, Node force) {
 }
 
 static void append_point_force(struct Model *model, Node position, Node force) {
-  model->point_forces = reallocate(model->point_forces, model->point_force_count + 1, sizeof *model->point_forces);
+  model->point_forces = make_room(model->point_forces, model->point_force_count, sizeof *model->point_forces);
   model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
 }
 
@@ -158,7 +152,7 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
     add_term(model, &model->forces[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
   gradient_free(&levers);
   add_term(model, &model->driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
-  model->torques = reallocate(model->torques, model->torque_count + 1, sizeof *model->torques);
+  model->torques = make_room(model->torques, model->torque_count, sizeof *model->torques);
   model->torques[model->torque_count++] = (struct Torque){torque, displaced};
 }
 

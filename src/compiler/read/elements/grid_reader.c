@@ -13,7 +13,6 @@ enum { VALUE_LIMIT = 1000 };
 struct Grid {
   struct TableLines lines; /* the first member, from which take_line() comes to the others */
   struct Surface *surface;
-  size_t row_capacity, value_capacity;
 };
 
 /* Whether the knot is finite and follows the one before it. */
@@ -64,11 +63,11 @@ static void drop_corner(struct Surface *surface) {
 static void append_row(struct Grid *grid, const double *numbers) {
   struct Surface *surface = grid->surface;
   size_t columns = surface->columns, first = surface->rows * columns;
-  surface->y = make_room(surface->y, surface->rows, &grid->row_capacity, sizeof *surface->y);
+  surface->y = make_room(surface->y, surface->rows, sizeof *surface->y);
   surface->y[surface->rows] = numbers[0];
   if (!check_knot(grid, surface->y, surface->rows)) return;
-  surface->value = reallocate(surface->value, first + columns, sizeof *surface->value);
   for (size_t i = 0; i < columns; i++) {
+    surface->value = make_room(surface->value, first + i, sizeof *surface->value);
     surface->value[first + i] = numbers[i + 1];
     if (!check_value(grid, numbers[i + 1])) return;
   }

@@ -55,7 +55,7 @@ static size_t declare_held(struct Reader *reader, struct Variable constraint) {
 
 static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
-  switches->contacts = reallocate(switches->contacts, switches->contact_count + 1, sizeof *switches->contacts);
+  switches->contacts = make_room(switches->contacts, switches->contact_count, sizeof *switches->contacts);
   switches->contacts[switches->contact_count++] =
       (struct Contact){.mode = new_told_mode(reader, &constraint, "closed")};
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
@@ -67,14 +67,8 @@ void declare_contact(struct Reader *reader, xmlNodePtr node) {
 
 /* The constraint of one end of a stop: x.min or x.max. */
 static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, const char *end) {
-  return (struct Variable){.name = format_text("%s.%s", coordinate, end),
-                           .description = format_text("stop of %s at its %simum", coordinate, end),
-                           .dimension = dimension_unknown,
-                           .start = NAN,
-                           .minimum = NAN,
-                           .maximum = NAN,
-                           .nominal = NAN,
-                           .line = xmlGetLineNo(node)};
+  return variable_create(format_text("%s.%s", coordinate, end),
+                         format_text("stop of %s at its %simum", coordinate, end), xmlGetLineNo(node));
 }
 
 void declare_stop(struct Reader *reader, xmlNodePtr node) {
@@ -90,7 +84,7 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
 void declare_friction(struct Reader *reader, xmlNodePtr node) {
   struct Switches *switches = &reader->model->switches;
   struct Variable constraint = common_attributes(reader, node);
-  switches->frictions = reallocate(switches->frictions, switches->friction_count + 1, sizeof *switches->frictions);
+  switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
   switches->frictions[switches->friction_count++] = (struct Friction){
       .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
   switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);

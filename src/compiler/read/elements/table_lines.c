@@ -11,7 +11,6 @@ static const char blanks[] = " \t\r";
 
 double *table_numbers(const char *line, size_t *count, const char **rest) {
   double *numbers = NULL;
-  size_t capacity = 0;
   *count = 0;
   *rest = line + strspn(line, blanks);
   for (const char *next = *rest; *next != '\0';) {
@@ -19,7 +18,7 @@ double *table_numbers(const char *line, size_t *count, const char **rest) {
     double number = strtod(next, &end);
     const char *after = end + strspn(end, blanks);
     if (end == next || (*after != '\0' && *after != ',' && *after != ';' && after == end)) break;
-    numbers = make_room(numbers, *count, &capacity, sizeof *numbers);
+    numbers = make_room(numbers, *count, sizeof *numbers);
     numbers[(*count)++] = number;
     *rest = next = after;
     if (*after == ',' || *after == ';') next = after + 1 + strspn(after + 1, blanks);

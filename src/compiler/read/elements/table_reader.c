@@ -15,7 +15,6 @@ enum { POINT_LIMIT = 500 };
 struct Points {
   struct TableLines lines; /* the first member, from which take_line() comes to the others */
   struct Curve curve;
-  size_t capacity_x, capacity_y;
 };
 
 static void append_point(struct Points *points, double x, double y) {
@@ -39,8 +38,8 @@ static void append_point(struct Points *points, double x, double y) {
     return;
   }
   points->lines.wrong = false;
-  curve->x = make_room(curve->x, curve->count, &points->capacity_x, sizeof *curve->x);
-  curve->y = make_room(curve->y, curve->count, &points->capacity_y, sizeof *curve->y);
+  curve->x = make_room(curve->x, curve->count, sizeof *curve->x);
+  curve->y = make_room(curve->y, curve->count, sizeof *curve->y);
   curve->x[curve->count] = x;
   curve->y[curve->count++] = y;
 }
@@ -72,22 +71,15 @@ static void read_content(struct Points *points, xmlNodePtr node) {
   }
 }
 
-static bool has_word(xmlNodePtr node, const char *name, const char *word) {
-  char *text = attribute(node, name);
-  bool same = text != NULL && strcmp(text, word) == 0;
-  free(text);
-  return same;
-}
-
 static enum Interpolation interpolation_of(xmlNodePtr node) {
-  if (has_word(node, "interpolation", "spline")) return SPLINE;
-  return has_word(node, "interpolation", "linear") ? LINEAR : MONOTONE;
+  if (attribute_is(node, "interpolation", "spline")) return SPLINE;
+  return attribute_is(node, "interpolation", "linear") ? LINEAR : MONOTONE;
 }
 
 static struct Table *create_table(struct Reader *reader, xmlNodePtr node) {
   struct Table *table = allocate(1, sizeof *table);
   *table = (struct Table){
-      .is_constant_outside = has_word(node, "extrapolation", "constant"),
+      .is_constant_outside = attribute_is(node, "extrapolation", "constant"),
       .arguments = {unit_attribute(reader, node, "argumentUnit"), unit_attribute(reader, node, "secondArgumentUnit")},
       .value = unit_attribute(reader, node, "unit")};
   return table;
@@ -130,8 +122,8 @@ void read_table(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name"), *file = attribute(node, "file");
   struct Table *table = NULL;
   if (name != NULL)
-    table = has_word(node, "arguments", "2") ? read_surface(reader, node, name, file)
-                                             : read_curve(reader, node, name, file);
+    table = attribute_is(node, "arguments", "2") ? read_surface(reader, node, name, file)
+                                                 : read_curve(reader, node, name, file);
   /* A table is no value: its name alone cannot be used. */
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   bool is_new = name != NULL && scope_define(reader->scope, name, word, xmlGetLineNo(node));

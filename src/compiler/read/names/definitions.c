@@ -38,8 +38,7 @@ void definitions_leave(struct Definitions *definitions) {
 }
 
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression) {
-  definitions->items =
-      make_room(definitions->items, definitions->count, &definitions->capacity, sizeof *definitions->items);
+  definitions->items = make_room(definitions->items, definitions->count, sizeof *definitions->items);
   if (names_find(definitions->numbers, name) == NULL) {
     size_t *number = allocate(1, sizeof *number);
     *number = definitions->count;
@@ -49,8 +48,7 @@ void definitions_add(struct Definitions *definitions, char *name, const struct N
 }
 
 void definitions_push(struct Definitions *definitions, size_t number) {
-  definitions->stack =
-      make_room(definitions->stack, definitions->stack_count, &definitions->stack_capacity, sizeof *definitions->stack);
+  definitions->stack = make_room(definitions->stack, definitions->stack_count, sizeof *definitions->stack);
   definitions->stack[definitions->stack_count++] = number;
 }
 

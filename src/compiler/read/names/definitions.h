@@ -40,11 +40,11 @@ struct Definition {
 
 struct Definitions {
   struct Definition *items;
-  size_t count, capacity;
+  size_t count;
   struct Names *numbers; /* name -> size_t, its place among the items */
   struct Loop *last, *present;
   size_t *stack; /* those to be read, the present one on top */
-  size_t stack_count, stack_capacity, waiting;
+  size_t stack_count, waiting;
 };
 
 struct Definitions *definitions_create(void);

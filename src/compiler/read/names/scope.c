@@ -119,9 +119,11 @@ bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct
 /* Symbols that are new, those of branches among them, are constant until something else is said. */
 static Node *time_derivatives_of(struct Scope *scope) {
   size_t count = scope->graph->symbol_count;
-  if (scope->time_derivative_count < count)
-    scope->time_derivatives = reallocate(scope->time_derivatives, count, sizeof *scope->time_derivatives);
-  while (scope->time_derivative_count < count) scope->time_derivatives[scope->time_derivative_count++] = ZERO;
+  for (; scope->time_derivative_count < count; scope->time_derivative_count++) {
+    scope->time_derivatives =
+        make_room(scope->time_derivatives, scope->time_derivative_count, sizeof *scope->time_derivatives);
+    scope->time_derivatives[scope->time_derivative_count] = ZERO;
+  }
   return scope->time_derivatives;
 }
 

@@ -4,10 +4,9 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "model/kinematics.h"
 #include "read/robots/robot_tree.h"
 #include "read/robots/urdf.h"
-
-static const char *const axes[3] = {"x", "y", "z"};
 
 /*
  * Velocities at which friction has 76 % (tanh 1) of its full force: small beside those of joints in motion, and large enough for

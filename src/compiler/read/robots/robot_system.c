@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "model/kinematics.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_tree.h"
@@ -14,24 +15,22 @@
 static const char base[] = "base", tool[] = "tool";
 
 static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
-  static const char *const names[3] = {"x", "y", "z"};
   const double *shift = placement->translation;
   double angles[3];
   placement_angles(placement, angles);
   xmlNodePtr translation =
       shift[0] != 0 || shift[1] != 0 || shift[2] != 0 ? write_element_in(writer, frame, "translate") : NULL;
-  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, names[i], shift[i]);
+  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, axes[i], shift[i]);
   for (int i = 2; i >= 0; i--) {
     if (angles[i] == 0) continue;
     xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
-    set_attribute(rotation, "axis", copy_text(names[i]));
+    set_attribute(rotation, "axis", copy_text(axes[i]));
     set_number(rotation, "angle", angles[i]);
   }
 }
 
 /* All that is fixed to the link and moves with it, as one body, or particle where there is no moment of inertia. */
 static void write_body(const struct Writer *writer, const struct Link *link) {
-  static const char *const positions[3] = {"x", "y", "z"};
   static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
   const struct RigidBody *body = &link->carried;
   if (!body_has_inertia(body)) return;
@@ -39,7 +38,7 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
   set_attribute(node, "name", format_text("%s_body", link->symbol));
   set_attribute(node, "in", copy_text(link->symbol));
   set_attribute(node, "mass", number(body->mass));
-  for (int i = 0; i < 3; i++) set_number(node, positions[i], body->center[i]);
+  for (int i = 0; i < 3; i++) set_number(node, axes[i], body->center[i]);
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
 }
@@ -78,17 +77,16 @@ static const struct Link *only_end(const struct Robot *robot) {
 }
 
 static void write_tool(struct Writer *writer, const struct Link *link) {
-  static const char *const names[3] = {"x", "y", "z"};
   writer->line = link->line;
   xmlNodePtr point = write_element(writer, "point");
   set_attribute(point, "name", copy_text(tool));
   set_attribute(point, "in", copy_text(link->symbol));
   for (int i = 0; i < 3; i++)
-    write_output(writer, format_text("%s_%s", tool, names[i]), "m", format_text("%s.%s", tool, names[i]),
-                 format_text("position of '%s' along %s", link->name, names[i]));
+    write_output(writer, format_text("%s_%s", tool, axes[i]), "m", format_text("%s.%s", tool, axes[i]),
+                 format_text("position of '%s' along %s", link->name, axes[i]));
   for (int i = 0; i < 3; i++)
-    write_output(writer, format_text("%s_v%s", tool, names[i]), "m/s", format_text("%s.v%s", tool, names[i]),
-                 format_text("velocity of '%s' along %s", link->name, names[i]));
+    write_output(writer, format_text("%s_v%s", tool, axes[i]), "m/s", format_text("%s.v%s", tool, axes[i]),
+                 format_text("velocity of '%s' along %s", link->name, axes[i]));
 }
 
 static bool has_losses(const struct Robot *robot) {

@@ -15,14 +15,9 @@ enum { LEFT_OUT_LIMIT = 20 };
 struct Urdf {
   struct Robot *robot;
   struct Diagnostics *diagnostics;
-  size_t link_capacity, joint_capacity;
   char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
   size_t left_out_count;
 };
-
-static bool is_named(const xmlNode *node, const char *name) {
-  return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
-}
 
 static void leave_out(struct Urdf *urdf, const char *what) {
   for (size_t i = 0; i < urdf->left_out_count; i++)
@@ -35,7 +30,7 @@ static void leave_out_others(struct Urdf *urdf, xmlNodePtr parent, const char *c
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
     size_t i = 0;
-    while (names[i] != NULL && !is_named(node, names[i])) i++;
+    while (names[i] != NULL && !is_element(node, names[i])) i++;
     if (names[i] == NULL) leave_out(urdf, (const char *)node->name);
   }
 }
@@ -44,7 +39,7 @@ static void leave_out_others(struct Urdf *urdf, xmlNodePtr parent, const char *c
 static xmlNodePtr child_of(struct Urdf *urdf, xmlNodePtr parent, const char *name) {
   xmlNodePtr found = NULL;
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (!is_named(node, name)) continue;
+    if (!is_element(node, name)) continue;
     if (found != NULL)
       report_error(urdf->diagnostics, xmlGetLineNo(node), "a second <%s> in <%s>; expected one", name,
                    (const char *)parent->name);
@@ -161,7 +156,7 @@ static void read_link(struct Urdf *urdf, xmlNodePtr node) {
   leave_out_others(urdf, node, known);
   xmlNodePtr inertial = child_of(urdf, node, "inertial");
   if (inertial != NULL) read_inertial(urdf, inertial, link);
-  robot->links = make_room(robot->links, robot->link_count, &urdf->link_capacity, sizeof(struct Link *));
+  robot->links = make_room(robot->links, robot->link_count, sizeof(struct Link *));
   robot->links[robot->link_count++] = link;
 }
 
@@ -253,7 +248,7 @@ static void read_joint(struct Urdf *urdf, xmlNodePtr node) {
   read_dynamics(urdf, node, joint);
   read_mimic(urdf, node, joint);
   leave_out_others(urdf, node, known);
-  robot->joints = make_room(robot->joints, robot->joint_count, &urdf->joint_capacity, sizeof(struct Joint *));
+  robot->joints = make_room(robot->joints, robot->joint_count, sizeof(struct Joint *));
   robot->joints[robot->joint_count++] = joint;
 }
 
@@ -296,8 +291,8 @@ struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics) {
         "<%s> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it",
         (const char *)xacro->name);
   for (xmlNodePtr node = root->children; node != NULL && xacro == NULL; node = node->next) {
-    if (is_named(node, "link")) read_link(&urdf, node);
-    else if (is_named(node, "joint")) read_joint(&urdf, node);
+    if (is_element(node, "link")) read_link(&urdf, node);
+    else if (is_element(node, "joint")) read_joint(&urdf, node);
   }
   leave_out_others(&urdf, root, known);
   tell_left_out(&urdf);

@@ -8,13 +8,11 @@
 #include "read/context/includes.h"
 #include "read/space/frames.h"
 
-static const char *const axes[3] = {"x", "y", "z"};
-
 /* Half of the term, as energy that the body has. */
 static void append_energy(struct Model *model, Node term) {
   Node energy = scale(model->graph, 0.5, term);
-  model->kinetic.node = add(model->graph, model->kinetic.node, energy);
-  model->kinetic_energy.node = add(model->graph, model->kinetic_energy.node, energy);
+  add_term(model, &model->kinetic, energy);
+  add_term(model, &model->kinetic_energy, energy);
 }
 
 /* 1/2 inertia rate^2 */
@@ -44,7 +42,7 @@ static void append_body(struct Reader *reader, struct Body body) {
   if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
   else free(named);
   body.line = scope_line(reader->scope, body.line);
-  model->bodies = reallocate(model->bodies, model->body_count + 1, sizeof *model->bodies);
+  model->bodies = make_room(model->bodies, model->body_count, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
 }
 

@@ -40,7 +40,7 @@ static void append_frame(struct Reader *reader, const char *name, struct Referen
   struct Model *model = reader->model;
   size_t *place = allocate(1, sizeof *place);
   *place = model->frame_count;
-  model->frames = reallocate(model->frames, model->frame_count + 1, sizeof *model->frames);
+  model->frames = make_room(model->frames, model->frame_count, sizeof *model->frames);
   frame.name = copy_text(name);
   model->frames[model->frame_count++] = frame;
   names_set(reader->frames, name, place);
@@ -171,7 +171,6 @@ static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr 
 
 /* A length along each axis in the attributes x, y and z, and its time derivative. */
 static void read_offset(struct Reader *reader, xmlNodePtr node, struct Vector *offset, struct Vector *rate) {
-  static const char *const axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; i++) {
     struct Quantity length = {.node = ZERO};
     if (expression_attribute(reader, node, axes[i], IN_POSITION, &length) &&
@@ -379,7 +378,7 @@ void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
-    model->stillnesses = reallocate(model->stillnesses, model->stillness_count + 1, sizeof *model->stillnesses);
+    model->stillnesses = make_room(model->stillnesses, model->stillness_count, sizeof *model->stillnesses);
     model->stillnesses[model->stillness_count++] = (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
   }
   free(name);

@@ -1,11 +1,12 @@
 #include "read/xml/nodes.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 
-bool is_element(xmlNodePtr node, const char *name) {
-  return xmlStrEqual(node->name, (const xmlChar *)name);
+bool is_element(const xmlNode *node, const char *name) {
+  return node->type == XML_ELEMENT_NODE && xmlStrEqual(node->name, (const xmlChar *)name);
 }
 
 bool has_attribute(xmlNodePtr node, const char *name) {
@@ -18,6 +19,13 @@ char *attribute(xmlNodePtr node, const char *name) {
   char *copy = copy_text((const char *)value);
   xmlFree(value);
   return copy;
+}
+
+bool attribute_is(xmlNodePtr node, const char *name, const char *value) {
+  char *text = attribute(node, name);
+  bool same = text != NULL && strcmp(text, value) == 0;
+  free(text);
+  return same;
 }
 
 char *text_of(xmlNodePtr node) {

@@ -6,9 +6,12 @@
 
 #include <libxml/tree.h>
 
-/* Whether the element has this name, and whether it has an attribute of this name. */
-bool is_element(xmlNodePtr node, const char *name);
+/* Whether it is an element of this name. */
+bool is_element(const xmlNode *node, const char *name);
+
+/* Whether the element has an attribute of this name, and whether that has this value. */
 bool has_attribute(xmlNodePtr node, const char *name);
+bool attribute_is(xmlNodePtr node, const char *name, const char *value);
 
 /* NULL where missing; to be freed with free(). */
 char *attribute(xmlNodePtr node, const char *name);

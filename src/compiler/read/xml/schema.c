@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "read/names/hints.h"
 #include "read/names/similar.h"
+#include "read/xml/nodes.h"
 
 enum { CHOICE_LIMIT = 40 };
 
@@ -41,22 +42,11 @@ static void show_rest(struct Check *check) {
   check->last = NULL;
 }
 
-static bool is_named(const xmlNode *node, const char *name) {
-  return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
-}
-
-static bool has_value(xmlNodePtr node, const char *attribute, const char *value) {
-  xmlChar *text = xmlGetProp(node, (const xmlChar *)attribute);
-  bool same = text != NULL && strcmp((const char *)text, value) == 0;
-  xmlFree(text);
-  return same;
-}
-
 /* What the schema declares below a node: the first <xs:kind name="..."> in the order of the file. */
 static xmlNodePtr find_declared(xmlNodePtr parent, const char *kind, const char *name) {
   xmlNodePtr found = NULL;
   for (xmlNodePtr node = parent->children; node != NULL && found == NULL; node = node->next)
-    found = is_named(node, kind) && has_value(node, "name", name) ? node : find_declared(node, kind, name);
+    found = is_element(node, kind) && attribute_is(node, "name", name) ? node : find_declared(node, kind, name);
   return found;
 }
 
@@ -77,10 +67,10 @@ static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const
   collect_referred(schema, place, "base", "complexType", kind, key, choices);
   collect_referred(schema, place, "ref", (const char *)place->name, kind, key, choices);
   for (xmlNodePtr node = place->children; node != NULL; node = node->next) {
-    xmlChar *name = is_named(node, kind) ? xmlGetProp(node, (const xmlChar *)key) : NULL;
+    xmlChar *name = is_element(node, kind) ? xmlGetProp(node, (const xmlChar *)key) : NULL;
     if (name != NULL && choices->count < CHOICE_LIMIT) choices->names[choices->count++] = copy_text((const char *)name);
     xmlFree(name);
-    if (node->type == XML_ELEMENT_NODE && !is_named(node, "element") && !is_named(node, "attribute"))
+    if (node->type == XML_ELEMENT_NODE && !is_element(node, "element") && !is_element(node, "attribute"))
       collect(schema, node, kind, key, choices);
   }
 }

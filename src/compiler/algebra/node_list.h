@@ -1,15 +1,19 @@
-/* A growing list of nodes. Free nodes with free(). */
+/* Nodes in a row. */
 #ifndef NODE_LIST_H
 #define NODE_LIST_H
 
 #include "algebra/graph.h"
 
+/* A growing list. Free nodes with free(). */
 struct NodeList {
   Node *nodes;
-  size_t count, capacity;
+  size_t count;
 };
 
 void append_node(struct NodeList *list, Node node);
 void append_nodes(struct NodeList *list, const Node *nodes, size_t count);
+
+/* Puts nodes in ascending order. */
+void sort_nodes(Node *nodes, size_t count);
 
 #endif
