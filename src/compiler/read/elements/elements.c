@@ -226,25 +226,13 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   read_input_rates(reader, node);
 }
 
-/* Solver, experiment and work are the system's own. */
-static void read_declaration(struct Reader *reader, xmlNodePtr node, const char *element) {
+static void read_work(struct Reader *reader, xmlNodePtr node) {
+  reader->model->work_line = xmlGetLineNo(node);
+}
+
+static void read_potential(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  if (strcmp(element, "constant") == 0) read_constant(reader, node);
-  else if (strcmp(element, "parameter") == 0) read_parameter(reader, node);
-  else if (strcmp(element, "input") == 0) read_input(reader, node);
-  else if (strcmp(element, "coordinate") == 0) read_coordinate(reader, node);
-  else if (strcmp(element, "displacement") == 0) read_displacement(reader, node);
-  else if (strcmp(element, "frame") == 0) declare_frame(reader, node);
-  else if (strcmp(element, "table") == 0) read_table(reader, node);
-  else if (strcmp(element, "constraint") == 0) declare_constraint(reader, node);
-  else if (strcmp(element, "mode") == 0) declare_mode(reader, node);
-  else if (strcmp(element, "contact") == 0) declare_contact(reader, node);
-  else if (strcmp(element, "stop") == 0) declare_stop(reader, node);
-  else if (strcmp(element, "friction") == 0) declare_friction(reader, node);
-  else if (reader->source->outer != NULL) return;
-  else if (strcmp(element, "solver") == 0) read_solver(reader, node);
-  else if (strcmp(element, "experiment") == 0) read_experiment(reader, node);
-  else if (strcmp(element, "work") == 0) model->work_line = xmlGetLineNo(node);
+  read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
 }
 
 static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
@@ -260,31 +248,56 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   model->has_forces = true;
 }
 
-static void read_expression(struct Reader *reader, xmlNodePtr node, const char *element) {
-  struct Model *model = reader->model;
-  if (strcmp(element, "kinetic") == 0) read_kinetic(reader, node);
-  else if (strcmp(element, "potential") == 0)
-    read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
-  else if (strcmp(element, "dissipation") == 0) read_dissipation(reader, node);
-  else if (strcmp(element, "coordinate") == 0) read_drive(reader, node);
-  else if (strcmp(element, "force") == 0) read_force(reader, node);
-  else if (strcmp(element, "torque") == 0) read_torque(reader, node);
-  else if (strcmp(element, "gravity") == 0) read_gravity(reader, node);
-  else if (strcmp(element, "frame") == 0) add_stillness_of_norm(reader, node);
-  else if (strcmp(element, "output") == 0) read_output(reader, node);
-  else if (strcmp(element, "constraint") == 0) read_constraint(reader, node);
-  else if (strcmp(element, "contact") == 0) read_contact(reader, node);
-  else if (strcmp(element, "stop") == 0) read_stop(reader, node);
-  else if (strcmp(element, "friction") == 0) read_friction(reader, node);
-  else if (strcmp(element, "event") == 0) read_event(reader, node);
+typedef void Action(struct Reader *reader, xmlNodePtr node);
+
+/* What becomes of an element in each pass; NULL for nothing. */
+struct Element {
+  const char *name;
+  Action *declare, *collect, *place, *read;
+  bool is_of_system; /* counts in the system's own file alone */
+};
+
+static const struct Element elements[] = {
+    {"body", NULL, collect_components, read_body, NULL, false},
+    {"constant", read_constant, NULL, NULL, NULL, false},
+    {"constraint", declare_constraint, NULL, NULL, read_constraint, false},
+    {"contact", declare_contact, NULL, NULL, read_contact, false},
+    {"coordinate", read_coordinate, NULL, read_start_expressions, read_drive, false},
+    {"define", NULL, collect_value, NULL, NULL, false},
+    {"displacement", read_displacement, NULL, NULL, NULL, false},
+    {"dissipation", NULL, NULL, NULL, read_dissipation, false},
+    {"event", NULL, NULL, NULL, read_event, false},
+    {"experiment", read_experiment, NULL, NULL, NULL, true},
+    {"force", NULL, NULL, NULL, read_force, false},
+    {"frame", declare_frame, collect_components, read_body, add_stillness_of_norm, false},
+    {"friction", declare_friction, NULL, NULL, read_friction, false},
+    {"gravity", NULL, NULL, NULL, read_gravity, false},
+    {"input", read_input, collect_value, NULL, NULL, false},
+    {"kinetic", NULL, NULL, NULL, read_kinetic, false},
+    {"mode", declare_mode, NULL, NULL, NULL, false},
+    {"output", NULL, NULL, NULL, read_output, false},
+    {"parameter", read_parameter, collect_value, NULL, NULL, false},
+    {"particle", NULL, collect_components, read_body, NULL, false},
+    {"point", NULL, collect_components, read_body, NULL, false},
+    {"potential", NULL, NULL, NULL, read_potential, false},
+    {"solver", read_solver, NULL, NULL, NULL, true},
+    {"stop", declare_stop, NULL, NULL, read_stop, false},
+    {"table", read_table, NULL, NULL, NULL, false},
+    {"torque", NULL, NULL, NULL, read_torque, false},
+    {"work", read_work, NULL, NULL, NULL, true},
+};
+
+static int compare(const void *name, const void *element) {
+  return strcmp(name, ((const struct Element *)element)->name);
 }
 
 void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
-  const char *element = (const char *)node->name;
-  if (pass == DECLARATIONS) read_declaration(reader, node, element);
-  else if (pass == EXPRESSIONS) read_expression(reader, node, element);
-  else if (pass == DEFINITIONS) collect_named_expressions(reader, node);
-  else if (strcmp(element, "coordinate") == 0) read_start_expressions(reader, node);
-  else if (is_spatial(node) || strcmp(element, "particle") == 0 || strcmp(element, "body") == 0)
-    read_body(reader, node);
+  const struct Element *element =
+      bsearch(node->name, elements, sizeof elements / sizeof *elements, sizeof *elements, compare);
+  if (element == NULL || (element->is_of_system && reader->source->outer != NULL)) return;
+  Action *const actions[] = {[DECLARATIONS] = element->declare,
+                             [DEFINITIONS] = element->collect,
+                             [POSITIONS] = element->place,
+                             [EXPRESSIONS] = element->read};
+  if (actions[pass] != NULL) actions[pass](reader, node);
 }

@@ -78,8 +78,7 @@ static void collect_planar(struct Reader *reader, xmlNodePtr node, const char *b
   if (is_element(node, "body")) collect_frame(reader, node, body);
 }
 
-/* Of several bodies of one name, which is reported later, the first one has the components. */
-static void collect_components(struct Reader *reader, xmlNodePtr node) {
+void collect_components(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   bool is_body = is_element(node, "body") || is_element(node, "particle");
   if (is_body) reader->source->named_bodies++;
@@ -89,10 +88,8 @@ static void collect_components(struct Reader *reader, xmlNodePtr node) {
   free(name);
 }
 
-void collect_named_expressions(struct Reader *reader, xmlNodePtr node) {
-  if (is_spatial(node) || is_element(node, "particle") || is_element(node, "body")) collect_components(reader, node);
+void collect_value(struct Reader *reader, xmlNodePtr node) {
   bool is_definition = is_element(node, "define");
-  if (!is_definition && !is_element(node, "parameter") && !is_element(node, "input")) return;
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
   const struct Given *given = is_definition ? NULL : given_for(reader, node, name);

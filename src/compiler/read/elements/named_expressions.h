@@ -8,8 +8,14 @@
 /* Whether a <parameter> or <input> has a value, its own or a given one, in place of a start. */
 bool has_value(xmlNodePtr node, const struct Given *given);
 
-/* Collects the named expressions of an element, if it has any. */
-void collect_named_expressions(struct Reader *reader, xmlNodePtr node);
+/* Collects the expression of a <define>, or of a <parameter> or <input> that has a value. */
+void collect_value(struct Reader *reader, xmlNodePtr node);
+
+/*
+ * Collects the components of a <frame>, <point>, <particle> or <body>. Of several of one name, which is reported later, the first one
+ * has them.
+ */
+void collect_components(struct Reader *reader, xmlNodePtr node);
 
 /* Its value; name: its own. */
 struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
