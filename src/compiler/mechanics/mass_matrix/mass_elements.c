@@ -6,6 +6,11 @@
 #include "algebra/polynomials/shorten.h"
 #include "base/memory.h"
 
+static struct Elements elements_create(void) {
+  return (struct Elements){.positions = make_room(NULL, 0, sizeof(struct Position)),
+                           .nodes = make_room(NULL, 0, sizeof(Node))};
+}
+
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node) {
   elements->positions = make_room(elements->positions, elements->count, sizeof *elements->positions);
   elements->nodes = make_room(elements->nodes, elements->count, sizeof *elements->nodes);
@@ -22,7 +27,7 @@ void elements_free(struct Elements *elements) {
 static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
   struct Graph *graph = model->graph;
   size_t count = model->coordinates.count;
-  struct Elements elements = {0};
+  struct Elements elements = elements_create();
   for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
     if (model->drives[i].given) {
       elements_append(&elements, i, i, ONE);
@@ -58,7 +63,7 @@ struct Components find_components(size_t count, const struct Elements *elements)
 }
 
 size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
-  struct Elements sorted = {0};
+  struct Elements sorted = elements_create();
   size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
   size_t *first = allocate(components->count, sizeof *first);
   for (size_t k = elements->count; k-- > 0;) {
@@ -135,7 +140,6 @@ static void shorten_elements(const struct Model *model, const Node *momentum, st
   size_t *start = sort_by_components(elements, &components), kept = 0;
   for (size_t component = 0; component < components.count; component++) {
     size_t first = start[component], count = start[component + 1] - first;
-    if (count == 0) continue;
     try_columns(model, momentum, elements->positions + first, count, elements->nodes + first);
     shorten(model->graph, count, elements->nodes + first);
   }

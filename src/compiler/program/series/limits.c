@@ -184,7 +184,9 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
 }
 
 struct LimitChecks limits_of(struct SeriesBuilder *builder) {
-  struct CheckList list = {.builder = builder, .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct CheckList list = {.builder = builder,
+                           .items = make_room(NULL, 0, sizeof *list.items),
+                           .first = allocate(builder->graph->count, sizeof(size_t))};
   struct Openers *openers = openers_of(builder->graph, builder->plan);
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
