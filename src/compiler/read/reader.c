@@ -9,10 +9,10 @@
 #include "read/context/attributes.h"
 #include "read/context/includes.h"
 #include "read/context/variables.h"
-#include "read/elements/elements.h"
 #include "read/elements/resolution.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
+#include "read/expansion.h"
 #include "read/linearization_reader.h"
 #include "read/names/definitions.h"
 #include "read/names/words.h"
@@ -20,106 +20,6 @@
 #include "read/space/frames.h"
 #include "read/tables/table.h"
 #include "read/xml/xml.h"
-
-enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
-
-/* An index beyond could not be counted on in doubles. */
-static const double index_limit = 1e9;
-
-/* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
-static char refused, backwards, repeated;
-
-static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass);
-
-/* Whether the bounds are right and the index is a new name; names may have been defined since the last pass. */
-static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, const char *index_name,
-                             double from, double to) {
-  bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
-  if (!are_whole || to - from >= REPETITION_LIMIT) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions", from, to,
-                 REPETITION_LIMIT);
-    return false;
-  }
-  if (scope_find(reader->scope, index) == NULL) return true;
-  report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
-               index_name);
-  return false;
-}
-
-/* At the innermost <for> that it stops; what follows in the file would only be told as the next to need anything. */
-static void check_limit(struct Reader *reader, xmlNodePtr node) {
-  const char *limit = graph_limit(reader->model->graph);
-  if (limit != NULL && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<for>: the system is too large: %s; expected fewer or shorter repetitions", limit);
-}
-
-static void read_repetition(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
-  struct Scope *scope = reader->scope;
-  double from = 0, to = -1;
-  if (node->_private == &refused) return;
-  char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
-  if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
-      !check_repetition(reader, node, index, index_name, from, to)) {
-    node->_private = &refused;
-    free(index_name);
-    free(index);
-    return;
-  }
-  if (from <= to) node->_private = &repeated;
-  else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
-  for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
-    graph_work(reader->model->graph, REPETITION_WORK);
-    scope_set_index(scope, index, i);
-    if (pass == DEFINITIONS) definitions_enter(reader->definitions, index, i);
-    read_children(reader, node, pass);
-    if (pass == DEFINITIONS) definitions_leave(reader->definitions);
-  }
-  check_limit(reader, node);
-  scope_remove(scope, index);
-  free(index_name);
-  free(index);
-}
-
-/*
- * from="1" to="0" is how a system with N = 0 repeats nothing, and from="2" to="i-1" repeats nothing for the first i.
- * A loop that always runs backwards is a mistake.
- */
-static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
-  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (node->type != XML_ELEMENT_NODE) continue;
-    check_repetitions(reader, node);
-    if (node->_private != &backwards) continue;
-    char *from = attribute(node, "from"), *to = attribute(node, "to");
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
-                   "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
-                   to);
-    free(from);
-    free(to);
-  }
-}
-
-static void read_include(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
-  struct Graph *graph = reader->model->graph;
-  graph_work(graph, INCLUDE_WORK);
-  struct Source *source = graph_limit(graph) == NULL ? include_open(reader, node, pass) : NULL;
-  if (source == NULL) return;
-  struct Source *outer = source_enter(reader, source);
-  read_children(reader, source->root, pass);
-  if (pass == DECLARATIONS) check_repetitions(reader, source->root);
-  source_enter(reader, outer);
-}
-
-static void read_children(struct Reader *reader, xmlNodePtr parent, enum Pass pass) {
-  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (node->type != XML_ELEMENT_NODE) continue;
-    graph_work(reader->model->graph, ELEMENT_WORK);
-    if (is_element(node, "for")) read_repetition(reader, node, pass);
-    else if (is_element(node, "include")) read_include(reader, node, pass);
-    else read_element(reader, node, pass);
-  }
-}
 
 /* Symbols for time and the accelerations; what der(...) makes of each symbol. */
 static void relate_to_time(struct Model *model, struct Scope *scope) {
@@ -196,19 +96,18 @@ static struct Scope *language_of(struct Model *model, struct Diagnostics *diagno
 static void read_system(struct Reader *reader, xmlNodePtr root) {
   reader->model->name = attribute(root, "name");
   reader->model->description = attribute(root, "description");
-  read_children(reader, root, DECLARATIONS);
-  check_repetitions(reader, root);
+  expand(reader, root);
   check_definitions_used(reader);
   check_given(reader);
   number_modes(reader);
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
   append_reactions(reader->model, reader->scope);
-  read_children(reader, root, DEFINITIONS);
+  read_expanded(reader, DEFINITIONS);
   resolve_definitions(reader);
-  read_children(reader, root, POSITIONS);
+  read_expanded(reader, POSITIONS);
   evaluate_start_expressions(reader);
-  read_children(reader, root, EXPRESSIONS);
+  read_expanded(reader, EXPRESSIONS);
   undisplace_switches(reader);
   complete_friction_forces(reader);
   reader->model->has_forces |= reader->model->inputs_move;
@@ -248,6 +147,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     frames_end(&reader);
     free(reader.definition_used);
     free(reader.dissipations);
+    free(reader.occurrences);
     free(reader.undisplaced);
     names_free(reader.bodies);
     includes_end(&reader);

@@ -17,12 +17,20 @@ struct Dissipation {
 };
 
 struct Source;
+struct Loop;
+
+/* An element of the document as often as it is repeated and included. */
+struct Occurrence {
+  xmlNodePtr node;
+  struct Source *source;    /* in which it stands */
+  const struct Loop *loops; /* the innermost <for> around it, see definitions.h; NULL for none */
+  size_t number; /* what it declares among those of its kind: the first coordinate, constraint, contact, ... */
+};
 
 struct Reader {
   struct Model *model;
   struct Scope *scope;
   struct Definitions *definitions;
-  size_t started_coordinates;   /* those whose start values were read */
   struct Names *bodies;         /* name -> struct NamedBody */
   struct Names *frames;         /* name -> size_t, its place among the model's */
   struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
@@ -36,7 +44,9 @@ struct Reader {
   size_t dissipation_count;
   Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced; NULL until it is asked for */
   size_t undisplaced_count;
-  size_t constraints_read, contacts_read, frictions_read;
+  struct Occurrence *occurrences; /* all elements, without <for> and <include> */
+  size_t occurrence_count;
+  struct Occurrence *present; /* the one being read */
 };
 
 /* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */

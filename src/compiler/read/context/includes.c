@@ -186,21 +186,21 @@ static struct Source *create_source(struct Reader *reader, xmlNodePtr node, cons
   return source;
 }
 
-struct Source *include_open(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
+struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "as");
   if (name == NULL) return NULL;
   char *prefix = format_text("%s.", name);
   struct Source *source = names_find(reader->includes->sources, prefix);
-  if (pass == DECLARATIONS && source != NULL) {
+  if (source != NULL) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "as=\"%s\" is the name of the <include> on line %ld already; expected another name%s", name,
                  xmlGetLineNo(source->include),
                  source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
     source = NULL;
-  } else if (pass == DECLARATIONS) source = create_source(reader, node, name, prefix);
+  } else source = create_source(reader, node, name, prefix);
   free(prefix);
   free(name);
-  return source != NULL && source->include == node && source->root != NULL ? source : NULL;
+  return source != NULL && source->root != NULL ? source : NULL;
 }
 
 const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name) {

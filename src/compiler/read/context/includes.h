@@ -17,8 +17,7 @@ struct Source {
   xmlNodePtr include;   /* that asks for it; NULL of the system's own file */
   xmlNodePtr root;      /* <system>; NULL where the file cannot be read */
   struct Source *outer; /* the file with the <include> */
-  size_t named_bodies;  /* bodies whose components are among the definitions */
-  size_t body_count;
+  size_t body_count;    /* of those that were declared */
 };
 
 /* What an <include> gives to something that the file declares. */
@@ -33,8 +32,8 @@ struct Given {
 void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root);
 void includes_end(struct Reader *reader);
 
-/* The source that an <include> asks for. NULL after reporting why there is none; in later passes without a word. */
-struct Source *include_open(struct Reader *reader, xmlNodePtr node, enum Pass pass);
+/* The source that an <include> asks for; NULL after reporting why there is none. */
+struct Source *include_open(struct Reader *reader, xmlNodePtr node);
 
 /* Goes on in another file; returns the one before. */
 struct Source *source_enter(struct Reader *reader, struct Source *source);

@@ -12,6 +12,7 @@ void declare_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Variable constraint = common_attributes(reader, node);
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, constraint.name, word, constraint.line);
+  reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, constraint);
 }
 
@@ -62,7 +63,7 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
 
 void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  struct Variable *constraint = &model->constraints.items[reader->constraints_read++];
+  struct Variable *constraint = &model->constraints.items[reader->present->number];
   struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
   constraint->node = value.node;
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);

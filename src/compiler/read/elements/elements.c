@@ -78,6 +78,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   position.node = scope_symbol(reader->scope, COORDINATE, index, position.name, position.dimension, position.line);
   velocity.node = scope_symbol(reader->scope, VELOCITY, index, velocity.name, velocity.dimension, velocity.line);
   position.line = velocity.line = scope_line(reader->scope, position.line);
+  reader->present->number = (size_t)index;
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
   model->drives = make_room(model->drives, (size_t)index, sizeof *model->drives);
@@ -258,7 +259,7 @@ struct Element {
 };
 
 static const struct Element elements[] = {
-    {"body", NULL, collect_components, read_body, NULL, false},
+    {"body", number_body, collect_components, read_body, NULL, false},
     {"constant", read_constant, NULL, NULL, NULL, false},
     {"constraint", declare_constraint, NULL, NULL, read_constraint, false},
     {"contact", declare_contact, NULL, NULL, read_contact, false},
@@ -277,7 +278,7 @@ static const struct Element elements[] = {
     {"mode", declare_mode, NULL, NULL, NULL, false},
     {"output", NULL, NULL, NULL, read_output, false},
     {"parameter", read_parameter, collect_value, NULL, NULL, false},
-    {"particle", NULL, collect_components, read_body, NULL, false},
+    {"particle", number_body, collect_components, read_body, NULL, false},
     {"point", NULL, collect_components, read_body, NULL, false},
     {"potential", NULL, NULL, NULL, read_potential, false},
     {"solver", read_solver, NULL, NULL, NULL, true},

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "read/context/variables.h"
 #include "read/names/definitions.h"
+#include "read/space/bodies.h"
 #include "read/space/frames.h"
 
 bool has_value(xmlNodePtr node, const struct Given *given) {
@@ -79,10 +80,7 @@ static void collect_planar(struct Reader *reader, xmlNodePtr node, const char *b
 }
 
 void collect_components(struct Reader *reader, xmlNodePtr node) {
-  char *name = name_attribute(reader, node, "name");
-  bool is_body = is_element(node, "body") || is_element(node, "particle");
-  if (is_body) reader->source->named_bodies++;
-  if (name == NULL && is_body) name = format_text("%sbody%zu", reader->source->prefix, reader->source->named_bodies);
+  char *name = name_of_body(reader, node);
   if (name != NULL && is_spatial(node)) collect_spatial(reader, node, name);
   else if (name != NULL) collect_planar(reader, node, name);
   free(name);

@@ -5,15 +5,6 @@
 #include "base/memory.h"
 #include "read/elements/named_expressions.h"
 
-/* Sets the indices around a definition, or takes them back. A name that has another meaning is told later, see reader.c. */
-static void bind(struct Scope *scope, const struct Loop *loop, bool back) {
-  for (; loop != NULL; loop = loop->outer) {
-    const struct Quantity *known = scope_find(scope, loop->index);
-    if (back && known != NULL) scope_remove_index(scope, loop->index);
-    else if (!back && known == NULL) scope_set_index(scope, loop->index, loop->value);
-  }
-}
-
 /* Of a circle that is closed by the definition with this number: a -> b -> a. */
 static void report_circle(const struct Definitions *definitions, struct Reader *reader, size_t top, size_t closing) {
   char *text = NULL;
@@ -66,9 +57,9 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     struct Requirements *requirements = &reader->scope->requirements;
     size_t requirement_count = requirements->count;
     definitions->waiting = 0;
-    bind(reader->scope, definition->loop, false);
+    bind_indices(reader->scope, definition->loop); /* a name that has another meaning is told later, see expansion.c */
     struct Quantity value = read_named_expression(reader, &definition->expression, definition->name);
-    bind(reader->scope, definition->loop, true);
+    unbind_indices(reader->scope, definition->loop);
     if (definitions->waiting > 0) {
       requirements->count = requirement_count;
       definitions->waiting = 0;

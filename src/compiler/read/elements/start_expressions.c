@@ -17,8 +17,7 @@ static void read_start(struct Reader *reader, xmlNodePtr node, const struct Give
 }
 
 void read_start_expressions(struct Reader *reader, xmlNodePtr node) {
-  size_t index = reader->started_coordinates++;
-  if (index >= reader->model->coordinates.count) return; /* a mistake that was reported already */
+  size_t index = reader->present->number;
   struct Variable *coordinate = &reader->model->coordinates.items[index];
   const struct Given *given = given_for(reader, node, coordinate->name);
   read_start(reader, node, given, "start", coordinate);

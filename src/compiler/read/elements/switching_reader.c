@@ -62,6 +62,7 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
 }
 
 void declare_contact(struct Reader *reader, xmlNodePtr node) {
+  reader->present->number = reader->model->switches.contact_count;
   append_contact(reader, common_attributes(reader, node));
 }
 
@@ -73,6 +74,7 @@ static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, cons
 
 void declare_stop(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = reference_attribute(reader, node, "coordinate");
+  reader->present->number = reader->model->switches.contact_count;
   if (!has_attribute(node, "min") && !has_attribute(node, "max"))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "a <stop> without min and max; expected one of them, or both");
@@ -84,6 +86,7 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
 void declare_friction(struct Reader *reader, xmlNodePtr node) {
   struct Switches *switches = &reader->model->switches;
   struct Variable constraint = common_attributes(reader, node);
+  reader->present->number = switches->friction_count;
   switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
   switches->frictions[switches->friction_count++] = (struct Friction){
       .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
@@ -102,11 +105,10 @@ void number_modes(struct Reader *reader) {
 /* --- Contacts --- */
 
 /* The constraint -gap = 0, whose force is positive where it presses, while the contact is closed. */
-static void set_contact(struct Reader *reader, xmlNodePtr node, Node gap) {
+static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, Node gap) {
   struct Model *model = reader->model;
-  struct Contact *contact = &model->switches.contacts[reader->contacts_read++];
+  struct Contact *contact = &model->switches.contacts[number];
   struct Variable *constraint = &model->constraints.items[contact->constraint];
-  reader->constraints_read++;
   struct Quantity restitution = {.node = ZERO};
   if (expression_attribute(reader, node, "restitution", IN_CONDITION, &restitution))
     require_unit(reader, constraint->line, "the restitution", restitution, dimension_one);
@@ -122,10 +124,10 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, Node gap) {
 void read_contact(struct Reader *reader, xmlNodePtr node) {
   struct Quantity gap = {.node = ZERO};
   expression_attribute(reader, node, "gap", IN_GAP, &gap);
-  struct Variable *constraint =
-      &reader->model->constraints.items[reader->model->switches.contacts[reader->contacts_read].constraint];
+  size_t number = reader->present->number;
+  struct Variable *constraint = &reader->model->constraints.items[reader->model->switches.contacts[number].constraint];
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the gap", gap, constraint->dimension);
-  set_contact(reader, node, gap.node);
+  set_contact(reader, node, number, gap.node);
 }
 
 void read_stop(struct Reader *reader, xmlNodePtr node) {
@@ -136,16 +138,17 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, xmlGetLineNo(node), "a <stop> of '%s', which is no coordinate; expected one",
                  name != NULL ? name : "");
   static const char *const ends[] = {"min", "max"};
-  for (int end = 0; end < 2 && symbol != NULL; end++) {
+  size_t number = reader->present->number;
+  bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no right name then */
+  for (int end = 0; end < 2 && symbol != NULL && is_declared; end++) {
     struct Quantity limit;
     if (!expression_attribute(reader, node, ends[end], IN_GAP, &limit)) continue;
     const struct Variable *coordinate = &reader->model->coordinates.items[symbol->index];
     if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
     struct Switches *switches = &reader->model->switches;
-    reader->model->constraints.items[switches->contacts[reader->contacts_read].constraint].dimension =
-        coordinate->dimension;
+    reader->model->constraints.items[switches->contacts[number].constraint].dimension = coordinate->dimension;
     Node way = subtract(graph, symbol->node, limit.node);
-    set_contact(reader, node, end == 0 ? way : negate(graph, way));
+    set_contact(reader, node, number++, end == 0 ? way : negate(graph, way));
   }
   free(name);
 }
@@ -205,9 +208,8 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
 void read_friction(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
-  struct Friction *friction = &model->switches.frictions[reader->frictions_read++];
+  struct Friction *friction = &model->switches.frictions[reader->present->number];
   struct Variable *constraint = &model->constraints.items[friction->constraint];
-  reader->constraints_read++;
   struct Quantity velocity = {.node = ZERO};
   if (!read_velocity(reader, node, &velocity)) return;
   if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/names/names.h"
+#include "read/names/scope.h"
 
 struct Definitions *definitions_create(void) {
   struct Definitions *definitions = allocate(1, sizeof *definitions);
@@ -27,14 +27,26 @@ void definitions_free(struct Definitions *definitions) {
   free(definitions);
 }
 
-void definitions_enter(struct Definitions *definitions, const char *index, double value) {
-  struct Loop *loop = allocate(1, sizeof *loop);
-  *loop = (struct Loop){copy_text(index), value, definitions->present, definitions->last};
-  definitions->last = definitions->present = loop;
+void definitions_enter(struct Definitions *definitions, struct Loop loop) {
+  struct Loop *own = allocate(1, sizeof *own);
+  *own = loop;
+  own->outer = definitions->present;
+  own->previous = definitions->last;
+  definitions->last = own;
+  definitions->present = own;
 }
 
 void definitions_leave(struct Definitions *definitions) {
   definitions->present = definitions->present->outer;
+}
+
+void bind_indices(struct Scope *scope, const struct Loop *loop) {
+  for (; loop != NULL; loop = loop->outer)
+    if (scope_find(scope, loop->index) == NULL) scope_set_index(scope, loop->index, loop->value);
+}
+
+void unbind_indices(struct Scope *scope, const struct Loop *loop) {
+  for (; loop != NULL; loop = loop->outer) scope_remove_index(scope, loop->index);
 }
 
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression) {

@@ -10,6 +10,7 @@
 
 #include <libxml/tree.h>
 
+struct Scope;
 struct Source;
 struct Given;
 
@@ -21,11 +22,14 @@ struct NamedExpression {
   const struct Given *given; /* where an <include> gives the expression; else NULL */
 };
 
-/* The value of an index around a definition, and those further out. */
+/* A <for> with a value of its index, and those further out. */
 struct Loop {
   char *index;
   double value;
-  struct Loop *outer, *previous; /* previous: the one made before, of all */
+  xmlNodePtr node;
+  struct Source *source;    /* in which it stands */
+  const struct Loop *outer; /* the next one around it */
+  struct Loop *previous;    /* the one made before, of all */
 };
 
 /* ACTIVE: it has been found to need others, which are read now. */
@@ -42,17 +46,22 @@ struct Definitions {
   struct Definition *items;
   size_t count;
   struct Names *numbers; /* name -> size_t, its place among the items */
-  struct Loop *last, *present;
-  size_t *stack; /* those to be read, the present one on top */
+  struct Loop *last;
+  const struct Loop *present; /* around what is collected now; NULL for none */
+  size_t *stack;              /* those to be read, the present one on top */
   size_t stack_count, waiting;
 };
 
 struct Definitions *definitions_create(void);
 void definitions_free(struct Definitions *definitions);
 
-/* The index of a <for> has a new value until the next call of definitions_leave(). */
-void definitions_enter(struct Definitions *definitions, const char *index, double value);
+/* The index of a <for>, whose text is taken over, has a new value until the next call of definitions_leave(). */
+void definitions_enter(struct Definitions *definitions, struct Loop loop);
 void definitions_leave(struct Definitions *definitions);
+
+/* Gives all indices their values, and takes them back; none that has another meaning. */
+void bind_indices(struct Scope *scope, const struct Loop *loop);
+void unbind_indices(struct Scope *scope, const struct Loop *loop);
 
 /* Collects an expression under its name, which is taken over, as it is for the present indices. */
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression);

@@ -103,12 +103,15 @@ static void require_accelerations(const struct Reader *reader, const struct Body
   gradient_free(&levers);
 }
 
-/* Its own name, or one by its number among the bodies and particles of the file. */
-static char *name_of(struct Reader *reader, xmlNodePtr node) {
+void number_body(struct Reader *reader, xmlNodePtr node) {
+  (void)node;
+  reader->present->number = ++reader->source->body_count;
+}
+
+char *name_of_body(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
-  if (is_element(node, "point")) return name;
-  size_t number = ++reader->source->body_count;
-  return name != NULL ? name : format_text("%sbody%zu", reader->source->prefix, number);
+  if (name != NULL || is_element(node, "point") || is_element(node, "frame")) return name;
+  return format_text("%sbody%zu", reader->source->prefix, reader->present->number);
 }
 
 static void read_mass(struct Reader *reader, xmlNodePtr node, struct Body *body) {
@@ -128,7 +131,7 @@ static const struct Body *report_same_name(const struct Reader *reader, const st
 
 static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  struct Body body = {.name = name_of(reader, node), .line = xmlGetLineNo(node)};
+  struct Body body = {.name = name_of_body(reader, node), .line = xmlGetLineNo(node)};
   const struct Body *other = report_same_name(reader, &body);
   read_mass(reader, node, &body);
   for (int axis = 0; axis < 3 && other == NULL; axis++)
@@ -203,7 +206,7 @@ static void add_spatial_energy(struct Model *model, const struct Body *body) {
 
 /* A particle, body or point in a frame. */
 static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
-  struct Body body = {.name = name_of(reader, node), .line = xmlGetLineNo(node)};
+  struct Body body = {.name = name_of_body(reader, node), .line = xmlGetLineNo(node)};
   struct SpatialPoint point;
   if (body.name == NULL) return; /* reported */
   const struct Body *other = report_same_name(reader, &body);

@@ -7,6 +7,12 @@
 /* Enters a body, particle or point into the model, with its energy and its places; of a <frame>, the places. */
 void read_body(struct Reader *reader, xmlNodePtr node);
 
+/* Notes the number of a body or particle among those of its file. */
+void number_body(struct Reader *reader, xmlNodePtr node);
+
+/* The own name of a body, particle, point or frame, or one by the number of a body or particle. Free with free(). */
+char *name_of_body(struct Reader *reader, xmlNodePtr node);
+
 /* NULL where there is none of this name. */
 const struct Body *find_body(const struct Reader *reader, const char *name);
 

@@ -69,6 +69,7 @@ void declare_frame(struct Reader *reader, xmlNodePtr node) {
                           .unit = copy_text("1"),
                           .dimension = dimension_one,
                           .line = xmlGetLineNo(turn)};
+  reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, norm);
   free(name);
 }
@@ -374,10 +375,10 @@ static Node inertia_of_norm(const struct Model *model, size_t frame) {
 void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   if (quaternion_of(node) == NULL) return;
-  const struct Variable *norm = &model->constraints.items[reader->constraints_read++];
   char *name = name_attribute(reader, node, "name");
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
+    const struct Variable *norm = &model->constraints.items[reader->present->number];
     model->stillnesses = make_room(model->stillnesses, model->stillness_count, sizeof *model->stillnesses);
     model->stillnesses[model->stillness_count++] = (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
   }

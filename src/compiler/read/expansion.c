@@ -1,0 +1,164 @@
+#include "read/expansion.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "read/context/includes.h"
+#include "read/elements/elements.h"
+#include "read/names/definitions.h"
+
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
+
+/* An index beyond could not be counted on in doubles. */
+static const double index_limit = 1e9;
+
+/* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
+static char refused, backwards, repeated;
+
+static void expand_children(struct Reader *reader, xmlNodePtr parent);
+
+static void report_index(struct Reader *reader, xmlNodePtr node) {
+  char *index = attribute(node, "index");
+  report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
+               index);
+  free(index);
+}
+
+/* Whether the bounds are right and the index is a new name. */
+static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
+  bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
+  if (!are_whole || to - from >= REPETITION_LIMIT) {
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions", from, to,
+                 REPETITION_LIMIT);
+    return false;
+  }
+  if (scope_find(reader->scope, index) == NULL) return true;
+  report_index(reader, node);
+  return false;
+}
+
+/* At the innermost <for> that it stops; what follows in the file would only be told as the next to need anything. */
+static void check_limit(struct Reader *reader, xmlNodePtr node) {
+  const char *limit = graph_limit(reader->model->graph);
+  if (limit != NULL && reader->diagnostics->errors == 0)
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "<for>: the system is too large: %s; expected fewer or shorter repetitions", limit);
+}
+
+static void expand_repetition(struct Reader *reader, xmlNodePtr node) {
+  struct Scope *scope = reader->scope;
+  double from = 0, to = -1;
+  if (node->_private == &refused) return;
+  char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
+  free(index_name);
+  if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
+      !check_repetition(reader, node, index, from, to)) {
+    node->_private = &refused;
+    free(index);
+    return;
+  }
+  if (from <= to) node->_private = &repeated;
+  else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
+  for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
+    graph_work(reader->model->graph, REPETITION_WORK);
+    scope_set_index(scope, index, i);
+    definitions_enter(reader->definitions,
+                      (struct Loop){.index = copy_text(index), .value = i, .node = node, .source = reader->source});
+    expand_children(reader, node);
+    definitions_leave(reader->definitions);
+  }
+  check_limit(reader, node);
+  scope_remove(scope, index);
+  free(index);
+}
+
+/*
+ * from="1" to="0" is how a system with N = 0 repeats nothing, and from="2" to="i-1" repeats nothing for the first i.
+ * A loop that always runs backwards is a mistake.
+ */
+static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    check_repetitions(reader, node);
+    if (node->_private != &backwards) continue;
+    char *from = attribute(node, "from"), *to = attribute(node, "to");
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
+                   to);
+    free(from);
+    free(to);
+  }
+}
+
+static void expand_include(struct Reader *reader, xmlNodePtr node) {
+  struct Graph *graph = reader->model->graph;
+  graph_work(graph, INCLUDE_WORK);
+  struct Source *source = graph_limit(graph) == NULL ? include_open(reader, node) : NULL;
+  if (source == NULL) return;
+  struct Source *outer = source_enter(reader, source);
+  expand(reader, source->root);
+  source_enter(reader, outer);
+}
+
+static void expand_element(struct Reader *reader, xmlNodePtr node) {
+  size_t number = reader->occurrence_count++;
+  reader->occurrences = make_room(reader->occurrences, number, sizeof *reader->occurrences);
+  reader->present = &reader->occurrences[number];
+  *reader->present = (struct Occurrence){node, reader->source, reader->definitions->present, 0};
+  read_element(reader, node, DECLARATIONS);
+}
+
+static void expand_children(struct Reader *reader, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    graph_work(reader->model->graph, ELEMENT_WORK);
+    if (is_element(node, "for")) expand_repetition(reader, node);
+    else if (is_element(node, "include")) expand_include(reader, node);
+    else expand_element(reader, node);
+  }
+}
+
+void expand(struct Reader *reader, xmlNodePtr root) {
+  expand_children(reader, root);
+  check_repetitions(reader, root);
+}
+
+/* Whether each <for> around an element is right; names may have been defined since the last pass. */
+static bool check_loops(struct Reader *reader, const struct Loop *loops) {
+  const struct Loop *taken = NULL;
+  for (const struct Loop *loop = loops; loop != NULL; loop = loop->outer) {
+    if (loop->node->_private == &refused) return false;
+    if (scope_find(reader->scope, loop->index) != NULL) taken = loop;
+  }
+  if (taken == NULL) return true;
+  taken->node->_private = &refused;
+  source_enter(reader, taken->source);
+  report_index(reader, taken->node);
+  return false;
+}
+
+static void read_occurrence(struct Reader *reader, struct Occurrence *occurrence, enum Pass pass) {
+  const struct Loop *loops = occurrence->loops;
+  if (loops != NULL && (graph_limit(reader->model->graph) != NULL || !check_loops(reader, loops))) return;
+  source_enter(reader, occurrence->source);
+  reader->present = occurrence;
+  reader->definitions->present = loops;
+  bind_indices(reader->scope, loops);
+  read_element(reader, occurrence->node, pass);
+  unbind_indices(reader->scope, loops);
+  if (loops == NULL) return;
+  source_enter(reader, loops->source);
+  check_limit(reader, loops->node);
+}
+
+void read_expanded(struct Reader *reader, enum Pass pass) {
+  struct Source *own = reader->source;
+  for (size_t i = 0; i < reader->occurrence_count; i++) {
+    graph_work(reader->model->graph, ELEMENT_WORK);
+    read_occurrence(reader, &reader->occurrences[i], pass);
+  }
+  reader->definitions->present = NULL;
+  source_enter(reader, own);
+}
