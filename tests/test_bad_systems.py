@@ -242,6 +242,8 @@ CASES = [
     ("thousands with a blank", 2, '<parameter name="m" start="1 000"/>', 2, "found '000'; .* nothing between thousands"),
     ("no number as a value", 2, '<parameter name="m" start="NaN"/>', 2, "unknown name 'NaN'; a value must be a finite number"),
     ("limit that is infinite", 2, '<parameter name="m" start="1" max="inf"/>', 2, "a limit that is not there is left out"),
+    ("stop of what is no name yet", 10, '<coordinate name="x[2]" velocity="v[2]"/>\n<stop coordinate="x[N]" min="0"/>\n<constant name="N" value="2"/>', 11,
+     "coordinate: unknown name 'N'; expected a number, or a constant that stands further up"),
     ("unknown name in a number", 2, '<parameter name="m" start="mass"/>', 2, "unknown name 'mass'; expected a number, or a constant that stands further up"),
     ("time of other languages", 9, '<force coordinate="theta">tau*sin(t)</force>', 9, "unknown name 't'; write time"),
     ("velocity of other languages", 10, '<output name="a">theta_dot</output>', 10, r"unknown name 'theta_dot'; write der\(...\)"),
