@@ -5,7 +5,7 @@
 #include "mechanics/constraints.h"
 #include "mechanics/mass_matrix/inertia.h"
 
-/* What follows from a model. Its stages make new ones; they do not change the model. */
+/* What follows from a model, which stays as it is. */
 struct Equations {
   size_t count; /* coordinates */
   struct Constraints *constraints;

@@ -1,4 +1,4 @@
-/* A mechanical system as its author wrote it: variables, energies, forces. The reader fills it. */
+/* A mechanical system: variables, energies, forces. The reader fills it as its author wrote it; massless.h adds inertias. */
 #ifndef MODEL_H
 #define MODEL_H
 

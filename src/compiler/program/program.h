@@ -1,4 +1,4 @@
-/* The program of an FMU: one routine for each function of include/lagrangian.h. Everything is decided here. */
+/* The program of an FMU: one routine for each function of include/lagrangian.h that computes. */
 #ifndef PROGRAM_H
 #define PROGRAM_H
 
