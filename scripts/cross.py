@@ -31,7 +31,7 @@ ROOT = Path(__file__).resolve().parent.parent  # of include/ and src/runtime/
 
 # The same sums and products everywhere: no a*b + c in one operation. Without unused functions.
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all"]
-# No linker of all platforms redirects calls, as --wrap does for this machine's libraries: src/runtime/solvers/sundials_memory.c.
+# No linker of all platforms redirects calls, as --wrap does for this machine's libraries: src/runtime/methods/sundials/sundials_memory.c.
 ALLOCATIONS = [f"-D{name}=__wrap_{name}" for name in ("malloc", "calloc", "realloc", "free")]
 SUNDIALS_PARTS = ["sundials", "arkode", "cvode", "nvector/serial", "sunmatrix/dense", "sunmatrix/band", "sunmatrix/sparse", "sunlinsol/dense",
                   "sunlinsol/band", "sunlinsol/klu", "sunnonlinsol/newton", "sunnonlinsol/fixedpoint"]  # fmt: skip
@@ -100,7 +100,7 @@ def compile_target(target, system, library, fmi, source, sundials, folder):
              f"-ffile-prefix-map={system.parent}=."]  # fmt: skip
     if "macos" in target:
         words.append(f"-Wl,-install_name,@rpath/{library}")
-    includes = [source / "include", source / "src" / "runtime", *sorted((source / "src" / "runtime").glob("*/"))]
+    includes = [source / "include", source / "src" / "runtime"]
     layer = [word for file in sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c")) for word in ("-include", file)]
     libraries = []
     if sundials is not None:
@@ -117,7 +117,7 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
     others leave it alone.
     """
     system, source = Path(system).resolve(), Path(source).resolve()
-    if '#include "sundials_memory.c"' not in system.read_text():
+    if '#include "methods/sundials/' not in system.read_text():
         sundials = None
     elif sundials is None or not (Path(sundials) / "include").exists():
         raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")

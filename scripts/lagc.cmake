@@ -1,5 +1,6 @@
-# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found, core_sources the files of the runtime's core.
+# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found.
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 
 # The schema becomes a string in the program.
 file(READ ${root}/fmu/system.xsd schema HEX)
@@ -8,11 +9,17 @@ file(CONFIGURE OUTPUT system_schema.c CONTENT
      "extern const char system_schema[];\nconst char system_schema[] = {${schema}0};\n" @ONLY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/fmu/system.xsd)
 
-# So do the names of the core's files, for FMUs that carry their sources.
-list(TRANSFORM core_sources REPLACE "^.*/(.*)$" "\"\\1\", " OUTPUT_VARIABLE names)
-list(JOIN names "" names)
-file(CONFIGURE OUTPUT runtime_sources.c CONTENT
-     "extern const char *const runtime_sources[];\nconst char *const runtime_sources[] = {${names}(const char *)0};\n" @ONLY)
+# So do the names of the runtime's sources, and its rooms that every FMU has, for FMUs that carry their sources.
+function(list_of_names list variable)
+  list(TRANSFORM ${list} REPLACE "(.+)" "\"\\1\", " OUTPUT_VARIABLE names)
+  list(JOIN names "" names)
+  set(${variable} "extern const char *const ${list}[];\nconst char *const ${list}[] = {${names}(const char *)0};\n" PARENT_SCOPE)
+endfunction()
+set(runtime_sources ${core_sources} ${solver_sources})
+list(TRANSFORM runtime_sources REPLACE "^src/runtime/" "")
+list_of_names(runtime_sources sources)
+list_of_names(core_rooms rooms)
+file(CONFIGURE OUTPUT runtime_sources.c CONTENT "${sources}${rooms}" @ONLY)
 
 file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)

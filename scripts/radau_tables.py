@@ -1,5 +1,5 @@
 """
-The coefficients of Radau IIA with 3, 5 and 7 stages as C, from 60 digits: python scripts/radau_tables.py > src/runtime/solvers/radau_tables.h
+The coefficients of Radau IIA with 3, 5 and 7 stages as C, from 60 digits: python scripts/radau_tables.py > src/runtime/methods/radau_tables.h
 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8.)
 """
 

@@ -130,7 +130,7 @@ RUNTIME = ROOT / "src" / "runtime"
 
 def test_the_core_of_the_runtime_knows_no_interface():
     """Versions of FMI are layers over it, each in a folder of its own."""
-    sources = [path for folder in (RUNTIME, RUNTIME / "solvers") for path in folder.glob("*.[ch]")]
+    sources = [path for path in RUNTIME.rglob("*.[ch]") if not re.fullmatch("fmi[23]", path.parent.name)]
     assert len(sources) > 20
     assert [path.name for path in sources if re.search("fmi[23]", path.read_text())] == []
 
@@ -140,13 +140,9 @@ def test_runtime_compiles_against_the_official_headers(source, tmp_path):
     """A definition that differs from the official declaration is a compiler error."""
     version = source.parent.name
     (tmp_path / f"{version}.h").write_text(f'#include "{version}Functions.h"\n')
-    # Quoted includes look beside their file first, so the headers of the runtime are copied next to the other fmi2.h.
-    ours = [header for header in (ROOT / "include").glob("*.h") if header.name != f"{version}.h"]
-    for header in [*RUNTIME.glob("*.h"), *source.parent.glob("*.h"), *ours]:
-        shutil.copy(header, tmp_path)
-    shutil.copy(source, tmp_path)
-    words = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{OFFICIAL}"]
-    result = subprocess.run([*words, tmp_path / source.name], capture_output=True, text=True)
+    folders = [tmp_path, OFFICIAL, RUNTIME, ROOT / "include"]  # the other fmi2.h comes before ours
+    words = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *(f"-I{folder}" for folder in folders)]
+    result = subprocess.run([*words, source], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
 
 

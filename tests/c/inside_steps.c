@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "simulation.h"
-#include "solver.h"
+#include "fmi/simulation.h"
+#include "instance/solver.h"
 
 static void write_message(void *receiver, enum Status status, const char *message) {
   (void)receiver;

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "fmi2_component.h"
-#include "steps.h"
+#include "fmi2/fmi2_component.h"
+#include "stepping/steps.h"
 
 enum { REPEATS = 7 };
 static const double step_size = 0.001;

@@ -1,5 +1,5 @@
 /* The factorizations of implicit methods, full and sparse, against products of matrices with known vectors. */
-#include "lu.h"
+#include "support/lu.h"
 
 #include "expressions.h"
 #include "mechanics/mass_matrix/elimination.h"

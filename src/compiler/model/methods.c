@@ -16,14 +16,15 @@ static const struct Method methods[] = {
          "and sign are followed piece by piece. A point where the equations have no solution and a stiff system end in "
          "fmi2Discard with a message that names them.",
      .evaluations = "series of the equations of motion",
-     .sources = {"taylor_reach.c", "series_limit.c"},
+     .sources = {"methods/taylor_reach.c", "support/series_limit.c"},
      .series = ALL_TERMS},
     {.name = "erk",
      .solver = "erk",
      .sentence = "Co-simulation integrates with Dormand and Prince's method of order 5(4); a step depends only on the "
                  "state that the FMU saves, so that a repeated step gives the same bits.",
      .evaluations = "evaluations of the equations of motion",
-     .sources = {"sundials_support.c", "sundials_memory.c", "first_terms.c", "series_limit.c"},
+     .sources = {"methods/sundials/sundials_support.c", "methods/sundials/sundials_memory.c", "methods/first_terms.c",
+                 "support/series_limit.c"},
      .series = FIRST_TERMS,
      .uses_library = true},
     {.name = "bdf",
@@ -32,7 +33,8 @@ static const struct Method methods[] = {
      .sentence = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
                  "history, so that a restored state goes on within the tolerance, not to the same bits.",
      .evaluations = "evaluations of the equations of motion",
-     .sources = {"bdf_support.c", "sundials_support.c", "sundials_memory.c", "first_terms.c", "series_limit.c"},
+     .sources = {"methods/sundials/bdf_support.c", "methods/sundials/sundials_support.c",
+                 "methods/sundials/sundials_memory.c", "methods/first_terms.c", "support/series_limit.c"},
      .series = FIRST_TERMS,
      .needs_jacobian = true,
      .uses_library = true},
@@ -43,7 +45,7 @@ static const struct Method methods[] = {
          "for stiff systems. A step depends only on the state that the FMU saves, so that a repeated step gives "
          "the same bits.",
      .evaluations = "evaluations of the equations of motion",
-     .sources = {"radau_systems.c", "first_terms.c", "series_limit.c"},
+     .sources = {"methods/radau_systems.c", "methods/first_terms.c", "support/series_limit.c"},
      .series = FIRST_TERMS,
      .needs_jacobian = true,
      .factors = true},
@@ -58,8 +60,8 @@ static const struct Method methods[] = {
          "powers, quotients, ...) can hide a hill, a wall or a pulse, however narrow. A point where the equations have "
          "no solution ends in fmi2Discard with a message that names it.",
      .evaluations = "series of the equations of motion, and evaluations of them",
-     .sources = {"stiffness.c", "taylor.c", "taylor_reach.c", "radau.c", "radau_systems.c", "first_terms.c",
-                 "series_limit.c"},
+     .sources = {"methods/stiffness.c", "methods/taylor.c", "methods/taylor_reach.c", "methods/radau.c",
+                 "methods/radau_systems.c", "methods/first_terms.c", "support/series_limit.c"},
      .series = ALL_TERMS,
      .needs_jacobian = true,
      .factors = true,

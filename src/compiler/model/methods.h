@@ -1,6 +1,6 @@
 /*
  * The methods of <solver>, as the compiler knows them. A new one has an entry here, a place in fmu/system.xsd and its
- * file in src/runtime/solvers/.
+ * file in src/runtime/methods/.
  */
 #ifndef METHODS_H
 #define METHODS_H

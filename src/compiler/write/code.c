@@ -1,6 +1,7 @@
 #include "write/code.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "write/c_text.h"
@@ -9,11 +10,19 @@
 #include "write/switching.h"
 #include "write/tables.h"
 
-/* The core's files but for solvers, NULL at the end; the build writes it. */
+/* The runtime's files but for those of a version of FMI, and its rooms that every FMU has, NULL at the end; the build writes them. */
 extern const char *const runtime_sources[];
+extern const char *const core_rooms[];
 
 static void include_source(FILE *file, const char *name) {
   fprintf(file, "#include \"%s\"\n", name);
+}
+
+/* All files of a room of the runtime: what works together is there or not, so that nobody counts it up. */
+static void include_room(FILE *file, const char *room) {
+  size_t length = strlen(room);
+  for (const char *const *name = runtime_sources; *name != NULL; name++)
+    if (strncmp(*name, room, length) == 0 && (*name)[length] == '/') include_source(file, *name);
 }
 
 static bool has_oblique_block(const struct Program *program) {
@@ -28,36 +37,21 @@ static bool has_oblique_block(const struct Program *program) {
  */
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->interface->method;
-  fputs("#ifdef FMU_IN_ONE_FILE\n", file);
-  for (const char *const *name = runtime_sources; *name != NULL; name++) include_source(file, *name);
+  const struct Switches *switches = &program->model->switches;
   const char *solver = description_solver(program), *lu = description_lu(program);
-  if (solver != NULL) fprintf(file, "#include \"%s.c\"\n", solver);
+  fputs("#ifdef FMU_IN_ONE_FILE\n", file);
+  for (const char *const *room = core_rooms; *room != NULL; room++) include_room(file, *room);
+  if (solver != NULL) fprintf(file, "#include \"methods/%s%s.c\"\n", method->uses_library ? "sundials/" : "", solver);
   for (size_t i = 0; method != NULL && i < METHOD_SOURCES && method->sources[i] != NULL; i++)
     include_source(file, method->sources[i]);
-  if (lu != NULL) fprintf(file, "#include \"%s.c\"\n", lu);
-  if (program->is_table) include_source(file, "instructions.c");
-  if (program->is_table || program->blocks.count > 0) include_source(file, "ldlt.c");
-  if (program->accelerations != NULL) include_source(file, "saddle.c");
-  if (has_oblique_block(program)) include_source(file, "oblique.c");
-  if (program->accelerations != NULL) include_source(file, "projection.c");
-  if (program->indicators != NULL) {
-    include_source(file, "settlement.c");
-    include_source(file, "beyond.c");
-    include_source(file, "switching.c");
-    include_source(file, "continuity.c");
-    include_source(file, "chebyshev.c");
-    include_source(file, "event_window.c");
-    include_source(file, "event_search.c");
-    include_source(file, "event_passing.c");
-  }
-  if (program->model->switches.contact_count > 0) {
-    include_source(file, "complementarity.c");
-    include_source(file, "pushes.c");
-    include_source(file, "impacts.c");
-    include_source(file, "contact_forces.c");
-    include_source(file, "contacts.c");
-  }
-  if (program->model->switches.friction_count > 0) include_source(file, "frictions.c");
+  if (lu != NULL) fprintf(file, "#include \"support/%s.c\"\n", lu);
+  if (program->is_table) include_source(file, "support/instructions.c");
+  if (program->is_table || program->blocks.count > 0) include_source(file, "support/ldlt.c");
+  if (program->accelerations != NULL) include_source(file, "support/saddle.c");
+  if (has_oblique_block(program)) include_source(file, "support/oblique.c");
+  if (program->accelerations != NULL) include_source(file, "methods/projection.c");
+  if (program->indicators != NULL) include_room(file, "events");
+  if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   fputs("#endif\n", file);
 }
 
@@ -72,7 +66,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
-  if (program->accelerations != NULL) fputs("#include \"projection.h\"\n#include \"saddle.h\"\n", file);
+  if (program->accelerations != NULL) fputs("#include \"instance/projection.h\"\n#include \"saddle.h\"\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
   fputs("\n", file);
 }

@@ -1,7 +1,7 @@
 /* FMI for Co-Simulation (section 4.2): communication steps. */
-#include "check.h"
-#include "fmi2_life_cycle.h"
-#include "steps.h"
+#include "fmi/check.h"
+#include "fmi2/fmi2_life_cycle.h"
+#include "stepping/steps.h"
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
                       fmi2Boolean noSetFMUStatePriorToCurrentPoint) {

@@ -1,10 +1,10 @@
 /* Creation and end of an instance, and its messages to the caller's logger (sections 2.1.4 and 2.1.5). */
-#include "fmi2_component.h"
+#include "fmi2/fmi2_component.h"
 
 #include <string.h>
 
-#include "fmi2_life_cycle.h"
-#include "log_categories.h"
+#include "fmi/log_categories.h"
+#include "fmi2/fmi2_life_cycle.h"
 
 /* Which messages the core has to write. */
 static unsigned wanted_statuses(const struct Component *component) {

@@ -3,7 +3,7 @@
 #define FMI2_COMPONENT_H
 
 #include "fmi2.h"
-#include "instance.h"
+#include "instance/instance.h"
 
 /* What an fmi2Component points to. */
 struct Component {

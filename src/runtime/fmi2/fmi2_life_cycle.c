@@ -1,6 +1,6 @@
-#include "fmi2_life_cycle.h"
+#include "fmi2/fmi2_life_cycle.h"
 
-#include "life_cycle.h"
+#include "fmi/life_cycle.h"
 
 enum {
   BEFORE = IN(MODE_INSTANTIATED) | IN(MODE_INITIALIZATION),

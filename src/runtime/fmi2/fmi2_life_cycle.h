@@ -2,7 +2,7 @@
 #ifndef FMI2_LIFE_CYCLE_H
 #define FMI2_LIFE_CYCLE_H
 
-#include "fmi2_component.h"
+#include "fmi2/fmi2_component.h"
 
 enum Function {
   FUNCTION_SET_DEBUG_LOGGING,

@@ -1,7 +1,7 @@
 /* FMI for Model Exchange (section 3.2): the importer integrates. */
-#include "check.h"
-#include "fmi2_life_cycle.h"
-#include "model_exchange.h"
+#include "fmi/check.h"
+#include "fmi/model_exchange.h"
+#include "fmi2/fmi2_life_cycle.h"
 
 static fmi2Status change_mode(fmi2Component c, enum Function function, const char *name, enum Mode mode) {
   struct Instance *instance = enter(c, function, name);

@@ -1,6 +1,6 @@
 /* What both interfaces share: version, experiment, initialisation, end (sections 2.1.4 and 2.1.6). */
-#include "fmi2_life_cycle.h"
-#include "simulation.h"
+#include "fmi/simulation.h"
+#include "fmi2/fmi2_life_cycle.h"
 
 const char *fmi2GetTypesPlatform(void) {
   return "default";

@@ -1,6 +1,6 @@
 /* Saving, restoring and serializing the state of an instance (section 2.1.8). */
-#include "fmi2_life_cycle.h"
-#include "saved_state.h"
+#include "fmi/saved_state.h"
+#include "fmi2/fmi2_life_cycle.h"
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);

@@ -1,8 +1,8 @@
 /* Getting and setting variables, and their derivatives (sections 2.1.7, 2.1.9 and 4.2.1). */
-#include "check.h"
-#include "derivatives.h"
-#include "fmi2_life_cycle.h"
-#include "values.h"
+#include "fmi/check.h"
+#include "fmi/derivatives.h"
+#include "fmi/values.h"
+#include "fmi2/fmi2_life_cycle.h"
 
 /* The instance where the function may be called with these arrays; NULL after logging where it may not. */
 static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,

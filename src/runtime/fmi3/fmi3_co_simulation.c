@@ -1,9 +1,9 @@
 /* FMI for Co-Simulation (section 4.2): communication steps and what is told within them. */
 #include <string.h>
 
-#include "check.h"
-#include "fmi3_life_cycle.h"
-#include "steps.h"
+#include "fmi/check.h"
+#include "fmi3/fmi3_life_cycle.h"
+#include "stepping/steps.h"
 
 /* Calls the importer back; returns when the step shall end in place of end. */
 static double call_back(struct Component *component, double time, double end) {

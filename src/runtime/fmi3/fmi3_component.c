@@ -1,11 +1,11 @@
 /* Creation and end of an instance, and its messages to the caller's logger (section 2.3.1). */
-#include "fmi3_component.h"
+#include "fmi3/fmi3_component.h"
 
 #include <string.h>
 
-#include "fmi3_life_cycle.h"
-#include "fmi3_memory.h"
-#include "log_categories.h"
+#include "fmi/log_categories.h"
+#include "fmi3/fmi3_life_cycle.h"
+#include "fmi3/fmi3_memory.h"
 
 static unsigned wanted_statuses(const struct Component *component) {
   return component->logger != NULL ? log_wanted(component->categories) : 0;

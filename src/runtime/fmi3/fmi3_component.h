@@ -3,7 +3,7 @@
 #define FMI3_COMPONENT_H
 
 #include "fmi3.h"
-#include "intermediate.h"
+#include "stepping/intermediate.h"
 
 /* For what a function makes of its arguments. */
 enum WorkspaceUse { WORKSPACE_REFERENCES, WORKSPACE_KNOWNS, WORKSPACE_VALUES, WORKSPACE_COUNT };

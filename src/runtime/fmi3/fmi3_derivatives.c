@@ -1,8 +1,8 @@
 /* Partial derivatives, derivatives of outputs by time, and dependencies (sections 2.2.9, 2.2.11 and 4.2.1). */
-#include "check.h"
-#include "derivatives.h"
-#include "fmi3_life_cycle.h"
-#include "fmi3_references.h"
+#include "fmi/check.h"
+#include "fmi/derivatives.h"
+#include "fmi3/fmi3_life_cycle.h"
+#include "fmi3/fmi3_references.h"
 
 /* Scalars that a partial derivative is asked of. */
 struct Partial {

@@ -1,6 +1,6 @@
-#include "fmi3_life_cycle.h"
+#include "fmi3/fmi3_life_cycle.h"
 
-#include "life_cycle.h"
+#include "fmi/life_cycle.h"
 
 /* A discarded step leaves the FMU as it was before (section 2.2.3), so that MODE_STEP_FAILED is never seen. */
 enum {

@@ -2,7 +2,7 @@
 #ifndef FMI3_LIFE_CYCLE_H
 #define FMI3_LIFE_CYCLE_H
 
-#include "fmi3_component.h"
+#include "fmi3/fmi3_component.h"
 
 enum Function {
   FUNCTION_SET_DEBUG_LOGGING,

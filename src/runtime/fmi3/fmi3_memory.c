@@ -1,4 +1,4 @@
-#include "fmi3_memory.h"
+#include "fmi3/fmi3_memory.h"
 
 #include <stdlib.h>
 

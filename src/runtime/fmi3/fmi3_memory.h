@@ -2,7 +2,7 @@
 #ifndef FMI3_MEMORY_H
 #define FMI3_MEMORY_H
 
-#include "instance.h"
+#include "instance/instance.h"
 
 extern const struct Allocator fmi3_memory;
 

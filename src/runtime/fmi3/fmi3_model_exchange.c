@@ -1,7 +1,7 @@
 /* FMI for Model Exchange (section 3.2): the importer integrates. */
-#include "check.h"
-#include "fmi3_life_cycle.h"
-#include "model_exchange.h"
+#include "fmi/check.h"
+#include "fmi/model_exchange.h"
+#include "fmi3/fmi3_life_cycle.h"
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);

@@ -1,5 +1,5 @@
 /* Types of which there are no variables, and clocks (sections 2.2.6 and 2.2.8). */
-#include "fmi3_life_cycle.h"
+#include "fmi3/fmi3_life_cycle.h"
 
 static fmi3Status no_variable(fmi3Instance c, enum Function function, const char *name, size_t nvr) {
   struct Instance *instance = enter(c, function, name);

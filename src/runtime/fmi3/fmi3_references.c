@@ -1,7 +1,7 @@
-#include "fmi3_references.h"
+#include "fmi3/fmi3_references.h"
 
-#include "check.h"
-#include "fmi3_memory.h"
+#include "fmi/check.h"
+#include "fmi3/fmi3_memory.h"
 
 /* The array with the variable in it; NULL for a scalar. */
 static const struct ArrayVariable *array_with(unsigned reference) {

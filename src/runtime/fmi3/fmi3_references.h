@@ -2,7 +2,7 @@
 #ifndef FMI3_REFERENCES_H
 #define FMI3_REFERENCES_H
 
-#include "fmi3_component.h"
+#include "fmi3/fmi3_component.h"
 
 /* An array of a caller, with the number of its values. */
 struct Values {

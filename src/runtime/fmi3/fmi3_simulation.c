@@ -1,6 +1,6 @@
 /* What both interfaces share: version, initialization, end (section 2.3). */
-#include "fmi3_life_cycle.h"
-#include "simulation.h"
+#include "fmi/simulation.h"
+#include "fmi3/fmi3_life_cycle.h"
 
 const char *fmi3GetVersion(void) {
   return "3.0";

@@ -1,6 +1,6 @@
 /* Saving, restoring and serializing the state of an instance (section 2.2.10). */
-#include "fmi3_life_cycle.h"
-#include "saved_state.h"
+#include "fmi/saved_state.h"
+#include "fmi3/fmi3_life_cycle.h"
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);

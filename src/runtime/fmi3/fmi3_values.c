@@ -1,8 +1,8 @@
 /* Getting and setting variables of the types that there are (sections 2.2.6 and 2.4.7). */
-#include "check.h"
-#include "fmi3_life_cycle.h"
-#include "fmi3_references.h"
-#include "values.h"
+#include "fmi/check.h"
+#include "fmi/values.h"
+#include "fmi3/fmi3_life_cycle.h"
+#include "fmi3/fmi3_references.h"
 
 /* The references of scalars where the function may be called with these arrays; NULL after logging where it may not. */
 static const unsigned *enter_with_values(fmi3Instance c, enum Function function, const char *name,

@@ -1,0 +1,13 @@
+/* Whether the forces of contacts at rest, with the frictions that slide on them, have a solution, and one alone. */
+#ifndef CONTACT_FORCES_H
+#define CONTACT_FORCES_H
+
+#include "events/settlement.h"
+
+/*
+ * Opens and closes contacts at rest as the only solution says; *again where that changes any. NULL, or, after logging the
+ * contact and the friction, the reason why the motion cannot go on.
+ */
+const char *contact_forces_settle(struct Settlement *settlement, bool *again);
+
+#endif

@@ -1,0 +1,320 @@
+/*
+ * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, with all that are as fast;
+ * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
+ * on.
+ */
+#include "contacts/contacts.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "contacts/contact_forces.h"
+#include "contacts/impacts.h"
+#include "contacts/pushes.h"
+#include "events/settlement.h"
+
+enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
+
+/* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
+static const double shortest_flight = 1000.0;
+/* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
+static const double equal_share = 1e-9;
+/* How far a contact may be penetrated where it is set. */
+static const double largest_penetration = 1e-9;
+
+static const char no_impact[] = "a contact cannot take an impact there";
+
+bool is_touching(const struct Settlement *settlement, size_t contact) {
+  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
+  double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
+  return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
+}
+
+/* The touching contact that closes fastest; contact_count for none. */
+static size_t find_impact(const struct Settlement *settlement) {
+  size_t found = settlement->switches->contact_count;
+  double fastest = 0.0;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
+    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    bool is_open =
+        mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0 && settlement->was_opened[i] == 0.0;
+    bool is_hit_first = is_hit(settlement, indicator_of_contact(settlement, i)) && is_open && settlement->impacts == 0;
+    bool closes = settlement->value[rate] < (is_hit_first ? 0.0 : -settlement->noise[rate]);
+    if (!closes || !is_touching(settlement, i) || settlement->value[rate] >= fastest) continue;
+    fastest = settlement->value[rate];
+    found = i;
+  }
+  return found;
+}
+
+static void open_all(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->contact_count; i++) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+}
+
+/* Logs a restitution that is none. */
+static bool check_restitution(const struct Settlement *settlement, size_t contact) {
+  double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
+  if (restitution >= 0.0 && restitution <= 1.0) return true;
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
+              settlement->switches->contacts[contact].name, restitution);
+  return false;
+}
+
+/* The contacts that are hit as fast as one, but for rounding; where pushes go to and fro without end, all that touch. */
+static bool choose_hit(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t place = contact_place(settlement, contact, CONTACT_RATE);
+  double fastest = settlement->value[place], noise = settlement->noise[place];
+  bool bounces = settlement->impacts < IMPACT_LIMIT, is_fine = true;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    double slower = settlement->value[rate] - fastest;
+    bool is_tied = slower <= noise + settlement->noise[rate] - equal_share * fastest;
+    settlement->takes_part[i] = is_touching(settlement, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    if (settlement->takes_part[i] == 0.0) continue;
+    is_fine &= check_restitution(settlement, i);
+    settlement->was_opened[i] = 0.0;
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 1.0;
+  return is_fine;
+}
+
+/* A friction that rests on contacts, all of which are open, cannot stick. */
+static void let_go(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool rests = false, presses = false;
+    for (size_t k = 0; k < switches->contact_count; k++) {
+      if (!rests_on(switches, i, k)) continue;
+      rests = true;
+      presses |= mode_of(settlement, switches->contacts[k].mode) != 0.0;
+    }
+    if (!rests || presses || mode_of(settlement, switches->frictions[i].mode) != 0.0) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+  }
+}
+
+static void let_all_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+}
+
+/* An impact of a contact, and of those that are hit together with it. */
+static bool take_impact(struct Settlement *settlement, size_t contact) {
+  if (!choose_hit(settlement, contact)) return false;
+  settlement_keep_modes(settlement);
+  let_all_slide(settlement);
+  open_all(settlement);
+  bool done = impacts_take(settlement, settlement->impacts < IMPACT_LIMIT);
+  settlement_restore_modes(settlement);
+  open_all(settlement);
+  let_go(settlement);
+  settlement->jumped = true;
+  settlement->impacts++;
+  return done;
+}
+
+/* Whether an open contact that touches would come back at once. */
+static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
+  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
+  const double *value = &settlement->value[gap];
+  double rate = fmax(value[CONTACT_RATE], 0.0), fall = -value[CONTACT_ACCELERATION];
+  if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
+  if (!(fall > settlement->noise[gap + CONTACT_ACCELERATION])) return false;
+  double start = settlement->instance->situation->start_time;
+  double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
+  /* An importer may come below the ground, and finds no further zero there. */
+  bool is_below = settlement->occasion == IN_EXCHANGE && value[CONTACT_GAP] < 0.0;
+  if (is_below && rate * rate / (2.0 * fall) <= -10.0 * value[CONTACT_GAP]) return true;
+  return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
+         rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
+}
+
+/* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */
+static void let_moving_slide(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
+    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
+    double velocity = settlement->value[place];
+    bool sticks = mode_of(settlement, switches->frictions[i].mode) == 0.0;
+    if (!sticks || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE)) continue;
+    settlement_set_mode(settlement, switches->frictions[i].mode, velocity < 0.0 ? -1.0 : 1.0);
+  }
+}
+
+/* What does not slide as a contact comes to rest sticks: else what rest takes from the gap would make it slide. */
+static void let_stick(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY);
+    bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
+    if (rests_on(switches, i, contact) && !slides) settlement_set_mode(settlement, switches->frictions[i].mode, 0.0);
+  }
+}
+
+/* Closes contacts that come to rest, all at once. */
+static bool close_contacts(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool closes = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
+    if (!is_open || !comes_to_rest(settlement, i)) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    let_stick(settlement, i);
+    closes = true;
+  }
+  if (closes) let_moving_slide(settlement);
+  return closes;
+}
+
+/* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */
+static double largest_drift(const struct Settlement *settlement) {
+  double scale = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++)
+    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
+  return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * scale;
+}
+
+/* Opens contacts that were lifted. Whether there were any. */
+static bool open_lifted(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool opens = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t gap = contact_place(settlement, i, CONTACT_GAP);
+    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
+    if (!is_closed || settlement->value[gap] <= largest_drift(settlement)) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    opens = true;
+  }
+  return opens;
+}
+
+/* Opens contacts whose gap has just turned away, as at an edge, or that an event throws apart. Whether there were any. */
+static bool open_parting(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  double drift = continuity_allowed_share(settlement) * settlement_velocity_scale(settlement);
+  bool opens = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t place = contact_place(settlement, i, CONTACT_RATE);
+    double rate = settlement->value[place], least = settlement->thrown ? settlement->noise[place] : drift;
+    if (mode_of(settlement, switches->contacts[i].mode) == 0.0 || !(rate > least)) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    settlement->was_opened[i] = 1.0;
+    opens = true;
+  }
+  return opens;
+}
+
+static bool release(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  open_lifted(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
+    if (is_closed || gap >= -largest_drift(settlement)) continue;
+    log_message(
+        settlement->instance, STATUS_DISCARD,
+        "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
+        "expected values for which it is not negative",
+        settlement->time, switches->contacts[i].name, gap);
+    return false;
+  }
+  return true;
+}
+
+/*
+ * An importer comes to a contact late, and an indicator that stays below 0 would not be seen again. Moves apart what is open
+ * and stands in one another by so little, all at once; *lifts where there is any. False where that cannot be.
+ */
+static bool lift(struct Settlement *settlement, bool *lifts) {
+  const struct SwitchTable *switches = settlement->switches;
+  *lifts = false;
+  if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
+  settlement_keep_modes(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    double noise = settlement->noise[contact_place(settlement, i, CONTACT_GAP)];
+    bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
+    if (!is_open || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
+    settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    *lifts = true;
+  }
+  if (!*lifts) return true;
+  settlement->lifts++;
+  bool done = settlement_move(settlement);
+  settlement_restore_modes(settlement);
+  return done;
+}
+
+/* The closed contact that pulls most, or whose force has just gone; contact_count for none. */
+static size_t find_pulling(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t found = switches->contact_count;
+  double most = 0.0;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const struct ContactFacts *contact = &switches->contacts[i];
+    if (mode_of(settlement, contact->mode) == 0.0) continue;
+    double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
+    /* An importer comes to a zero or past it, and does not tell whose. */
+    bool is_reached = is_hit(settlement, indicator_of_contact(settlement, i)) ||
+                      (settlement->occasion == IN_EXCHANGE && force <= 0.0);
+    bool parts = is_reached && settlement->was_opened[i] == 0.0 && !settlement->jumped;
+    if (!(force < 0.0) && !parts) continue;
+    if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
+    most = fmin(force, 0.0);
+    found = i;
+  }
+  return found;
+}
+
+static const char *check_gaps(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool starts = settlement->occasion == AT_START, moved = settlement->moved;
+  double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    if (gap >= -allowed) continue;
+    log_message(
+        settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
+        settlement->time, switches->contacts[i].name,
+        starts  ? "the start"
+        : moved ? "an event that sets coordinates"
+                : "an event that switches the gap",
+        gap,
+        starts  ? "start values or parameters"
+        : moved ? "values of <set>"
+                : "conditions and modes");
+    return "a contact is penetrated";
+  }
+  return NULL;
+}
+
+static const char *act_once(struct Settlement *settlement, bool *again) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool may_turn = may_turn_gaps(settlement) && settlement->occasion != AT_START;
+  *again = true;
+  if ((settlement->moved || may_turn || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
+  const char *problem = may_turn && !settlement->jumped ? check_gaps(settlement) : NULL;
+  if (problem != NULL) return problem;
+  if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
+  size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
+  if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
+  if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
+  bool lifts;
+  if (!lift(settlement, &lifts)) return no_impact;
+  if (lifts) return NULL;
+  size_t pulling = find_pulling(settlement);
+  *again = pulling < switches->contact_count;
+  if (!*again) return NULL;
+  settlement->was_opened[pulling] = 1.0;
+  settlement_set_mode(settlement, switches->contacts[pulling].mode, 0.0);
+  let_go(settlement);
+  return NULL;
+}
+
+const struct ContactLaws contact_laws = {
+    .act = act_once, .settle_forces = contact_forces_settle, .release = release, .check_gaps = check_gaps};

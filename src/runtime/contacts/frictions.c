@@ -1,0 +1,149 @@
+/*
+ * Dry friction: which slides, which sticks. Of frictions the first that cannot stay as it is switches, by Murty's least-index
+ * method: it comes to an end, but the first ones may switch often where many act on one another.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+
+#include "evaluation/evaluate.h"
+#include "events/settlement.h"
+#include "instance/solver.h"
+
+enum { FRICTION_FLIP_LIMIT = 500 };
+
+/* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
+static const double shortest_slip = 1e-4;
+
+static const char neither[] = "a friction changes to and fro there without end";
+
+/* Where a contact gives no force, as of mu = 0, nothing sticks. */
+static double frictionless_mode(const struct Settlement *settlement, size_t place, double mode, bool is_moving) {
+  double velocity = settlement->value[place], rate = settlement->value[place + FRICTION_RATE];
+  double next = is_moving ? velocity : fabs(rate) > settlement->noise[place + FRICTION_RATE] ? rate : mode;
+  return next < 0.0 ? -1.0 : 1.0;
+}
+
+/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
+static double friction_mode(const struct Settlement *settlement, size_t friction) {
+  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
+  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
+  double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
+  double rate = settlement->value[place + FRICTION_RATE];
+  /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
+  double noise = settlement->noise[place] +
+                 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
+  double flips = settlement->flips[indicator_of_friction(settlement, friction)];
+  bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
+  /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
+  bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
+  bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
+  double direction = velocity > 0.0 ? 1.0 : -1.0;
+  bool is_absent = settlement->switches->rests_on != NULL && settlement->value[place + FRICTION_STICTION] == 0.0 &&
+                   settlement->value[place + FRICTION_FORCE] == 0.0;
+  if (is_absent) return frictionless_mode(settlement, place, mode, is_moving);
+  if (mode == 0.0) {
+    double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
+    double stiction = settlement->value[place + FRICTION_STICTION];
+    /* An importer comes to a zero or past it, and does not tell whose. */
+    bool is_reached = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
+                      (settlement->occasion == IN_EXCHANGE && fabs(force) >= stiction);
+    bool slips = fabs(force) > stiction || (is_reached && is_first && !settlement->jumped);
+    if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
+    return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
+  }
+  bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
+  if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
+  if (is_moving && !turns) return mode;
+  if (is_first_of_all && is_first) return 0.0;
+  double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
+  if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
+  return 0.0;
+}
+
+static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: the friction '%s' neither sticks nor slides; expected a stiction that is not less than the "
+              "force while it slides",
+              settlement->time, settlement->switches->frictions[friction].name);
+  return neither;
+}
+
+static const char *act_once_on_friction(struct Settlement *settlement, bool *switched) {
+  const struct SwitchTable *switches = settlement->switches;
+  *switched = false;
+  for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
+    double mode = friction_mode(settlement, i);
+    if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
+    if (++settlement->flips[indicator_of_friction(settlement, i)] > FRICTION_FLIP_LIMIT)
+      return refuse_friction(settlement, i);
+    settlement_set_mode(settlement, switches->frictions[i].mode, mode);
+    *switched = true;
+  }
+  return NULL;
+}
+
+/* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
+static size_t count_redundant(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  if (instance->singular != 0) return SIZE_MAX;
+  const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraint_count;
+  const double *slope = pivot + lagrangian.constraint_count;
+  size_t count = 0;
+  for (size_t j = 0; j < lagrangian.constraint_count; j++) count += isinf(pivot[j]) && slope[j] > 0.0;
+  return count;
+}
+
+/* Whether a friction that counts as sliding has a velocity that others hold: *held. False where that cannot be told. */
+static bool find_held(struct Settlement *settlement, const struct FrictionFacts *facts, bool *held) {
+  double *mode = &settlement->instance->parameter[facts->mode], kept = *mode;
+  size_t without = count_redundant(settlement);
+  *mode = 0.0;
+  settlement->instance->prepared_is_stale = true;
+  size_t with = count_redundant(settlement);
+  *mode = kept;
+  settlement->instance->prepared_is_stale = true;
+  *held = with > without;
+  return with != SIZE_MAX && without != SIZE_MAX;
+}
+
+/* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
+static bool tell_frictions(struct Settlement *settlement, bool *again) {
+  const struct SwitchTable *switches = settlement->switches;
+  double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
+  double slowest = share * settlement_velocity_scale(settlement);
+  *again = false;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct FrictionFacts *facts = &switches->frictions[i];
+    double mode = mode_of(settlement, facts->mode);
+    double velocity = settlement->value[friction_place(settlement, i, FRICTION_VELOCITY)];
+    bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraint_count > 1;
+    if (may_rest && !find_held(settlement, facts, &held)) return false;
+    if (held) mode = 0.0;
+    if (mode == mode_of(settlement, facts->told)) continue;
+    settlement_set_mode(settlement, facts->told, mode);
+    *again = true;
+  }
+  return true;
+}
+
+/* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
+static const char *check_frictions(const struct Settlement *settlement) {
+  for (size_t i = 0; i < settlement->switches->friction_count; i++) {
+    size_t place = friction_place(settlement, i, FRICTION_FORCE);
+    double force = settlement->value[place];
+    if (!(force < -settlement->noise[place])) continue;
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the force of the friction '%s' is %g; expected none below 0, as the abs of what it follows from",
+        settlement->time, settlement->switches->frictions[i].name, force);
+    return "friction pushes";
+  }
+  return NULL;
+}
+
+const struct FrictionLaws friction_laws = {
+    .act = act_once_on_friction, .tell = tell_frictions, .check = check_frictions};

@@ -1,0 +1,121 @@
+#include "contacts/pushes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "instance/solver.h"
+
+bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
+  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
+}
+
+static bool contact_takes_part(const struct Settlement *settlement, size_t contact) {
+  return settlement->takes_part[contact] != 0.0;
+}
+
+static bool friction_takes_part(const struct Settlement *settlement, size_t friction) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool rests = false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    rests |= contact_takes_part(settlement, i) && rests_on(switches, friction, i);
+  return rests && settlement->takes_part[switches->contact_count + friction] != 0.0;
+}
+
+static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTable *switches, size_t row) {
+  size_t member = pushes->member[row];
+  return row < pushes->contact_count ? switches->contacts[member].constraint : switches->frictions[member].constraint;
+}
+
+/* lever: count rows with the push of 1 along the coordinates. */
+static bool respond_to_pushes(struct Settlement *settlement, struct Pushes *pushes, double *lever, double *impulse,
+                              double *response) {
+  struct Instance *instance = settlement->instance;
+  size_t n = lagrangian.coordinate_count;
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  for (size_t row = 0; row < pushes->count; row++) {
+    size_t place = n + constraint_of(pushes, settlement->switches, row);
+    impulse[place] = 1.0;
+    instance->singular = lagrangian.respond(&point, impulse, response);
+    impulse[place] = 0.0;
+    if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
+    memcpy(pushes->velocities + row * n, response, n * sizeof *response);
+    memcpy(lever + row * n, response + n, n * sizeof *response);
+  }
+  for (size_t i = 0; i < pushes->count; i++)
+    for (size_t j = 0; j < pushes->count; j++) {
+      double *mobility = &pushes->mobility[i * pushes->count + j];
+      *mobility = 0.0;
+      for (size_t k = 0; k < n; k++) *mobility += lever[i * n + k] * pushes->velocities[j * n + k];
+    }
+  return true;
+}
+
+/* The force of each friction grows linearly with those of the contacts. */
+static void find_coefficients(struct Settlement *settlement, struct Pushes *pushes, double *force, double *value) {
+  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
+  size_t contacts = pushes->contact_count, n = lagrangian.coordinate_count;
+  for (size_t i = 0; i <= contacts && pushes->friction_count > 0; i++) {
+    if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 1.0;
+    settlement->switches->values(&point, force, value);
+    if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 0.0;
+    for (size_t f = 0; f < pushes->friction_count; f++) {
+      double sliding = value[friction_place(settlement, pushes->member[contacts + f], FRICTION_FORCE)];
+      if (i < contacts) pushes->coefficient[f * contacts + i] = sliding;
+      else /* without any force */
+        for (size_t k = 0; k < contacts; k++)
+          pushes->coefficient[f * contacts + k] = fmax(pushes->coefficient[f * contacts + k] - sliding, 0.0);
+    }
+  }
+}
+
+static void find_rates(const struct Settlement *settlement, struct Pushes *pushes) {
+  for (size_t row = 0; row < pushes->count; row++) {
+    size_t member = pushes->member[row];
+    size_t place = row < pushes->contact_count ? contact_place(settlement, member, CONTACT_RATE)
+                                               : friction_place(settlement, member, FRICTION_VELOCITY);
+    pushes->rate[row] = settlement->value[place];
+  }
+}
+
+bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraint_count;
+  size_t values = settlement_value_count(switches), contacts = 0, frictions = 0;
+  for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(settlement, i) ? 1 : 0;
+  for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(settlement, i) ? 1 : 0;
+  *pushes = (struct Pushes){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
+  size_t count = pushes->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
+  size_t scratch = rows + 2 * n + values;
+  pushes->block =
+      settlement->instance->memory.allocate(1, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+  if (pushes->block == NULL) {
+    solver_lacks_memory(settlement->instance);
+    return false;
+  }
+  pushes->velocities = pushes->block;
+  double *lever = pushes->velocities + count * n;
+  pushes->mobility = lever + count * n;
+  pushes->rate = pushes->mobility + count * count;
+  pushes->coefficient = pushes->rate + count;
+  double *force = pushes->coefficient + frictions * contacts, *response = force + rows, *value = response + 2 * n;
+  pushes->member = (size_t *)(value + values);
+  size_t next = 0;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (contact_takes_part(settlement, i)) pushes->member[next++] = i;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (friction_takes_part(settlement, i)) pushes->member[next++] = i;
+  if (respond_to_pushes(settlement, pushes, lever, force, response)) {
+    find_coefficients(settlement, pushes, force, value);
+    find_rates(settlement, pushes);
+    return true;
+  }
+  pushes_free(settlement, pushes);
+  return false;
+}
+
+void pushes_free(const struct Settlement *settlement, struct Pushes *pushes) {
+  settlement->instance->memory.free(pushes->block);
+  pushes->block = NULL;
+}

@@ -1,0 +1,30 @@
+/*
+ * What contacts and frictions do to the velocities: the pushes of some of them, contacts first, and how these answer to one
+ * another.
+ */
+#ifndef PUSHES_H
+#define PUSHES_H
+
+#include "events/settlement.h"
+
+struct Pushes {
+  size_t contact_count, friction_count, count; /* count: of both */
+  size_t *member;                              /* which contacts, then which frictions, of the table */
+  double *velocities;                          /* count rows: the change of the velocities by each push of 1 */
+  double *mobility;                            /* count rows: the change of the rates by each push of 1 */
+  double *rate;                                /* of the gaps, then the velocities of the frictions */
+  double *coefficient; /* friction_count rows: what each contact's push of 1 lets the friction push */
+  void *block;
+};
+
+/*
+ * Those of the contacts that take part, and of the frictions that do and rest on them; at the rates in settlement->value,
+ * while constraints hold as the modes say. False, and nothing is allocated, where M is singular or there is no memory.
+ */
+bool pushes_create(struct Settlement *settlement, struct Pushes *pushes);
+void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
+
+/* Whether the friction follows from the force of the contact. */
+bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
+
+#endif

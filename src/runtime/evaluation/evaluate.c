@@ -1,0 +1,199 @@
+#include "evaluation/evaluate.h"
+
+#include <math.h>
+
+#include "instance/initial_state.h"
+#include "instance/switching.h"
+
+const char *evaluate_state_name(size_t state) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++)
+    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == state)
+      return lagrangian.variables[i].name;
+  return "";
+}
+
+void log_singularity(const struct Instance *instance, enum Status status, double time) {
+  if (instance->singular == 0) {
+    log_message(
+        instance, status,
+        "time %g: the accelerations are not finite, as where something is divided by 0, or exp or cosh takes a large "
+        "argument; try other parameters, inputs or start values",
+        time);
+    return;
+  }
+  size_t coordinate = (size_t)instance->singular - 1;
+  const char *name = evaluate_state_name(coordinate);
+  log_message(instance, status,
+              "time %g: the mass matrix is singular or not positive definite in coordinate '%s' (%s = %g); it depends "
+              "on %s: keep these away from values where the coordinate is not defined",
+              time, name, name, instance->state[coordinate], lagrangian.inertia_depends_on[coordinate]);
+}
+
+enum Status discard_for_singularity(struct Instance *instance) {
+  uint64_t situation = situation_checksum(instance->situation);
+  if (situation != instance->told_singularity) log_singularity(instance, STATUS_DISCARD, instance->situation->time);
+  instance->told_singularity = situation;
+  return STATUS_DISCARD;
+}
+
+enum Status evaluate_prepare(struct Instance *instance) {
+  if (lagrangian.switching != NULL && is_before_start(instance) && !instance->modes_stay) {
+    lagrangian.switching->guess(instance);
+    instance->prepared_is_stale = true;
+  }
+  if (!instance->prepared_is_stale) return STATUS_DONE;
+  instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
+  if (instance->singular != 0) return discard_for_singularity(instance);
+  instance->prepared_is_stale = false;
+  return STATUS_DONE;
+}
+
+struct Point evaluate_point(const struct Instance *instance) {
+  return (struct Point){.time = instance->situation->time,
+                        .state = instance->state,
+                        .input = instance->input,
+                        .parameter = instance->parameter,
+                        .prepared = instance->prepared,
+                        .work = instance->point_work};
+}
+
+bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {
+  instance->singular = lagrangian.derivatives(point, derivative);
+  if (instance->singular != 0) return false;
+  return are_finite(derivative, lagrangian.state_count);
+}
+
+/* For a point without a value: the end of the piece beyond which an importer tries it. False for none. */
+static bool come_back(struct Instance *instance, struct Point *point) {
+  bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
+  return tries && lagrangian.switching != NULL && lagrangian.switching->come_back(instance, point);
+}
+
+enum Status evaluate_situation(struct Instance *instance, double *derivative) {
+  enum Status status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  struct Point point = evaluate_point(instance);
+  if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  if (come_back(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  return discard_for_singularity(instance);
+}
+
+void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
+  double s = time - instance->situation->time;
+  size_t n = lagrangian.input_count;
+  const double *d = instance->input_derivatives + i;
+  coefficient[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
+  coefficient[1] = d[0] + s * (d[n] + s / 2 * d[2 * n]);
+  coefficient[2] = (d[n] + s * d[2 * n]) / 2;
+  coefficient[3] = d[2 * n] / 6;
+}
+
+void evaluate_inputs(const struct Instance *instance, double time, double *input) {
+  for (size_t i = 0; i < lagrangian.input_count; i++) {
+    double coefficient[INPUT_ORDER + 1];
+    expand_input(instance, i, time, coefficient);
+    input[i] = coefficient[0];
+  }
+}
+
+void evaluate_advance_inputs(struct Instance *instance, double end) {
+  if (!instance->situation->input_derivatives_set) return;
+  size_t n = lagrangian.input_count;
+  for (size_t i = 0; i < n; i++) {
+    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
+    expand_input(instance, i, end, coefficient);
+    instance->input[i] = coefficient[0];
+    derivative[0] = coefficient[1];
+    derivative[n] = 2.0 * coefficient[2];
+  }
+  instance->situation->changed = CHANGED_COURSE;
+}
+
+const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
+  if (lagrangian.accelerations == NULL) return derivative + lagrangian.coordinate_count;
+  instance->singular = lagrangian.accelerations(point, instance->acceleration);
+  return instance->singular == 0 ? instance->acceleration : NULL;
+}
+
+const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
+                                           const struct Seed *seed, const double *derivative_along) {
+  if (lagrangian.accelerations_along == NULL) return derivative_along + lagrangian.coordinate_count;
+  double *along = instance->acceleration + lagrangian.coordinate_count + lagrangian.constraint_count;
+  instance->singular = lagrangian.accelerations_along(point, seed, along);
+  return instance->singular == 0 ? along : NULL;
+}
+
+/* The result at a point whose prepared values are up to date; false where there are no accelerations that it needs. */
+static bool evaluate_result_at(struct Instance *instance, const struct Point *point, size_t result, double *value) {
+  const double *acceleration = NULL;
+  if (lagrangian.result_uses_acceleration[result]) {
+    if (!evaluate_derivatives(instance, point, instance->work)) return false;
+    acceleration = evaluate_accelerations(instance, point, instance->work);
+    if (acceleration == NULL) return false;
+  }
+  *value = lagrangian.result(point, acceleration, result);
+  return true;
+}
+
+static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+  enum Status status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  struct Point point = evaluate_point(instance);
+  bool has_value = evaluate_result_at(instance, &point, variable->index, value);
+  if (!(has_value && isfinite(*value)) && come_back(instance, &point))
+    has_value = evaluate_result_at(instance, &point, variable->index, value);
+  return has_value ? STATUS_DONE : discard_for_singularity(instance);
+}
+
+/* Those of the coordinates are the velocities, also where there are no accelerations. */
+static enum Status evaluate_state_derivative(struct Instance *instance, size_t state, double *value) {
+  if (state < lagrangian.coordinate_count) {
+    *value = instance->state[lagrangian.coordinate_count + state];
+    return STATUS_DONE;
+  }
+  enum Status status = evaluate_situation(instance, instance->work);
+  if (status == STATUS_DONE) *value = instance->work[state];
+  return status;
+}
+
+static enum Status evaluate_indicator(struct Instance *instance, size_t index, double *value) {
+  double *indicator = instance->switching_work;
+  if (!lagrangian.switching->indicators(instance, indicator)) return discard_for_singularity(instance);
+  *value = indicator[index];
+  return STATUS_DONE;
+}
+
+enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
+  double result = 0.0;
+  enum Status status = STATUS_DONE;
+  switch (variable->kind) {
+  case VARIABLE_TIME: result = instance->situation->time; break;
+  case VARIABLE_STATE: result = instance->state[variable->index]; break;
+  case VARIABLE_INPUT: result = instance->input[variable->index]; break;
+  case VARIABLE_PARAMETER:
+  case VARIABLE_MODE:
+  case VARIABLE_CONTACT: result = instance->parameter[variable->index]; break;
+  case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
+  case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
+  case VARIABLE_INDICATOR: status = evaluate_indicator(instance, variable->index, &result); break;
+  case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
+  }
+  if (status == STATUS_DONE && !isfinite(result)) {
+    log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value here; try other parameters or states",
+                instance->situation->time, variable->name);
+    status = STATUS_DISCARD;
+  }
+  if (status == STATUS_DONE) *value = result;
+  return status;
+}
+
+double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
+                      const double *derivative_along, const double *acceleration, const double *acceleration_along) {
+  switch (variable->kind) {
+  case VARIABLE_TIME: return seed->time;
+  case VARIABLE_STATE: return seed->state[variable->index];
+  case VARIABLE_DERIVATIVE: return derivative_along[variable->index];
+  case VARIABLE_RESULT: return lagrangian.result_along(point, seed, acceleration, acceleration_along, variable->index);
+  default: return NAN;
+  }
+}

@@ -1,0 +1,67 @@
+/* Evaluation of the generated functions at the instance's situation. */
+#ifndef EVALUATE_H
+#define EVALUATE_H
+
+#include "instance/instance.h"
+
+/* Whether all of value[count] are finite: infinities and NaN leave a NaN in the sum. */
+static inline bool are_finite(const double *value, size_t count) {
+  double sum = 0.0;
+  for (size_t i = 0; i < count; i++) sum += value[i] - value[i];
+  return sum == 0.0;
+}
+
+/* The name of the state with this index. */
+const char *evaluate_state_name(size_t state);
+
+/* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
+enum Status evaluate_prepare(struct Instance *instance);
+
+/* The point of the situation: its time, state, inputs and parameters. */
+struct Point evaluate_point(const struct Instance *instance);
+
+/*
+ * derivative[state_count] at a point whose prepared values are up to date. False where it is not finite or the mass
+ * matrix is singular, which instance->singular then tells.
+ */
+bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
+
+/* The same at the situation, prepared values included. Discards after logging why there is no derivative. */
+enum Status evaluate_situation(struct Instance *instance, double *derivative);
+
+/* Logs why evaluate_derivatives() returned false, as a message of this status. */
+void log_singularity(const struct Instance *instance, enum Status status, double time);
+
+/* The same where a value or derivative is asked for at the situation: logs once for each situation. Discards. */
+enum Status discard_for_singularity(struct Instance *instance);
+
+/* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
+void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
+
+/* The inputs at time; input[input_count]. */
+void evaluate_inputs(const struct Instance *instance, double time, double *input);
+
+/* Continues the inputs and their polynomials from a later time in the communication step. */
+void evaluate_advance_inputs(struct Instance *instance, double time);
+
+/*
+ * What result() takes at a point, from the derivative of the state there: the accelerations and the forces of
+ * constraints. NULL where the mass matrix is singular, which instance->singular then tells.
+ */
+const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative);
+
+/* The same along a direction, from the derivative of the state along it. */
+const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
+                                           const struct Seed *seed, const double *derivative_along);
+
+/* The value of a Real variable. Discards after logging where it is not finite. */
+enum Status evaluate_variable(struct Instance *instance, const struct ScalarVariable *variable, double *value);
+
+/*
+ * The derivative of an output, a state or a state derivative along seed; derivative_along holds state_count values from
+ * directional(), the accelerations are those of the functions above.
+ */
+double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
+                      const double *derivative_along, const double *acceleration, const double *acceleration_along);
+
+#endif

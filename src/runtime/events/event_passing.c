@@ -1,0 +1,191 @@
+/* How a communication step goes through events: the solver starts anew behind each of them. */
+#include <float.h>
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+#include "events/settlement.h"
+#include "events/switching_parts.h"
+#include "instance/solver.h"
+
+/* So many events within rounding have no end. */
+enum { EVENT_LIMIT = 30 };
+/* So many windows in a communication step that may hide something have no end. */
+enum { UNSURE_LIMIT = 1000 };
+
+/* Events of the same indicator that come nearer than this share of the time may gather. */
+static const double crowding_share = 1e-6;
+
+/* What is looked at first, in units of the time between the last two events. */
+static const double window_share = 1.25;
+
+static const char gathering[] =
+    "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
+static const char flutter[] =
+    "a contact opens and closes there without end, as where it opens with no speed and the errors of erk or bdf are "
+    "larger than its gap; expected method=\"taylor\" or \"radau\"";
+static const char no_modes[] = "the parameters leave no acceleration there";
+
+/* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
+static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
+                            size_t indicator) {
+  bool changed;
+  const char *problem = switching.settle(instance, time, state, occasion, indicator, &changed);
+  return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
+}
+
+bool switching_start(struct Instance *instance, const char *function) {
+  instance->modes_stay = true;
+  const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
+  instance->modes_stay = false;
+  if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
+  return problem == NULL;
+}
+
+bool switching_release(struct Instance *instance, double time) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL) return true;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
+  return !settlement_evaluate(&settlement) || laws->release(&settlement); /* what has no values is told by others */
+}
+
+bool switching_resume(struct Instance *instance, double time) {
+  const char *problem = modes_at(instance, time, instance->state, AT_CHANGE, 0);
+  if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
+  return problem == NULL;
+}
+
+const char *switching_update(struct Instance *instance, bool *changed) {
+  struct Situation *situation = instance->situation;
+  enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
+  size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
+  if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
+  const char *problem = switching.settle(instance, situation->time, instance->state, occasion, indicator, changed);
+  bool is_new = occasion == AT_EVENT || *changed;
+  if (is_new && situation->changed == CHANGED_NOTHING) situation->changed = CHANGED_BY_EVENT;
+  situation->waiting_event = 0;
+  return problem;
+}
+
+/* Lets the solver start anew at the event. */
+static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step) {
+  const struct Solver *solver = lagrangian.solver;
+  bool is_done = solver->restart == NULL || solver->restart(instance, instance->event_state, step);
+  return is_done ? NULL : "there is no memory for the solver";
+}
+
+/*
+ * Goes through an event, whose state is in event_state, or ends the step before it. NULL, or the reason why the motion ends
+ * there.
+ */
+static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
+                              size_t indicator) {
+  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
+  if (instance->stops_at_events) {
+    instance->situation->waiting_event = (int32_t)indicator + 1;
+    instance->situation->last_step = (struct Span){time, time};
+    step->end = time;
+    step->length = time - step->start;
+    return start_anew(instance, step);
+  }
+  const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
+  instance->situation->last_step = (struct Span){time, time};
+  const char *obstacle = start_anew(instance, step);
+  return problem != NULL ? problem : obstacle;
+}
+
+/*
+ * Looks for the next event up to an end, in windows that begin somewhat longer than the last two events lay apart: the
+ * solver's step may reach far beyond the next one. False where there is none. The time is NAN where that cannot be told.
+ */
+static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
+                      size_t *indicator) {
+  double window = window_share * progress->distance;
+  while (progress->searched < end) {
+    double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
+    *time = NAN;
+    if (!switching_narrow(instance, progress->searched, &near) && ++progress->unsure > UNSURE_LIMIT) return true;
+    if (switching_find(instance, progress->searched, near, time, indicator)) return true;
+    window = 2.0 * (near - progress->searched);
+    progress->searched = near;
+    progress->gathered = 0;
+  }
+  return false;
+}
+
+static bool is_of_contact(size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  return indicator >= switches->branch_count && indicator - switches->branch_count < switches->contact_count;
+}
+
+/* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
+static bool is_bounce(const struct Instance *instance, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  return is_of_contact(indicator) &&
+         instance->parameter[switches->contacts[indicator - switches->branch_count].mode] == 0.0;
+}
+
+const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
+  double end = fmin(instance->situation->last_step.end, step->end), time;
+  size_t indicator = 0;
+  bool is_found = find_next(instance, end, progress, &time, &indicator);
+  instance->situation->gathered = 0;
+  if (!is_found) return NULL;
+  if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
+  bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
+  bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
+  bool is_crowded = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
+                    time - (step->start + progress->last) <= crowding_share * fabs(time);
+  progress->gathered = is_close ? progress->gathered + 1 : 0;
+  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
+  progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
+  progress->last = time - step->start;
+  progress->count++;
+  progress->indicator = indicator;
+  progress->searched = time;
+  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
+    return is_of_contact(indicator) ? flutter : gathering;
+  if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
+  if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
+  return pass_event(instance, step, time, indicator);
+}
+
+const char *switching_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
+                                   struct EventProgress *progress) {
+  double time;
+  size_t indicator;
+  if (++progress->gathered >= EVENT_LIMIT) return problem;
+  if (!switching_jump(instance, &time, instance->event_state, &indicator)) return problem;
+  if (time > step->end) time = step->end;
+  progress->searched = time;
+  return pass_event(instance, step, time, indicator);
+}
+
+const char *switching_check(struct Instance *instance, double time) {
+  const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
+  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
+  bool pushes = false;
+  for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
+    pushes |= settlement.value[friction_place(&settlement, i, FRICTION_FORCE)] < 0.0;
+  return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
+}
+
+void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
+                       const struct EventProgress *progress) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t i = progress->indicator, held = i - switches->branch_count;
+  if (2 * progress->count < step->count) return;
+  double time = instance->situation->last_step.end;
+  if (i < switches->branch_count)
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %g: there were %ld events in the step, the last of %s, line %ld of system.xml, as where the motion "
+        "follows a switch by going to and fro",
+        time, progress->count, switches->branches[i].function, switches->branches[i].line);
+  else
+    log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of '%s'", time,
+                progress->count,
+                held < switches->contact_count ? switches->contacts[held].name
+                                               : switches->frictions[held - switches->contact_count].name);
+}

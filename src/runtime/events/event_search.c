@@ -1,0 +1,268 @@
+/*
+ * Where an indicator leaves its sign. In a window of time that hides nothing (event_window.c) it is held against its
+ * Chebyshev polynomial of degree 8: where the coefficients say that it cannot come to 0, or falls throughout, that is known;
+ * else each half of the window is looked at, with new values. So two zeros that lie close, or one at the very start, are
+ * found as well, whatever the solver.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "events/switching_parts.h"
+#include "instance/solver.h"
+
+enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
+
+/* What the last coefficients may have of all, for a polynomial that is the function. */
+static const double resolved = 1e-4;
+
+struct Search {
+  struct Instance *instance;
+  double *state, *rounded; /* state_count each */
+  double *values;          /* one a indicator */
+  double *samples;         /* CHEBYSHEV_NODES rows of them */
+  double *exact;           /* one a indicator */
+  double *noise;           /* what rounding may make of each */
+  int windows;             /* that were looked at */
+  double departure;        /* the sign of what left 0 last */
+  double floor;            /* what an event has left of an indicator below 0, by rounding */
+};
+
+size_t switching_search_count(void) {
+  size_t samples = 2 * lagrangian.state_count + (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t window = switching_window_count();
+  return samples > window ? samples : window;
+}
+
+static struct Search search_of(struct Instance *instance) {
+  size_t count = indicator_count(lagrangian.switches);
+  struct Search search = {.instance = instance, .state = instance->switching_work};
+  search.rounded = search.state + lagrangian.state_count;
+  search.values = search.rounded + lagrangian.state_count;
+  search.samples = search.values + count;
+  search.noise = search.samples + CHEBYSHEV_NODES * count;
+  search.exact = search.noise + count;
+  return search;
+}
+
+/* The values at a time; NAN where there are none. */
+static void sample(struct Search *search, double time, double *values) {
+  size_t count = indicator_count(lagrangian.switches);
+  bool known = lagrangian.solver->interpolate(search->instance, time, search->state) &&
+               switching_indicators(search->instance, time, search->state, values);
+  for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
+}
+
+static double value_at(struct Search *search, size_t indicator, double time) {
+  sample(search, time, search->values);
+  return search->values[indicator];
+}
+
+static void measure_noise(struct Search *search, double time) {
+  size_t count = indicator_count(lagrangian.switches);
+  double later = time * (1.0 + 4.0 * DBL_EPSILON), *exact = search->exact;
+  sample(search, time, search->values);
+  memset(search->noise, 0, count * sizeof *search->noise);
+  memcpy(exact, search->values, count * sizeof *exact);
+  for (int way = 0; way < 2; way++) {
+    switching_round(search->state, way == 1, search->rounded);
+    bool known = switching_indicators(search->instance, later, search->rounded, search->values);
+    for (size_t i = 0; i < count && known; i++) {
+      double change = 8.0 * fabs(search->values[i] - exact[i]);
+      if (isfinite(change)) search->noise[i] = fmax(search->noise[i], change);
+    }
+  }
+}
+
+/* The coefficients of its derivative, up to a factor. */
+static void differentiate(const double *c, double *d) {
+  d[CHEBYSHEV_DEGREE] = 0.0;
+  d[CHEBYSHEV_DEGREE - 1] = 2.0 * CHEBYSHEV_DEGREE * c[CHEBYSHEV_DEGREE];
+  for (int k = CHEBYSHEV_DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
+  d[0] *= 0.5;
+}
+
+/* How far the polynomial may go from its first coefficient. */
+static double range_of_polynomial(const double *c) {
+  double sum = 0.0;
+  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
+  return sum;
+}
+
+enum Verdict { STAYS, FALLS, UNKNOWN };
+
+/* f: values at the nodes, positive while the mode stays. */
+static enum Verdict judge_signs(const double *f, double noise) {
+  double c[CHEBYSHEV_DEGREE + 1], d[CHEBYSHEV_DEGREE + 1], largest = 0.0;
+  int missing = 0;
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
+  if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
+  if (largest <= noise) return STAYS;
+  if (isinf(largest)) return UNKNOWN;
+  chebyshev_coefficients(f, c);
+  double reach = range_of_polynomial(c);
+  if (reach <= noise) return STAYS; /* it does not fall, whatever it is */
+  double tail = fabs(c[CHEBYSHEV_DEGREE]) + fabs(c[CHEBYSHEV_DEGREE - 1]);
+  if (c[0] - reach > 2.0 * tail) return STAYS;
+  if (tail > resolved * reach + noise) return UNKNOWN;
+  differentiate(c, d);
+  double margin = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * tail;
+  if (d[0] - range_of_polynomial(d) > margin) return STAYS; /* it rises */
+  if (-d[0] - range_of_polynomial(d) > margin) return f[0] < -noise ? FALLS : STAYS;
+  return UNKNOWN;
+}
+
+/* A time, and f there: what is looked for less its floor. */
+struct Sample {
+  double time, f;
+};
+
+static struct Sample sample_at(struct Search *search, size_t indicator, double sign, double time) {
+  return (struct Sample){time, sign * value_at(search, indicator, time) - search->floor};
+}
+
+/*
+ * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller,
+ * or, of a branch, the later one, where the next piece has a value.
+ * By the Illinois method, with every third step a bisection.
+ */
+static double refine(struct Search *search, size_t indicator, double sign, double from, double to) {
+  struct Sample before = sample_at(search, indicator, sign, from), behind = sample_at(search, indicator, sign, to);
+  double weight_before = 1.0, weight_behind = 1.0;
+  if (before.f < 0.0) return from;
+  for (int i = 0; i < REFINEMENT_LIMIT && behind.time - before.time > DBL_EPSILON * fabs(behind.time); i++) {
+    double first = weight_before * before.f, last = weight_behind * behind.f,
+           middle = 0.5 * (before.time + behind.time);
+    double time = i % 3 == 2 ? middle : before.time + (behind.time - before.time) * (first / (first - last));
+    if (!(time > before.time && time < behind.time)) time = middle;
+    if (!(time > before.time && time < behind.time)) break;
+    struct Sample next = sample_at(search, indicator, sign, time);
+    bool is_behind = next.f < 0.0;
+    weight_before = is_behind ? 0.5 * weight_before : 1.0;
+    weight_behind = is_behind ? 1.0 : 0.5 * weight_behind;
+    if (is_behind) behind = next;
+    else before = next;
+  }
+  bool is_branch = indicator < lagrangian.switches->branch_count;
+  return before.f <= -behind.f && !is_branch ? before.time : behind.time;
+}
+
+/*
+ * The first time in a window at which f = sign times the indicator less the floor falls below 0; INFINITY where it does
+ * not.
+ */
+static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
+  double f[CHEBYSHEV_NODES];
+  if (++search->windows > WINDOW_LIMIT) return INFINITY;
+  for (int k = 0; k < CHEBYSHEV_NODES; k++)
+    f[k] = sign * value_at(search, indicator, chebyshev_time(from, to, k)) - search->floor;
+  double noise = search->noise[indicator];
+  enum Verdict verdict = judge_signs(f, noise);
+  if (verdict == STAYS) return INFINITY;
+  if (verdict == FALLS) return refine(search, indicator, sign, from, to);
+  double middle = 0.5 * (from + to);
+  if (depth == 0 || !(middle > from && middle < to)) {
+    bool falls = f[CHEBYSHEV_DEGREE] >= -noise && f[0] < -noise;
+    return falls ? refine(search, indicator, sign, from, to) : INFINITY;
+  }
+  double first = first_fall(search, indicator, sign, from, middle, depth - 1);
+  return isfinite(first) ? first : first_fall(search, indicator, sign, middle, to, depth - 1);
+}
+
+/*
+ * Where an indicator that rests at 0 leaves it: the last of some times at which it is still 0, with the sign that it has
+ * then. INFINITY where it stays.
+ */
+static double first_departure(struct Search *search, size_t indicator, double from, double to) {
+  size_t count = indicator_count(lagrangian.switches);
+  for (int node = CHEBYSHEV_DEGREE; node >= 0; node--) {
+    double value = search->samples[(size_t)node * count + indicator];
+    if (!(fabs(value) > search->noise[indicator])) continue;
+    search->departure = value > 0.0 ? 1.0 : -1.0;
+    return chebyshev_time(from, to, node == CHEBYSHEV_DEGREE ? CHEBYSHEV_DEGREE : node + 1);
+  }
+  return INFINITY;
+}
+
+/* How far a tangent may lead, as a share of the scale of the state. */
+static const double tangent_share = 1e-9;
+
+/* The time along the tangent, rate, from the state at last->end to the first zero of an indicator; INFINITY for none. */
+static double tangent_to_zero(struct Search *search, double time, const double *rate, size_t *indicator) {
+  size_t count = indicator_count(lagrangian.switches);
+  double way = INFINITY, share = INFINITY, least = 8.0 * DBL_EPSILON * fabs(time);
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    share = fmin(share, tangent_share * fmax(fabs(search->state[i]), lagrangian.nominal[i]) / fabs(rate[i]));
+  share = fmax(share, least);
+  if (!switching_indicators(search->instance, time, search->state, search->values)) return INFINITY;
+  memcpy(search->samples, search->values, count * sizeof *search->samples);
+  for (size_t i = 0; i < lagrangian.state_count; i++) search->rounded[i] = search->state[i] + 0.5 * share * rate[i];
+  if (!switching_indicators(search->instance, time + 0.5 * share, search->rounded, search->values)) return INFINITY;
+  for (size_t i = 0; i < count; i++) {
+    double sign = switching_sign(search->instance, i), first = sign * search->samples[i];
+    double fall = (first - sign * search->values[i]) / (0.5 * share), zero = first / fall;
+    if (sign == 0.0 || !(fall > 0.0) || !(zero >= 0.0 && zero <= share) || zero >= way) continue;
+    way = zero;
+    *indicator = i;
+  }
+  return way;
+}
+
+/*
+ * The branch whose zero the state has passed by no more than rounding, which no search tells from none: its piece may have
+ * no value there. branch_count for none.
+ */
+static size_t find_passed(struct Search *search, double time) {
+  size_t count = lagrangian.switches->branch_count;
+  sample(search, time, search->values);
+  for (size_t i = 0; i < count; i++)
+    if (switching_sign(search->instance, i) * search->values[i] < 0.0) return i;
+  return count;
+}
+
+bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
+  struct Search search = search_of(instance);
+  double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
+  if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
+  memcpy(state, search.state, lagrangian.state_count * sizeof *state);
+  *time = last;
+  *indicator = find_passed(&search, last);
+  if (*indicator < lagrangian.switches->branch_count) return true;
+  if (!solver_derivatives(instance, last, search.state, rate)) return false;
+  double way = tangent_to_zero(&search, last, rate, indicator);
+  if (!isfinite(way)) return false;
+  way = 1.001 * way + 2.0 * DBL_EPSILON * fabs(last);
+  for (size_t i = 0; i < lagrangian.state_count; i++) state[i] = search.state[i] + way * rate[i];
+  *time = last + way;
+  return true;
+}
+
+bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator) {
+  size_t count = indicator_count(lagrangian.switches);
+  struct Search search = search_of(instance);
+  bool knows_noise = false;
+  for (int k = 0; k < CHEBYSHEV_NODES; k++)
+    sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
+  *time = INFINITY;
+  for (size_t i = 0; i < count; i++) {
+    double f[CHEBYSHEV_NODES], sign = switching_sign(instance, i);
+    for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
+    if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
+    if (!knows_noise) measure_noise(&search, from);
+    knows_noise = true;
+    double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
+    search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
+    double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
+                                                      : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
+    if (!(found < *time)) continue;
+    *time = found;
+    *indicator = i;
+    instance->departure = search.departure;
+  }
+  if (search.windows > WINDOW_LIMIT) *time = NAN;
+  if (!isfinite(*time)) return isnan(*time);
+  double before = value_at(&search, *indicator, 0.5 * (from + *time));
+  instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
+  return true;
+}

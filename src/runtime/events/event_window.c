@@ -1,0 +1,102 @@
+/*
+ * A window of time in which what the indicators look at hides nothing: a hill exp(-(x/w)^2), flat where a window begins, has
+ * no sample on it. Along the polynomials of the solver's last step, of whatever method, each elementary function is bounded
+ * over the disc about the middle of the window, as series_limit.h does it for steps.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "events/switching_parts.h"
+#include "instance/solver.h"
+
+/* What the last coefficients may have of all, for a polynomial that is the motion. */
+static const double resolved_motion = 1e-3;
+
+struct Window {
+  struct Instance *instance;
+  double from, to;
+  double *states, *accelerations; /* CHEBYSHEV_NODES rows */
+  Series *x, *input, *work;
+};
+
+size_t switching_window_count(void) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches->watched_limit == NULL) return 0;
+  return CHEBYSHEV_NODES * (lagrangian.state_count + switches->watched_acceleration_count) +
+         SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
+}
+
+static struct Window window_of(struct Instance *instance, double from, double to) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Window window = {.instance = instance, .from = from, .to = to, .states = instance->switching_work};
+  window.accelerations = window.states + CHEBYSHEV_NODES * lagrangian.state_count;
+  window.x = (Series *)(window.accelerations + CHEBYSHEV_NODES * switches->watched_acceleration_count);
+  window.input = window.x + lagrangian.state_count;
+  window.work = window.input + lagrangian.input_count;
+  return window;
+}
+
+/* The states, and where they are looked at the accelerations and forces. False where there are none. */
+static bool sample_window(const struct Window *window) {
+  size_t count = lagrangian.switches->watched_acceleration_count;
+  for (int node = 0; node < CHEBYSHEV_NODES; node++) {
+    double time = chebyshev_time(window->from, window->to, node);
+    double *state = window->states + (size_t)node * lagrangian.state_count;
+    if (!lagrangian.solver->interpolate(window->instance, time, state)) return false;
+    if (count == 0) continue;
+    struct Point point = solver_point(window->instance, time, state);
+    double *acceleration = window->accelerations + (size_t)node * count;
+    if (lagrangian.accelerations == NULL || lagrangian.accelerations(&point, acceleration) != 0) return false;
+  }
+  return true;
+}
+
+/* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion. */
+static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
+                           double *series) {
+  double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES], sum = 0.0;
+  for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
+  chebyshev_coefficients(f, c);
+  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
+  chebyshev_powers(c, 0.5 * (window->to - window->from), series);
+  double rounding = 64.0 * DBL_EPSILON * fmax(fabs(c[0]), nominal);
+  return fabs(c[CHEBYSHEV_DEGREE - 1]) + fabs(c[CHEBYSHEV_DEGREE]) <= resolved_motion * sum + rounding;
+}
+
+/* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
+static double sure_half(const struct Window *window) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  double middle = chebyshev_time(window->from, window->to, CHEBYSHEV_NODES / 2);
+  size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
+  bool is_resolved = sample_window(window);
+  for (size_t i = 0; i < states && is_resolved; i++)
+    is_resolved = expand_sampled(window, window->states, states, i, lagrangian.nominal[i], window->x[i]);
+  for (size_t i = 0; i < forces && is_resolved; i++)
+    is_resolved = expand_sampled(window, window->accelerations, forces, i, 0.0,
+                                 window->work[switches->watched_acceleration_row + i]);
+  if (!is_resolved) return 0.0;
+  for (size_t i = 0; i < lagrangian.input_count; i++) {
+    memset(window->input[i], 0, sizeof(Series));
+    expand_input(window->instance, i, middle, window->input[i]);
+  }
+  struct Point point = solver_point(window->instance, middle, window->states + CHEBYSHEV_NODES / 2 * states);
+  struct SeriesLimit limit = {
+      .order = CHEBYSHEV_DEGREE, .step = 0.5 * (window->to - window->from), .crosses = true, .surrounds = true};
+  switches->watched_limit(&point, window->accelerations + CHEBYSHEV_NODES / 2 * forces, (const Series *)window->input,
+                          (const Series *)window->x, window->work, &limit);
+  return limit.step;
+}
+
+bool switching_narrow(struct Instance *instance, double from, double *to) {
+  if (lagrangian.switches->watched_limit == NULL) return true;
+  for (;;) {
+    struct Window window = window_of(instance, from, *to);
+    double length = *to - from, half = sure_half(&window);
+    if (half >= 0.5 * length) return true;
+    double shorter = fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length);
+    if (shorter <= 16.0 * DBL_EPSILON * fabs(from) || !(from + shorter > from)) return false;
+    *to = from + shorter;
+  }
+}

@@ -1,0 +1,176 @@
+#include "events/settlement.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "instance/solver.h"
+
+/* A state is not told from others nearer than the last digit of this share of its nominal value. */
+static const double least_share = 0.1;
+
+size_t settlement_value_count(const struct SwitchTable *switches) {
+  return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
+         FRICTION_VALUES * switches->friction_count + switches->event_count + switches->assignment_count +
+         switches->energy_count;
+}
+
+static size_t rows_of_matrix(void) {
+  return lagrangian.coordinate_count + lagrangian.constraint_count;
+}
+
+size_t settlement_work_count(void) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
+  return switching_search_count() + 4 * settlement_value_count(switches) + switches->event_count +
+         indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
+         rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
+}
+
+struct Settlement settlement_of(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
+  struct Settlement settlement = {.instance = instance, .switches = switches};
+  settlement.value = instance->switching_work + switching_search_count();
+  settlement.noise = settlement.value + values;
+  settlement.other_noise = settlement.noise + values;
+  settlement.largest = settlement.other_noise + values;
+  settlement.condition = settlement.largest + values;
+  settlement.flips = settlement.condition + switches->event_count;
+  settlement.was_opened = settlement.flips + indicators;
+  settlement.takes_part = settlement.was_opened + switches->contact_count;
+  settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
+  settlement.acceleration = settlement.energy + switches->energy_count;
+  settlement.kept_modes = settlement.acceleration + rows_of_matrix();
+  settlement.rounded = settlement.kept_modes + switches->mode_count;
+  settlement.derivative = settlement.rounded + lagrangian.state_count;
+  settlement.correction = settlement.derivative + lagrangian.state_count;
+  memset(settlement.largest, 0, values * sizeof(double));
+  memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
+  return settlement;
+}
+
+struct Settlement settlement_at(struct Instance *instance, double time, double *state, enum Occasion occasion) {
+  struct Settlement settlement = settlement_of(instance);
+  settlement.time = time;
+  settlement.state = state;
+  settlement.occasion = occasion;
+  return settlement;
+}
+
+void switching_round(const double *state, bool otherwise, double *rounded) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
+    double change = (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
+    rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
+  }
+}
+
+bool settlement_values(struct Settlement *settlement, const double *state, double *value) {
+  struct Instance *instance = settlement->instance;
+  struct Point point = solver_point(instance, settlement->time, state);
+  const double *acceleration = settlement->acceleration;
+  if (lagrangian.accelerations != NULL) instance->singular = lagrangian.accelerations(&point, settlement->acceleration);
+  else {
+    instance->singular = lagrangian.derivatives(&point, settlement->derivative);
+    acceleration = settlement->derivative + lagrangian.coordinate_count;
+  }
+  if (instance->singular != 0) return false;
+  settlement->switches->values(&point, acceleration, value);
+  return true;
+}
+
+/* What a jump leaves of a velocity is rounded as what it had before, in a system of equations that may be nearly singular. */
+static const double rounding_of_jumps = 1e-11;
+
+static void measure_velocity(struct Settlement *settlement, size_t place) {
+  settlement->largest[place] = fmax(settlement->largest[place], fabs(settlement->value[place]));
+  settlement->noise[place] = fmax(settlement->noise[place], rounding_of_jumps * settlement->largest[place]);
+}
+
+static bool values_rounded(struct Settlement *settlement, bool otherwise, double *value) {
+  switching_round(settlement->state, otherwise, settlement->rounded);
+  return settlement_values(settlement, settlement->rounded, value);
+}
+
+/* Rounding in one way may leave a difference as it is; what it does in another is measured at the begin of an event. */
+bool settlement_evaluate(struct Settlement *settlement) {
+  size_t count = settlement_value_count(settlement->switches);
+  double *noise = settlement->noise, *other = settlement->other_noise;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  if (!values_rounded(settlement, false, noise)) return false;
+  bool is_first = !settlement->is_evaluated;
+  if (is_first && !values_rounded(settlement, true, other)) return false;
+  if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
+  for (size_t i = 0; i < count; i++) {
+    if (is_first) other[i] = 8.0 * fabs(other[i] - settlement->value[i]);
+    double change = fmax(8.0 * fabs(noise[i] - settlement->value[i]), other[i]);
+    noise[i] = isfinite(change) ? change : 0.0;
+  }
+  settlement->is_evaluated = true;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++)
+    measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
+  for (size_t i = 0; i < settlement->switches->friction_count; i++) {
+    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
+    measure_velocity(settlement, velocity);
+    settlement->largest[rate] = fmax(settlement->largest[rate], fabs(settlement->value[rate]));
+  }
+  return true;
+}
+
+double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate) {
+  double change = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->value[rate]);
+  return settlement->noise[place] + (isfinite(change) ? change : 0.0);
+}
+
+double settlement_velocity_scale(const struct Settlement *settlement) {
+  double scale = 0.0;
+  for (size_t i = lagrangian.coordinate_count; i < 2 * lagrangian.coordinate_count; i++)
+    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
+  return scale;
+}
+
+void settlement_set_mode(struct Settlement *settlement, size_t mode, double value) {
+  settlement->instance->parameter[mode] = value;
+  settlement->instance->prepared_is_stale = true;
+  settlement->changed = true;
+}
+
+static double *modes_of(const struct Settlement *settlement) {
+  return settlement->instance->parameter + lagrangian.parameter_count - settlement->switches->mode_count;
+}
+
+void settlement_keep_modes(struct Settlement *settlement) {
+  memcpy(settlement->kept_modes, modes_of(settlement), settlement->switches->mode_count * sizeof(double));
+}
+
+void settlement_restore_modes(struct Settlement *settlement) {
+  memcpy(modes_of(settlement), settlement->kept_modes, settlement->switches->mode_count * sizeof(double));
+  settlement->instance->prepared_is_stale = true;
+}
+
+bool settlement_push(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  double *velocity = settlement->state + lagrangian.coordinate_count;
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += settlement->correction[i];
+  settlement->changed = true;
+  return true;
+}
+
+bool settlement_move(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
+  memset(settlement->rounded, 0, lagrangian.state_count * sizeof *settlement->rounded);
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  struct Seed seed = {.state = settlement->rounded};
+  instance->singular = lagrangian.correct_positions(&point, &seed, settlement->correction);
+  if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) settlement->state[i] += settlement->correction[i];
+  settlement->changed = true;
+  return true;
+}

@@ -1,0 +1,153 @@
+/* What finds the modes behind an event: switching.c, continuity.c, contacts.c and frictions.c share it. */
+#ifndef SETTLEMENT_H
+#define SETTLEMENT_H
+
+#include "events/switching_parts.h"
+
+/* Parts of value[], see struct SwitchTable. */
+enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
+enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
+
+struct Settlement {
+  struct Instance *instance;
+  const struct SwitchTable *switches;
+  double time;
+  double *state;
+  enum Occasion occasion;
+  size_t indicator;           /* for AT_EVENT */
+  double *value, *noise;      /* value[], and what rounding may make of it */
+  double *other_noise;        /* by rounding in another way, at the begin of the event */
+  double *largest;            /* of velocities and rates in value[], since the start of the event */
+  double *condition;          /* as it was before the last change */
+  double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
+  double *acceleration;       /* and forces of constraints */
+  double *kept_modes;
+  double *rounded, *derivative, *correction;
+  const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
+  double overshoot;                    /* in s: how long before its indicator was 0 */
+  const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */
+  double *energy;                      /* energies and momenta before it */
+  bool changed, jumped;                /* jumped: velocities, or coordinates did */
+  bool moved, thrown, set_mode;        /* an event has set coordinates; coordinates or velocities; a mode */
+  bool lags;                           /* frictions have changed, and velocities were not taken to what holds since */
+  bool is_evaluated;                   /* value[] and the noise are there */
+  bool has_started;                    /* contacts and frictions are as they start, for AT_START */
+  int impacts, lifts;
+};
+
+/* What contacts do; FMUs without any do not hold it. */
+struct ContactLaws {
+  /*
+   * One impact, or contacts that come to rest, or one that parts; *again where there was any. NULL, or the reason why the
+   * motion cannot go on.
+   */
+  const char *(*act)(struct Settlement *settlement, bool *again);
+  /*
+   * Behind frictions: opens and closes contacts at rest as the only solution for their forces says. NULL, or the reason why
+   * there is none.
+   */
+  const char *(*settle_forces)(struct Settlement *settlement, bool *again);
+  /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
+  bool (*release)(struct Settlement *settlement);
+  /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
+  const char *(*check_gaps)(const struct Settlement *settlement);
+};
+
+/* What frictions do; FMUs without any do not hold it. */
+struct FrictionLaws {
+  /* One friction that begins to stick or to slide; *again where there was any. NULL, or the reason why there is no mode. */
+  const char *(*act)(struct Settlement *settlement, bool *again);
+  /* Brings the modes that are told up to date; *again where that changed any. False where there are no accelerations. */
+  bool (*tell)(struct Settlement *settlement, bool *again);
+  /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
+  const char *(*check)(const struct Settlement *settlement);
+};
+
+/* The numbers in value[]. */
+size_t settlement_value_count(const struct SwitchTable *switches);
+
+/* Numbers of workspace, and where they are. */
+size_t settlement_work_count(void);
+struct Settlement settlement_of(struct Instance *instance);
+
+/* At a time and a state, for an occasion. */
+struct Settlement settlement_at(struct Instance *instance, double time, double *state, enum Occasion occasion);
+
+/* Brings all values up to date with the modes and the state; false where there are no accelerations. */
+bool settlement_evaluate(struct Settlement *settlement);
+
+/* The values at a state, without what rounding may make of them. */
+bool settlement_values(struct Settlement *settlement, const double *state, double *value);
+
+/* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
+bool settlement_push(struct Settlement *settlement);
+
+/* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
+bool settlement_move(struct Settlement *settlement);
+
+static inline size_t contact_place(const struct Settlement *settlement, size_t contact, size_t part) {
+  return 2 * settlement->switches->branch_count + CONTACT_VALUES * contact + part;
+}
+
+static inline size_t friction_place(const struct Settlement *settlement, size_t friction, size_t part) {
+  return contact_place(settlement, settlement->switches->contact_count, 0) + FRICTION_VALUES * friction + part;
+}
+
+static inline size_t condition_place(const struct Settlement *settlement) {
+  return friction_place(settlement, settlement->switches->friction_count, 0);
+}
+
+/* Of the kinetic energy, before the potential one and the momenta. */
+static inline size_t energy_place(const struct Settlement *settlement) {
+  return condition_place(settlement) + settlement->switches->event_count + settlement->switches->assignment_count;
+}
+
+static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {
+  return settlement->switches->branch_count + contact;
+}
+
+static inline size_t indicator_of_friction(const struct Settlement *settlement, size_t friction) {
+  return settlement->switches->branch_count + settlement->switches->contact_count + friction;
+}
+
+static inline bool is_hit(const struct Settlement *settlement, size_t indicator) {
+  return settlement->occasion == AT_EVENT && settlement->indicator == indicator;
+}
+
+/* Whether gaps may have jumped or turned, by a branch or a mode. */
+static inline bool may_turn_gaps(const struct Settlement *settlement) {
+  return settlement->switched != NULL || settlement->set_mode;
+}
+
+static inline double mode_of(const struct Settlement *settlement, size_t mode) {
+  return settlement->instance->parameter[mode];
+}
+
+/* Takes up what the solver has left of the constraints. NULL, or why the motion cannot go on. */
+const char *continuity_begin(struct Settlement *settlement);
+
+/* Before a branch switches: how things are until then. */
+void continuity_note(struct Settlement *settlement, size_t branch);
+
+/* Behind all: whether branches, or events that set modes or coordinates, have left things in their places. */
+const char *continuity_check(struct Settlement *settlement);
+
+/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
+double continuity_allowed_share(const struct Settlement *settlement);
+
+/* The largest scale among the velocities. */
+double settlement_velocity_scale(const struct Settlement *settlement);
+
+extern const char constraints_not_kept[];
+
+void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
+
+/* What is tried out in between leaves no mode behind. */
+void settlement_keep_modes(struct Settlement *settlement);
+void settlement_restore_modes(struct Settlement *settlement);
+
+/* What rounding of the state and the time leaves of a value that changes at a rate. */
+double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate);
+
+#endif

@@ -1,0 +1,15 @@
+/* Checks of arguments; each logs an error under the name of the function that was called. */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include "instance/instance.h"
+
+/* Whether an array argument is there when it has elements. */
+bool check_array(struct Instance *instance, const void *array, size_t count, const char *function,
+                 const char *argument);
+
+/* The variable of this value reference, of this type; NULL after logging. */
+const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, enum VariableType type,
+                                             const char *function);
+
+#endif

@@ -1,0 +1,150 @@
+#include "fmi/derivatives.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "fmi/check.h"
+#include "instance/initial_state.h"
+#include "stepping/reading.h"
+
+/* A direction and what follows from it; the arrays are parts of instance->work. */
+struct Direction {
+  struct Seed seed;
+  double *state, *input, *parameter;
+  double *derivative, *derivative_along;
+  const double *acceleration, *acceleration_along; /* what result_along() takes */
+};
+
+static struct Direction direction_create(struct Instance *instance) {
+  struct Direction direction = {.derivative = instance->work};
+  direction.derivative_along = direction.derivative + lagrangian.state_count;
+  direction.state = direction.derivative_along + lagrangian.state_count;
+  direction.input = direction.state + lagrangian.state_count;
+  direction.parameter = direction.input + lagrangian.input_count;
+  size_t count = 3 * lagrangian.state_count + lagrangian.input_count + lagrangian.parameter_count;
+  memset(instance->work, 0, count * sizeof *instance->work);
+  direction.seed = (struct Seed){.state = direction.state, .input = direction.input, .parameter = direction.parameter};
+  return direction;
+}
+
+/* Fills derivative and derivative_along at the point. */
+static enum Status follow(struct Instance *instance, const struct Point *point, struct Direction *direction) {
+  if (lagrangian.derivatives == NULL) return STATUS_DONE;
+  if (!evaluate_derivatives(instance, point, direction->derivative)) return discard_for_singularity(instance);
+  instance->singular = lagrangian.directional(point, &direction->seed, direction->derivative_along);
+  if (instance->singular != 0) return STATUS_DISCARD;
+  direction->acceleration = evaluate_accelerations(instance, point, direction->derivative);
+  direction->acceleration_along =
+      evaluate_accelerations_along(instance, point, &direction->seed, direction->derivative_along);
+  return instance->singular == 0 ? STATUS_DONE : STATUS_DISCARD;
+}
+
+static enum Status set_seed(struct Instance *instance, struct Direction *direction,
+                            const struct ScalarVariable *variable, double value, const char *function) {
+  if (!isfinite(value))
+    return log_error(instance, "%s: the seed of '%s' is %g; expected a finite number", function, variable->name, value);
+  switch (variable->kind) {
+  case VARIABLE_TIME: direction->seed.time = value; return STATUS_DONE;
+  case VARIABLE_STATE: direction->state[variable->index] = value; return STATUS_DONE;
+  case VARIABLE_INPUT: direction->input[variable->index] = value; return STATUS_DONE;
+  case VARIABLE_PARAMETER: direction->parameter[variable->index] = value; return STATUS_DONE;
+  default:
+    return log_error(instance, "%s: '%s' is no known; expected a state, an input or a parameter", function,
+                     variable->name);
+  }
+}
+
+static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable,
+                                 const char *function) {
+  if (is_unknown(variable)) return STATUS_DONE;
+  return log_error(instance, "%s: '%s' is no unknown; expected an output or a state derivative", function,
+                   variable->name);
+}
+
+/* Reads the unknowns' derivatives along the direction. */
+static enum Status read_along(struct Instance *instance, const struct Point *point, const struct Direction *direction,
+                              const unsigned *reference, size_t count, double *value, const char *function) {
+  for (size_t i = 0; i < count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
+    double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
+                                       direction->acceleration, direction->acceleration_along);
+    if (!isfinite(derivative)) {
+      log_message(instance, STATUS_DISCARD, "%s: the derivative of '%s' is not finite here", function, variable->name);
+      return STATUS_DISCARD;
+    }
+    value[i] = derivative;
+  }
+  return STATUS_DONE;
+}
+
+static enum Status derivative_along_seed(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                         const unsigned *known, size_t known_count, const double *seed, double *value,
+                                         const char *function) {
+  struct Direction direction = direction_create(instance);
+  for (size_t i = 0; i < known_count; i++) {
+    const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL, function);
+    if (variable == NULL || set_seed(instance, &direction, variable, seed[i], function) != STATUS_DONE)
+      return STATUS_ERROR;
+  }
+  for (size_t i = 0; i < unknown_count; i++) {
+    const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL, function);
+    if (variable == NULL || check_unknown(instance, variable, function) != STATUS_DONE) return STATUS_ERROR;
+  }
+  initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
+  enum Status status = evaluate_prepare(instance);
+  struct Point point = evaluate_point(instance);
+  if (status == STATUS_DONE) status = follow(instance, &point, &direction);
+  if (status != STATUS_DONE) return status;
+  return read_along(instance, &point, &direction, unknown, unknown_count, value, function);
+}
+
+enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                   const unsigned *known, size_t known_count, const double *seed, double *value,
+                                   const char *function) {
+  reading_begin(instance, function);
+  enum Status status =
+      derivative_along_seed(instance, unknown, unknown_count, known, known_count, seed, value, function);
+  reading_end(instance);
+  return status;
+}
+
+/* The derivatives of all unknowns by one known, each times its seed, in the workspace column[unknown_count]. */
+static enum Status weighted_column(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                   unsigned known, const double *seed, double *column, double *value,
+                                   const char *function) {
+  const double one = 1.0;
+  enum Status status = directional_derivative(instance, unknown, unknown_count, &known, 1, &one, column, function);
+  double sum = 0.0;
+  for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++) sum += seed[i] * column[i];
+  if (status == STATUS_DONE) *value = sum;
+  return status;
+}
+
+enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                               const unsigned *known, size_t known_count, const double *seed, double *value,
+                               const char *function) {
+  for (size_t i = 0; i < unknown_count; i++)
+    if (!isfinite(seed[i]))
+      return log_error(instance, "%s: seed %zu is %g; expected a finite number", function, i + 1, seed[i]);
+  double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
+  if (column == NULL) return log_error(instance, "%s: there is no memory for the derivatives", function);
+  enum Status status = STATUS_DONE;
+  for (size_t j = 0; j < known_count && status == STATUS_DONE; j++)
+    status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j], function);
+  instance->memory.free(column);
+  return status;
+}
+
+enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
+                                const char *function) {
+  struct Point point = evaluate_point(instance);
+  struct Direction direction = direction_create(instance);
+  direction.seed.time = 1.0;
+  direction.seed.input = instance->input_derivatives;
+  if (lagrangian.derivatives != NULL && !evaluate_derivatives(instance, &point, direction.state))
+    return discard_for_singularity(instance);
+  enum Status status = follow(instance, &point, &direction);
+  if (status != STATUS_DONE) return status;
+  return read_along(instance, &point, &direction, reference, count, value, function);
+}

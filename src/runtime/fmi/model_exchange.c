@@ -1,0 +1,105 @@
+#include "fmi/model_exchange.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "fmi/check.h"
+#include "instance/projection.h"
+#include "instance/switching.h"
+#include "stepping/start.h"
+
+enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
+  if (!isfinite(time)) return log_error(instance, "%s: the time is %g; expected a finite number", function, time);
+  instance->situation->time = time;
+  return STATUS_DONE;
+}
+
+/* Whether an array of states has their number. */
+static bool check_states(struct Instance *instance, const void *array, size_t count, const char *function) {
+  if (count == lagrangian.state_count) return check_array(instance, array, count, function, "the array");
+  log_error(instance, "%s: %zu elements; expected %zu, the number of states", function, count, lagrangian.state_count);
+  return false;
+}
+
+enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count, const char *function) {
+  if (!check_states(instance, state, count, function)) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(state[i]))
+      return log_error(instance, "%s: state %zu is %g; expected a finite number", function, i + 1, state[i]);
+  if (count > 0) memcpy(instance->state, state, count * sizeof *state);
+  return STATUS_DONE;
+}
+
+enum Status exchange_get_states(struct Instance *instance, double *state, size_t count, const char *function) {
+  if (!check_states(instance, state, count, function)) return STATUS_ERROR;
+  start_show(instance, function);
+  if (count > 0) memcpy(state, instance->state, count * sizeof *state);
+  start_hide(instance);
+  return STATUS_DONE;
+}
+
+enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count,
+                                     const char *function) {
+  if (!check_states(instance, derivative, count, function)) return STATUS_ERROR;
+  if (count == 0) return STATUS_DONE;
+  start_show(instance, function);
+  enum Status status = evaluate_situation(instance, instance->work);
+  if (status == STATUS_DONE) memcpy(derivative, instance->work, count * sizeof *derivative);
+  start_hide(instance);
+  return status;
+}
+
+enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count, const char *function) {
+  if (!check_states(instance, nominal, count, function)) return STATUS_ERROR;
+  if (count > 0) memcpy(nominal, lagrangian.nominal, count * sizeof *nominal);
+  return STATUS_DONE;
+}
+
+enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count,
+                                          const char *function) {
+  size_t expected = indicator_count(lagrangian.switches);
+  if (count != expected)
+    return log_error(instance, "%s: %zu elements; expected %zu, the number of event indicators", function, count,
+                     expected);
+  if (count == 0) return STATUS_DONE;
+  if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
+  start_show(instance, function);
+  bool has_values = lagrangian.switching->indicators(instance, indicator);
+  enum Status status = has_values ? STATUS_DONE : discard_for_singularity(instance);
+  start_hide(instance);
+  return status;
+}
+
+static bool has_drifted(struct Instance *instance) {
+  if (lagrangian.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
+}
+
+bool exchange_needs_event(struct Instance *instance) {
+  return has_drifted(instance) || (lagrangian.switching != NULL && lagrangian.switching->is_due(instance));
+}
+
+/* Brings the modes into agreement with the state. */
+static enum Status settle_modes(struct Instance *instance, bool *changed) {
+  const struct Switching *switcher = lagrangian.switching;
+  if (switcher == NULL) return STATUS_DONE;
+  const char *problem =
+      instance->kind == KIND_CO_SIMULATION
+          ? switcher->update(instance, changed)
+          : switcher->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
+  return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
+}
+
+enum Status exchange_update(struct Instance *instance, bool *states_changed) {
+  *states_changed = false;
+  enum Status status = settle_modes(instance, states_changed);
+  if (status != STATUS_DONE || lagrangian.projection == NULL || instance->kind == KIND_CO_SIMULATION) return status;
+  status = evaluate_prepare(instance);
+  if (status != STATUS_DONE) return status;
+  double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);
+  if (!isfinite(moved))
+    return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
+  *states_changed |= moved > 0.0;
+  return STATUS_DONE;
+}

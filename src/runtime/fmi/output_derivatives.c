@@ -1,0 +1,121 @@
+/* Derivatives of outputs: the coefficients of their Taylor series in time. */
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+#include "fmi/check.h"
+#include "fmi/derivatives.h"
+#include "stepping/reading.h"
+
+/* Series about the present time; the rows are parts of one block. */
+struct Expansion {
+  Series *state, *input, *output, *work;
+  double *matrix; /* of a linear system */
+};
+
+static size_t larger(size_t a, size_t b) {
+  return a > b ? a : b;
+}
+
+/* False after logging where there is no memory. Free expansion->state. */
+static bool expansion_create(struct Instance *instance, struct Expansion *expansion) {
+  size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
+  size_t work = larger(lagrangian.series_rows, lagrangian.output_series_rows);
+  size_t rows = states + inputs + lagrangian.result_count + work;
+  size_t matrix = lagrangian.linear == NULL ? 0 : states * (states + inputs + 1);
+  expansion->state = instance->memory.allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
+  if (expansion->state == NULL) {
+    log_error(instance, "there is no memory for the derivatives of outputs");
+    return false;
+  }
+  expansion->input = expansion->state + states;
+  expansion->output = expansion->input + inputs;
+  expansion->work = expansion->output + lagrangian.result_count;
+  expansion->matrix = (double *)(expansion->work + work);
+  return true;
+}
+
+/* d x / dt = A x + B u + c, order by order. */
+static void expand_linear(const struct Instance *instance, int order, const struct Expansion *expansion) {
+  size_t states = lagrangian.state_count, columns = states + lagrangian.input_count + 1;
+  lagrangian.linear(instance->parameter, instance->prepared, expansion->matrix);
+  for (size_t i = 0; i < states; i++) expansion->state[i][0] = instance->state[i];
+  for (int k = 0; k < order; k++)
+    for (size_t i = 0; i < states; i++) {
+      const double *row = expansion->matrix + i * columns;
+      double sum = k == 0 ? row[columns - 1] : 0.0;
+      for (size_t j = 0; j + 1 < columns; j++) sum += row[j] * expansion->state[j][k]; /* the inputs follow */
+      expansion->state[i][k + 1] = sum / (k + 1);
+    }
+}
+
+static enum Status fill_expansion(struct Instance *instance, int order, const struct Expansion *expansion) {
+  struct Point point = evaluate_point(instance);
+  const Series *input = (const Series *)expansion->input;
+  for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
+  if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);
+  if (lagrangian.series != NULL) {
+    instance->singular = lagrangian.start(&point, instance->work, expansion->work);
+    if (instance->singular != 0) return discard_for_singularity(instance);
+    for (size_t i = 0; i < lagrangian.state_count; i++) {
+      expansion->state[i][0] = instance->state[i];
+      expansion->state[i][1] = instance->work[i];
+    }
+    lagrangian.series(&point, order + 1, input, expansion->state, expansion->work);
+  }
+  if (lagrangian.output_series != NULL)
+    lagrangian.output_series(&point, order, input, (const Series *)expansion->state, expansion->work,
+                             expansion->output);
+  return STATUS_DONE;
+}
+
+static enum Status read_derivative(struct Instance *instance, const struct Expansion *expansion,
+                                   const struct ScalarVariable *variable, int order, double *value,
+                                   const char *function) {
+  Series *rows = variable->kind == VARIABLE_STATE ? expansion->state : expansion->output;
+  double derivative = rows[variable->index][order];
+  for (int k = 2; k <= order; k++) derivative *= k;
+  if (!isfinite(derivative)) {
+    log_message(instance, STATUS_DISCARD, "%s: the derivative %d of '%s' is not finite here", function, order,
+                variable->name);
+    return STATUS_DISCARD;
+  }
+  *value = derivative;
+  return STATUS_DONE;
+}
+
+static enum Status read_from_series(struct Instance *instance, const unsigned *reference, size_t count,
+                                    const int *order, double *value, const char *function) {
+  struct Expansion expansion;
+  int highest = 0;
+  for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
+  if (!expansion_create(instance, &expansion)) return STATUS_ERROR;
+  enum Status status = fill_expansion(instance, highest, &expansion);
+  for (size_t i = 0; i < count && status == STATUS_DONE; i++)
+    status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i], function);
+  instance->memory.free(expansion.state);
+  return status;
+}
+
+static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order,
+                                           const char *function) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
+  if (variable == NULL) return STATUS_ERROR;
+  if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", function, variable->name);
+  if (order >= 1 && order <= lagrangian.output_derivative_order) return STATUS_DONE;
+  return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", function, order,
+                   variable->name, lagrangian.output_derivative_order);
+}
+
+enum Status output_derivatives(struct Instance *instance, const unsigned *reference, size_t count, const int *order,
+                               double *value, const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_output_derivative(instance, reference[i], order[i], function) != STATUS_DONE) return STATUS_ERROR;
+  reading_begin(instance, function);
+  enum Status status = evaluate_prepare(instance);
+  if (status == STATUS_DONE)
+    status = lagrangian.output_derivative_order == 1
+                 ? derivatives_in_time(instance, reference, count, value, function)
+                 : read_from_series(instance, reference, count, order, value, function);
+  reading_end(instance);
+  return status;
+}

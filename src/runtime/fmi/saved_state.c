@@ -1,0 +1,70 @@
+#include "fmi/saved_state.h"
+
+#include <string.h>
+
+#include "fmi/check.h"
+#include "instance/snapshot.h"
+
+/* Gives the caller's state memory where it has none. */
+static bool allocate(struct Instance *instance, void **state, const char *function) {
+  if (*state == NULL) *state = instance->memory.allocate(1, snapshot_size());
+  if (*state == NULL) log_error(instance, "%s: allocateMemory returned no memory", function);
+  return *state != NULL;
+}
+
+/* Whether the bytes can be restored; logs an error where they cannot. */
+static bool check_state(struct Instance *instance, const void *block, size_t size, const char *function) {
+  const char *fault = snapshot_fault(instance, block, size);
+  if (fault != NULL) log_error(instance, "%s: the bytes of the state cannot be used: %s", function, fault);
+  return fault == NULL;
+}
+
+enum Status saved_state_get(struct Instance *instance, void **state, const char *function) {
+  if (!check_array(instance, state, 1, function, "FMUstate") || !allocate(instance, state, function))
+    return STATUS_ERROR;
+  snapshot_take(instance, *state);
+  return STATUS_DONE;
+}
+
+enum Status saved_state_set(struct Instance *instance, const void *state, const char *function) {
+  if (!check_array(instance, state, 1, function, "FMUstate") ||
+      !check_state(instance, state, snapshot_size(), function))
+    return STATUS_ERROR;
+  snapshot_restore(instance, state);
+  return STATUS_DONE;
+}
+
+enum Status saved_state_free(struct Instance *instance, void **state) {
+  if (state == NULL || *state == NULL) return STATUS_DONE;
+  instance->memory.free(*state);
+  *state = NULL;
+  return STATUS_DONE;
+}
+
+enum Status saved_state_size(struct Instance *instance, const void *state, size_t *size, const char *function) {
+  if (!check_array(instance, state, 1, function, "FMUstate") || !check_array(instance, size, 1, function, "size"))
+    return STATUS_ERROR;
+  *size = snapshot_size();
+  return STATUS_DONE;
+}
+
+enum Status saved_state_write(struct Instance *instance, const void *state, void *bytes, size_t size,
+                              const char *function) {
+  if (!check_array(instance, state, 1, function, "FMUstate") ||
+      !check_array(instance, bytes, 1, function, "serializedState"))
+    return STATUS_ERROR;
+  if (size < snapshot_size())
+    return log_error(instance, "%s: the size is %zu; expected %zu", function, size, snapshot_size());
+  memcpy(bytes, state, snapshot_size());
+  return STATUS_DONE;
+}
+
+enum Status saved_state_read(struct Instance *instance, const void *bytes, size_t size, void **state,
+                             const char *function) {
+  if (!check_array(instance, bytes, size, function, "serializedState") ||
+      !check_array(instance, state, 1, function, "FMUstate") || !check_state(instance, bytes, size, function) ||
+      !allocate(instance, state, function))
+    return STATUS_ERROR;
+  memcpy(*state, bytes, snapshot_size());
+  return STATUS_DONE;
+}

@@ -1,0 +1,35 @@
+#include "fmi/simulation.h"
+
+#include <math.h>
+
+#include "stepping/start.h"
+
+enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
+  double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
+  if (!isfinite(start)) return log_error(instance, "%s: startTime is %g; expected a finite number", function, start);
+  if (experiment->has_stop_time && !(stop >= start && isfinite(stop)))
+    return log_error(instance, "%s: stopTime is %g; expected a finite number from startTime %g on", function, stop,
+                     start);
+  if (experiment->has_tolerance && !(tolerance > 0.0 && tolerance < 1.0))
+    return log_error(instance, "%s: tolerance is %g; expected one between 0 and 1", function, tolerance);
+  struct Situation *situation = instance->situation;
+  situation->experiment_defined = 1;
+  situation->stop_time_defined = experiment->has_stop_time ? 1 : 0;
+  situation->time = situation->start_time = start;
+  situation->stop_time = experiment->has_stop_time ? stop : 0.0;
+  situation->tolerance = experiment->has_tolerance ? tolerance : lagrangian.tolerance;
+  return STATUS_DONE;
+}
+
+enum Status simulation_start(struct Instance *instance, const char *function) {
+  if (start_find(instance, function) != STATUS_DONE) return STATUS_ERROR;
+  instance->situation->mode = instance->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP_COMPLETE;
+  instance->situation->changed = CHANGED_COURSE;
+  log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);
+  return STATUS_DONE;
+}
+
+void simulation_terminate(struct Instance *instance) {
+  instance->situation->mode = MODE_TERMINATED;
+  log_message(instance, STATUS_DONE, "terminated at time %g", instance->situation->time);
+}

@@ -1,0 +1,188 @@
+#include "fmi/values.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "fmi/check.h"
+#include "instance/initial_state.h"
+#include "stepping/reading.h"
+
+static enum Status worse(enum Status first, enum Status second) {
+  return first > second ? first : second;
+}
+
+/* Whether a variable has another value at the start than the one that was set. */
+static bool follows_start(unsigned reference) {
+  if (reference >= lagrangian.variable_count) return false;
+  enum VariableKind kind = lagrangian.variables[reference].kind;
+  return kind != VARIABLE_TIME && kind != VARIABLE_INPUT && kind != VARIABLE_PARAMETER && kind != VARIABLE_STATISTIC;
+}
+
+/* Lets the variables be read, up to reading_end(). */
+static void begin_reading(struct Instance *instance, const unsigned *reference, size_t count, const char *function) {
+  bool any = false;
+  for (size_t i = 0; i < count; i++) any |= follows_start(reference[i]);
+  if (any) reading_begin(instance, function);
+}
+
+static enum Status get_values(struct Instance *instance, const unsigned *reference, size_t count, double *value,
+                              const char *function) {
+  enum Status status = STATUS_DONE;
+  for (size_t i = 0; i < count; i++)
+    if (check_reference(instance, reference[i], TYPE_REAL, function) == NULL) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++)
+    status = worse(status, evaluate_variable(instance, &lagrangian.variables[reference[i]], &value[i]));
+  return status;
+}
+
+enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
+                       const char *function) {
+  begin_reading(instance, reference, count, function);
+  enum Status status = get_values(instance, reference, count, value, function);
+  reading_end(instance);
+  return status;
+}
+
+static enum Status get_whole_values(struct Instance *instance, const unsigned *reference, size_t count, int *value,
+                                    enum VariableType type, const char *function) {
+  for (size_t i = 0; i < count; i++) {
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
+    if (variable == NULL) return STATUS_ERROR;
+    bool is_contact = variable->kind == VARIABLE_CONTACT;
+    if (is_contact) evaluate_prepare(instance); /* before the start it follows from the state */
+    if (is_contact || variable->kind == VARIABLE_PARAMETER) value[i] = (int)instance->parameter[variable->index];
+    else {
+      int64_t statistic = instance->situation->statistics[variable->index];
+      value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
+    }
+  }
+  return STATUS_DONE;
+}
+
+enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
+                             enum VariableType type, const char *function) {
+  begin_reading(instance, reference, count, function);
+  enum Status status = get_whole_values(instance, reference, count, value, type, function);
+  reading_end(instance);
+  return status;
+}
+
+enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,
+                              const char *function) {
+  for (size_t i = 0; i < count; i++) {
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER, function);
+    if (variable == NULL) return STATUS_ERROR;
+    if (variable->kind != VARIABLE_STATISTIC)
+      return log_error(instance, "%s: '%s' is no count", function, variable->name);
+    value[i] = instance->situation->statistics[variable->index];
+  }
+  return STATUS_DONE;
+}
+
+/* Whether this kind of variable may be set now. */
+static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
+  switch (variable->kind) {
+  case VARIABLE_INPUT: return true;
+  case VARIABLE_PARAMETER: return instance->situation->mode != MODE_CONTINUOUS_TIME;
+  case VARIABLE_MODE:
+  case VARIABLE_STATE: return is_before_start(instance);
+  default: return false;
+  }
+}
+
+static enum Status refuse_calculated(struct Instance *instance, const struct ScalarVariable *variable,
+                                     const char *function) {
+  if (*variable->follows_from == '\0')
+    return log_error(instance, "%s: '%s' is calculated and cannot be set", function, variable->name);
+  return log_error(instance, "%s: '%s' is calculated from other parameters (%s) and cannot be set; set those instead",
+                   function, variable->name, variable->follows_from);
+}
+
+static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type,
+                               const char *function) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, type, function);
+  if (variable == NULL) return STATUS_ERROR;
+  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable, function);
+  if (!is_settable(instance, variable))
+    return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
+                     instance_mode_name(instance));
+  if (!isfinite(value))
+    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
+                     value);
+  if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
+    return log_error(instance, "%s: the value for '%s' is %g; expected true or false, which are 1 and 0", function,
+                     variable->name, value);
+  if (value < variable->minimum || value > variable->maximum)
+    return log_error(instance, "%s: %g for '%s' is outside its range from %g to %g", function, value, variable->name,
+                     variable->minimum, variable->maximum);
+  return STATUS_DONE;
+}
+
+/* A value ends what values_set_input_derivatives() said for an earlier step; what it said for the step to come holds. */
+static void end_polynomial(struct Instance *instance, size_t input) {
+  if (instance->situation->input_derivatives_set) return;
+  for (size_t order = 0; order < INPUT_ORDER; order++)
+    instance->input_derivatives[order * lagrangian.input_count + input] = 0.0;
+}
+
+static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+  if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
+  if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);
+  double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
+                   : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
+                                                      : &instance->parameter[variable->index];
+  if (*target == value) return;
+  *target = value;
+  instance->situation->changed = CHANGED_VALUES;
+  instance->foresight = FORESIGHT_STALE;
+  if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
+}
+
+enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,
+                       const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_value(instance, reference[i], value[i], TYPE_REAL, function) != STATUS_DONE) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  if (is_before_start(instance)) initial_state_follow(instance);
+  return STATUS_DONE;
+}
+
+enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
+                             enum VariableType type, const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_value(instance, reference[i], value[i], type, function) != STATUS_DONE) return STATUS_ERROR;
+  for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  if (is_before_start(instance)) initial_state_follow(instance);
+  return STATUS_DONE;
+}
+
+static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value,
+                                          const char *function) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
+  if (variable == NULL) return STATUS_ERROR;
+  if (variable->kind != VARIABLE_INPUT) return log_error(instance, "%s: '%s' is no input", function, variable->name);
+  if (order < 1 || order > INPUT_ORDER)
+    return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", function, order,
+                     variable->name, INPUT_ORDER);
+  if (!isfinite(value))
+    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
+                     value);
+  return STATUS_DONE;
+}
+
+enum Status values_set_input_derivatives(struct Instance *instance, const unsigned *reference, size_t count,
+                                         const int *order, const double *value, const char *function) {
+  for (size_t i = 0; i < count; i++)
+    if (check_input_derivative(instance, reference[i], order[i], value[i], function) != STATUS_DONE)
+      return STATUS_ERROR;
+  size_t inputs = lagrangian.input_count;
+  if (!instance->situation->input_derivatives_set)
+    memset(instance->input_derivatives, 0, INPUT_ORDER * inputs * sizeof *instance->input_derivatives);
+  for (size_t i = 0; i < count; i++)
+    instance->input_derivatives[(size_t)(order[i] - 1) * inputs + lagrangian.variables[reference[i]].index] = value[i];
+  instance->situation->input_derivatives_set = 1;
+  instance->situation->changed = CHANGED_VALUES;
+  return STATUS_DONE;
+}

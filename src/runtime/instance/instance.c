@@ -1,0 +1,135 @@
+#include "instance/instance.h"
+
+#include <string.h>
+
+#include "instance/initial_state.h"
+#include "instance/projection.h"
+#include "instance/solver.h"
+#include "instance/switching.h"
+#include "stepping/start.h"
+
+static size_t set_count(void) {
+  return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
+}
+
+static size_t value_count(void) {
+  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count + set_count();
+}
+
+size_t situation_size(void) {
+  bool saves = lagrangian.solver != NULL && lagrangian.solver->saved_size != NULL;
+  return sizeof(struct Situation) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
+}
+
+/* FNV-1a */
+uint64_t situation_checksum(const void *situation) {
+  const unsigned char *bytes = situation;
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (size_t i = 0; i < situation_size(); i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  return hash;
+}
+
+void instance_reset(struct Instance *instance) {
+  memset(instance->situation, 0, situation_size());
+  instance->situation->mode = MODE_INSTANTIATED;
+  instance->situation->kind = (int32_t)instance->kind;
+  instance->situation->tolerance = lagrangian.tolerance;
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    if (variable->kind == VARIABLE_STATE) instance->state[variable->index] = variable->start;
+    if (variable->kind == VARIABLE_INPUT) instance->input[variable->index] = variable->start;
+    if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
+      instance->parameter[variable->index] = variable->start;
+  }
+  initial_state_follow(instance);
+  instance->situation->changed = CHANGED_VALUES;
+  instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->told_early_reading = instance->told_impossible_start = false;
+  instance->foresight = FORESIGHT_STALE;
+  instance->told_singularity = 0;
+}
+
+/* Systems without constraints find them among the derivatives of the state. */
+static size_t acceleration_count(void) {
+  return lagrangian.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraint_count;
+}
+
+static size_t switching_work_count(void) {
+  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + 2 * lagrangian.state_count : 0;
+}
+
+static size_t evaluation_count(void) {
+  return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + switching_work_count() +
+         start_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+         lagrangian.parameter_count + 1;
+}
+
+void instance_use(struct Instance *instance, struct Situation *situation) {
+  instance->situation = situation;
+  instance->state = instance->situation->values;
+  instance->input = instance->state + lagrangian.state_count;
+  instance->parameter = instance->input + lagrangian.input_count;
+  instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
+  instance->state_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
+  instance->saved = instance->state_was_set + set_count();
+}
+
+/* Divides a block of memory among the arrays. */
+static void lay_out(struct Instance *instance, double *evaluation) {
+  instance->prepared = evaluation;
+  instance->point_work = instance->prepared + lagrangian.prepared_count;
+  instance->projection_work = instance->point_work + lagrangian.work_count;
+  instance->switching_work = instance->projection_work + projection_work_count();
+  instance->start_work = instance->switching_work + switching_work_count();
+  instance->acceleration = instance->start_work + start_work_count();
+  if (lagrangian.switching != NULL)
+    instance->event_state = instance->switching_work + lagrangian.switching->work_count();
+  instance->work = instance->acceleration + 2 * acceleration_count();
+}
+
+bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
+  *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
+  bool foresees = lagrangian.switching != NULL && kind == KIND_CO_SIMULATION;
+  double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
+  struct Situation *situation = memory->allocate(1, situation_size());
+  if (foresees) instance->foreseen = memory->allocate(1, situation_size());
+  if (situation != NULL && evaluation != NULL && (!foresees || instance->foreseen != NULL)) {
+    instance_use(instance, situation);
+    lay_out(instance, evaluation);
+    instance_reset(instance);
+    return true;
+  }
+  if (situation != NULL) memory->free(situation);
+  if (evaluation != NULL) memory->free(evaluation);
+  if (instance->foreseen != NULL) memory->free(instance->foreseen);
+  return false;
+}
+
+void instance_destroy(struct Instance *instance) {
+  if (instance->solver_memory != NULL) lagrangian.solver->destroy(instance);
+  instance->memory.free(instance->prepared);
+  instance->memory.free(instance->situation);
+  if (instance->foreseen != NULL) instance->memory.free(instance->foreseen);
+}
+
+void instance_restore(struct Instance *instance, const void *situation) {
+  memcpy(instance->situation, situation, situation_size());
+  instance->prepared_is_stale = instance->solver_is_stale = true;
+  instance->foresight = FORESIGHT_STALE;
+  instance->told_singularity = 0;
+}
+
+const char *instance_mode_name(const struct Instance *instance) {
+  static const char *const names[MODE_COUNT] = {
+      [MODE_INSTANTIATED] = "instantiated",
+      [MODE_INITIALIZATION] = "initialization mode",
+      [MODE_EVENT] = "event mode",
+      [MODE_CONTINUOUS_TIME] = "continuous-time mode",
+      [MODE_STEP_COMPLETE] = "step complete",
+      [MODE_STEP_FAILED] = "step failed",
+      [MODE_TERMINATED] = "terminated",
+      [MODE_ERROR] = "error",
+      [MODE_INTERMEDIATE_UPDATE] = "intermediate update mode",
+  };
+  return names[instance->situation->mode];
+}

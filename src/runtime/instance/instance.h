@@ -1,0 +1,132 @@
+/* One instance of the FMU, for any interface: nothing here is shared between instances. */
+#ifndef INSTANCE_H
+#define INSTANCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "instance/log.h"
+#include "lagrangian.h"
+
+enum { INPUT_ORDER = 3 }; /* the highest input derivative; an input is a polynomial over a step */
+
+enum Kind { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
+
+/* Where an instance stands in its life. */
+enum Mode {
+  MODE_INSTANTIATED,
+  MODE_INITIALIZATION,
+  MODE_EVENT,
+  MODE_CONTINUOUS_TIME,
+  MODE_STEP_COMPLETE,
+  MODE_STEP_FAILED,
+  MODE_TERMINATED,
+  MODE_ERROR,
+  MODE_INTERMEDIATE_UPDATE, /* within a communication step, while values of it are told */
+  MODE_COUNT
+};
+
+/*
+ * Since the last step: nothing; state, inputs or parameters; the modes and the state by an event, which agree; or what makes
+ * the solver start anew without a value that was set, as at the start and where the polynomials of inputs end.
+ */
+enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT, CHANGED_COURSE };
+
+/* What the next step begins with, see foresight.h: to be found; known; or the present situation. */
+enum Foresight { FORESIGHT_STALE, FORESIGHT_READY, FORESIGHT_NONE };
+
+/* From one time to a later one. */
+struct Span {
+  double start, end;
+};
+
+/*
+ * All that a saved state of the instance holds, in one block of memory without pointers. The values are state, input,
+ * parameter, the input derivatives of order 1, then 2, then 3, where start values follow from parameters which states
+ * were set (1, else 0), and what the solver keeps.
+ */
+struct Situation {
+  int32_t mode; /* enum Mode */
+  int32_t kind; /* enum Kind */
+  int32_t experiment_defined, stop_time_defined;
+  int32_t input_derivatives_set; /* for the step to come */
+  int32_t changed;               /* enum Change: what was, since the last step */
+  int32_t waiting_event; /* 1 + the indicator whose zero ended the last step, where stops_at_events; 0 for none */
+  int32_t gathered;      /* such events one after another that the time hardly tells apart */
+  int64_t statistics[STATISTIC_COUNT];
+  double time, start_time, stop_time;
+  double tolerance;
+  double suggested_step; /* of a solver that starts anew, not clipped by the communication step; 0 for none */
+  struct Span last_step; /* of the solver, which may end after time */
+  double values[];
+};
+
+struct Allocator {
+  void *(*allocate)(size_t count, size_t size); /* zeros */
+  void (*free)(void *block);
+};
+
+struct CommunicationStep;
+
+struct Instance {
+  struct Allocator memory;
+  struct Log log;
+  enum Kind kind;
+  struct Situation *situation;
+  struct Situation
+      *foreseen; /* the other one of the two in foresight.h; NULL in FMUs that do not switch, and of exchange */
+  enum Foresight foresight;
+  bool is_foreseeing;                                                    /* the two are exchanged */
+  double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
+  void *saved; /* what the solver keeps inside situation->values */
+  double *prepared;
+  bool prepared_is_stale;
+  bool modes_stay;            /* before the start too: those of the start are being found, or shown */
+  bool solver_is_stale;       /* the situation was replaced: what the solver keeps outside of it no longer counts */
+  bool told_early_reading;    /* that a variable was read before it should be, since the last reset */
+  bool start_exists;          /* of the values that it was looked for last, see start.h */
+  bool shows_start;           /* the values are those of the start, not those that were set */
+  bool told_impossible_start; /* that there is none, since the last reset */
+  uint64_t told_singularity;  /* the checksum of the situation whose lack of accelerations was logged last */
+  int singular;               /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  const char *limited_by;     /* the elementary function that shortened the solver's last step; NULL for none */
+  double *work;               /* 3 state_count + 2 input_count + parameter_count, for evaluations */
+  double *point_work;         /* lagrangian.work_count, for generated functions */
+  double *projection_work;    /* projection_work_count() */
+  double *switching_work;     /* switching->work_count() */
+  double *start_work;         /* start_work_count() */
+  double departure;           /* the sign with which a branch that rested at 0 leaves it, as found last */
+  bool uses_event_mode;       /* of a co-simulation: the importer goes through events between steps */
+  bool stops_at_events;       /* and an event ends the step */
+  bool was_at_zero;           /* what changed its sign last had not left 0 by more than rounding before */
+  double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
+  double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
+  void *solver_memory;
+  /* Is told of each time that the solver comes to within a communication step, see intermediate.h; NULL for none. */
+  void (*observe)(struct Instance *instance, struct CommunicationStep *step, double time);
+  const struct Intermediate *intermediate; /* for it */
+};
+
+/* False, and nothing is allocated, where there is no memory. Logs nothing. */
+bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log);
+void instance_destroy(struct Instance *instance);
+
+/* Lets a block of situation_size() bytes be the situation. */
+void instance_use(struct Instance *instance, struct Situation *situation);
+
+/* As after creation: start values, nothing defined. */
+void instance_reset(struct Instance *instance);
+
+/* Goes back to a situation of this instance, situation_size() bytes. */
+void instance_restore(struct Instance *instance, const void *situation);
+
+/* The mode as messages name it. */
+const char *instance_mode_name(const struct Instance *instance);
+
+/* Bytes of the situation of this system. */
+size_t situation_size(void);
+
+/* Of so many bytes that are a situation, which tells different ones apart. */
+uint64_t situation_checksum(const void *situation);
+
+#endif

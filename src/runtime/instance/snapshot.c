@@ -1,0 +1,167 @@
+#include "instance/snapshot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "instance/solver.h"
+
+/* Comes before the situation in the block. */
+struct Header {
+  char magic[8];
+  uint32_t version;
+  uint32_t size; /* of the situation */
+  char guid[40];
+  uint64_t checksum; /* of the situation */
+};
+
+static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
+enum { VERSION = 4 };
+
+size_t snapshot_size(void) {
+  return sizeof(struct Header) + situation_size();
+}
+
+static struct Header header_of(const void *situation) {
+  struct Header header = {.version = VERSION, .size = (uint32_t)situation_size()};
+  memcpy(header.magic, magic, sizeof magic);
+  strncpy(header.guid, lagrangian.guid, sizeof header.guid - 1);
+  header.checksum = situation_checksum(situation);
+  return header;
+}
+
+bool snapshot_are_counts(const int64_t *counts, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (counts[i] < 0 || counts[i] > INT64_MAX / 2) return false;
+  return true;
+}
+
+bool snapshot_is_finite(const void *numbers, size_t count) {
+  const char *bytes = numbers;
+  for (size_t i = 0; i < count; i++) {
+    double number;
+    memcpy(&number, bytes + i * sizeof number, sizeof number);
+    if (!isfinite(number)) return false;
+  }
+  return true;
+}
+
+/* Whether such an instance can come to the mode. */
+static bool has_mode(const struct Instance *instance, int32_t mode) {
+  bool of_exchange = mode == MODE_EVENT || mode == MODE_CONTINUOUS_TIME;
+  bool of_steps = mode == MODE_STEP_COMPLETE || mode == MODE_STEP_FAILED;
+  if (mode == MODE_EVENT && instance->uses_event_mode) return true;
+  return mode >= 0 && mode < MODE_INTERMEDIATE_UPDATE &&
+         !(instance->kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
+}
+
+static bool can_wait(const struct Instance *instance, const struct Situation *fixed) {
+  if (fixed->gathered < 0 || fixed->gathered > 100) return false;
+  if (fixed->waiting_event == 0) return true;
+  return instance->stops_at_events && fixed->waiting_event > 0 &&
+         (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
+}
+
+/* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
+static bool may_lack_state(int32_t mode) {
+  return lagrangian.initial_state != NULL &&
+         (mode == MODE_INSTANTIATED || mode == MODE_INITIALIZATION || mode == MODE_ERROR);
+}
+
+/* Whether each of the numbers is 0 or 1. */
+static bool are_flags(const void *numbers, size_t count) {
+  const char *bytes = numbers;
+  for (size_t i = 0; i < count; i++) {
+    double number;
+    memcpy(&number, bytes + i * sizeof number, sizeof number);
+    if (number != 0.0 && number != 1.0) return false;
+  }
+  return true;
+}
+
+/* Whether the integers are what each of them can be. */
+static bool are_choices(const struct Situation *fixed) {
+  const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
+  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+    if (flags[i] != 0 && flags[i] != 1) return false;
+  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE;
+}
+
+/* Whether the element of the parameters is a whole number in this range. */
+static bool is_whole(const char *parameters, size_t index, double lowest, double highest) {
+  double value;
+  memcpy(&value, parameters + index * sizeof value, sizeof value);
+  return value == floor(value) && value >= lowest && value <= highest;
+}
+
+/* Whether the parameters are of their types. */
+static bool have_types(const char *parameters) {
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    if (variable->kind != VARIABLE_PARAMETER || variable->type == TYPE_REAL) continue;
+    bool is_flag = variable->type == TYPE_BOOLEAN;
+    if (!is_whole(parameters, variable->index, is_flag ? 0.0 : INT32_MIN, is_flag ? 1.0 : INT32_MAX)) return false;
+  }
+  return true;
+}
+
+/* Whether the modes that events alone set are among those that they set. */
+static bool are_modes(const char *parameters) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches == NULL) return true;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (!is_whole(parameters, switches->branches[i].mode, -1.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (!is_whole(parameters, switches->contacts[i].mode, 0.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (!is_whole(parameters, switches->frictions[i].mode, -1.0, 1.0)) return false;
+  return true;
+}
+
+/*
+ * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
+ * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
+ */
+static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
+  const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,    fixed->tolerance,
+                            fixed->suggested_step, fixed->last_step.start, fixed->last_step.end};
+  size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
+  size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
+  size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
+  return has_mode(instance, fixed->mode) && are_choices(fixed) && can_wait(instance, fixed) &&
+         snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
+         snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
+         fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
+         (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
+         are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
+         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
+         are_modes(situation + parameters) &&
+         (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
+          lagrangian.solver->could_save(fixed, situation + saved));
+}
+
+const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size) {
+  struct Header header;
+  if (size < sizeof header) return "they are cut off";
+  memcpy(&header, block, sizeof header);
+  if (memcmp(header.magic, magic, sizeof magic) != 0) return "they are no state of such an FMU";
+  if (header.version != VERSION) return "they are of another version";
+  if (strncmp(header.guid, lagrangian.guid, sizeof header.guid) != 0) return "they are of another model";
+  if (size != snapshot_size()) return "they have another length";
+  const char *situation = (const char *)block + sizeof header;
+  struct Header expected = header_of(situation);
+  struct Situation fixed;
+  memcpy(&fixed, situation, sizeof fixed);
+  if (memcmp(&header, &expected, sizeof header) != 0) return "they are damaged";
+  if (fixed.kind != (int32_t)instance->kind) return "they are of the other kind of instance";
+  return is_possible(instance, &fixed, situation) ? NULL : "no instance can have saved what they hold";
+}
+
+void snapshot_take(const struct Instance *instance, void *block) {
+  struct Header header = header_of(instance->situation);
+  memcpy(block, &header, sizeof header);
+  memcpy((char *)block + sizeof header, instance->situation, situation_size());
+}
+
+void snapshot_restore(struct Instance *instance, const void *block) {
+  instance_restore(instance, (const char *)block + sizeof(struct Header));
+}

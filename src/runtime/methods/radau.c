@@ -1,0 +1,429 @@
+/*
+ * Radau IIA of orders 5, 9 and 13 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and
+ * IV.8; Stiff differential equations solved by Radau methods, 1999). The stages z_i = Y_i - y0 are found by Newton's
+ * method in the coordinates w of the eigenvectors of A^-1, z = V w, where the linear systems fall apart. A step depends on
+ * nothing but what the situation holds: the state at its start, the stages, and a few numbers of the control.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "instance/snapshot.h"
+#include "methods/first_terms.h"
+#include "methods/radau.h"
+#include "methods/radau_tables.h"
+
+/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+static const double radau_safety = 0.05;
+
+/* As a share of the time: in much less, rounding is all that changes. */
+static const double shortest_first_step = 1e-12;
+
+enum {
+  ITERATION_LIMIT = 12,
+  ATTEMPT_LIMIT = 60,
+  STEPS_OF_CAUTION = 10,
+  METHOD_COUNT = sizeof methods / sizeof *methods
+};
+
+/* What the situation keeps; the state at the start of the last step and its stages follow. */
+struct RadauSaved {
+  double step;        /* of the last step; 0 for none: there is no polynomial */
+  double next;        /* the step that the control would take */
+  double error;       /* of the last step, in units of the tolerance */
+  double contraction; /* of Newton's method in the last step */
+  int64_t method;     /* of the last step: its place among the methods */
+  int64_t next_method;
+  int64_t steps; /* since Newton's method failed last, as many as matter */
+};
+
+struct Radau {
+  struct RadauSaved *saved;
+  double *start, *stages; /* in the situation: states, STAGE_LIMIT x states */
+  struct RadauSystems systems;
+  double *state, *scale, *first; /* states: where the step being made starts, what an error of 1 is there, f there */
+  double *trial;                 /* states: workspace */
+  double *z, *rates;             /* STAGE_LIMIT x states: of the step being made */
+  struct Complex *w;             /* SYSTEM_LIMIT x states */
+  Series *series;                /* of first_terms.h */
+};
+
+static size_t radau_saved_size(void) {
+  return sizeof(struct RadauSaved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
+}
+
+static bool radau_could_save(const struct Situation *situation, const void *saved) {
+  struct RadauSaved first;
+  memcpy(&first, saved, sizeof first);
+  return first.method >= 0 && first.method < METHOD_COUNT && first.next_method >= 0 &&
+         first.next_method < METHOD_COUNT && first.steps >= 0 && first.steps <= STEPS_OF_CAUTION && first.step >= 0.0 &&
+         first.next >= 0.0 && first.error >= 0.0 && first.contraction >= 0.0 &&
+         situation->last_step.end == situation->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
+         snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
+}
+
+static bool radau_create(struct Instance *instance) {
+  size_t states = lagrangian.state_count;
+  size_t numbers = (4 + 2 * STAGE_LIMIT + 2 * SYSTEM_LIMIT) * states + 1 + radau_systems_size();
+  size_t rows = first_terms_rows() * SERIES_LENGTH;
+  struct Radau *radau = instance->memory.allocate(1, sizeof *radau + (numbers + rows) * sizeof(double));
+  if (radau == NULL) return solver_lacks_memory(instance);
+  radau->saved = instance->saved;
+  radau->start = (double *)(radau->saved + 1);
+  radau->stages = radau->start + states;
+  radau->w = (struct Complex *)(radau + 1);
+  radau->state = (double *)(radau->w + SYSTEM_LIMIT * states);
+  radau->scale = radau->state + states;
+  radau->first = radau->scale + states;
+  radau->trial = radau->first + states;
+  radau->z = radau->trial + states;
+  radau->rates = radau->z + STAGE_LIMIT * states;
+  double *rest = radau->rates + STAGE_LIMIT * states;
+  radau->series = (Series *)rest;
+  radau_systems_place(&radau->systems, rest + rows);
+  instance->solver_memory = radau;
+  return true;
+}
+
+static void radau_destroy(struct Instance *instance) {
+  instance->memory.free(instance->solver_memory);
+  instance->solver_memory = NULL;
+}
+
+double radau_tolerance(const struct Instance *instance) {
+  return fmax(radau_safety * instance->situation->tolerance, 4 * DBL_EPSILON);
+}
+
+static int64_t method_for(double tolerance) {
+  return tolerance >= 1e-4 ? 0 : tolerance >= 1e-7 ? 1 : 2;
+}
+
+static bool radau_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
+  struct Radau *radau = instance->solver_memory;
+  struct RadauSaved *saved = radau->saved;
+  (void)step;
+  memcpy(radau->start, state, lagrangian.state_count * sizeof(double));
+  memset(radau->stages, 0, STAGE_LIMIT * lagrangian.state_count * sizeof(double));
+  saved->step = saved->error = 0.0;
+  saved->contraction = 1.0;
+  saved->method = saved->next_method = method_for(instance->situation->tolerance);
+  saved->steps = STEPS_OF_CAUTION;
+  return true;
+}
+
+static void radau_resume(struct Instance *instance) {
+  (void)instance; /* all that counts is in the situation */
+}
+
+/* The collocation polynomial less the state at its start, at this share of the step. */
+static void evaluate_polynomial(const struct RadauMethod *method, const double *stages, double share, double *change) {
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) change[k] = 0.0;
+  double before[STAGE_LIMIT], after = share; /* products of the distances from the nodes before and after one */
+  before[0] = 1.0;
+  for (int i = 1; i < method->stages; i++) before[i] = before[i - 1] * (share - method->node[i - 1]);
+  for (int i = method->stages; i-- > 0;) {
+    double weight = method->weight[i] * before[i] * after;
+    after *= share - method->node[i];
+    for (size_t k = 0; k < states; k++) change[k] += weight * stages[(size_t)i * states + k];
+  }
+}
+
+static bool radau_interpolate(struct Instance *instance, double time, double *state) {
+  const struct Radau *radau = instance->solver_memory;
+  const struct RadauSaved *saved = radau->saved;
+  const struct RadauMethod *method = &methods[saved->method];
+  const struct Span *last = &instance->situation->last_step;
+  size_t states = lagrangian.state_count;
+  const double *end = radau->stages + (size_t)(method->stages - 1) * states;
+  if (saved->step == 0.0) memset(radau->trial, 0, states * sizeof(double));
+  else if (time == last->end) memcpy(radau->trial, end, states * sizeof(double));
+  else evaluate_polynomial(method, radau->stages, (time - last->start) / saved->step, radau->trial);
+  for (size_t k = 0; k < states; k++) state[k] = radau->start[k] + radau->trial[k];
+  return true;
+}
+
+static double norm(const struct Radau *radau, const double *vector) {
+  size_t states = lagrangian.state_count;
+  double sum = 0.0;
+  for (size_t k = 0; k < states; k++) sum += vector[k] / radau->scale[k] * (vector[k] / radau->scale[k]);
+  return sqrt(sum / (double)states);
+}
+
+/* Newton's starting values: the polynomial of the last step, continued; without one, no change. */
+static void predict(struct Radau *radau, const struct RadauMethod *method, double step) {
+  const struct RadauSaved *saved = radau->saved;
+  const struct RadauMethod *last = &methods[saved->method];
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    double *z = radau->z + (size_t)i * states;
+    memset(z, 0, states * sizeof *z);
+    if (saved->step == 0.0) continue;
+    evaluate_polynomial(last, radau->stages, 1.0 + method->node[i] * step / saved->step, z);
+    const double *end = radau->stages + (size_t)(last->stages - 1) * states;
+    for (size_t k = 0; k < states; k++) z[k] -= end[k];
+  }
+}
+
+/* Row j of V^-1 times the stages of one state variable. */
+static struct Complex to_eigenvector(const struct RadauMethod *method, int j, const double *stages) {
+  size_t states = lagrangian.state_count;
+  struct Complex sum = {0.0, 0.0};
+  for (int i = 0; i < method->stages; i++) {
+    double stage = stages[(size_t)i * states];
+    sum.real += method->back_real[j][i] * stage;
+    sum.imaginary += method->back_imaginary[j][i] * stage;
+  }
+  return sum;
+}
+
+/* w = V^-1 z for the eigenvalues that are kept. */
+static void to_eigenvectors(const struct RadauMethod *method, const double *z, struct Complex *w) {
+  size_t states = lagrangian.state_count;
+  for (int j = 0; j <= method->stages / 2; j++) {
+    for (size_t k = 0; k < states; k++) {
+      w[(size_t)j * states + k] = to_eigenvector(method, j, z + k);
+    }
+  }
+}
+
+/* z = V w; of conjugate pairs, one is kept. */
+static void from_eigenvectors(const struct RadauMethod *method, const struct Complex *w, double *z) {
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++) {
+      double sum = method->vector_real[i][0] * w[k].real;
+      for (int j = 1; j <= method->stages / 2; j++) {
+        const struct Complex part = w[(size_t)j * states + k];
+        sum += 2.0 * (method->vector_real[i][j] * part.real - method->vector_imaginary[i][j] * part.imaginary);
+      }
+      z[(size_t)i * states + k] = sum;
+    }
+  }
+}
+
+/* f at the stages. False where it does not exist. */
+static bool evaluate_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
+                            double time, double step) {
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++) radau->trial[k] = radau->state[k] + radau->z[(size_t)i * states + k];
+    if (!solver_derivatives(instance, time + method->node[i] * step, radau->trial, radau->rates + (size_t)i * states))
+      return false;
+  }
+  return true;
+}
+
+/* One iteration of Newton's method; returns the norm of the change of z. */
+static double iterate(struct Radau *radau, const struct RadauMethod *method) {
+  size_t states = lagrangian.state_count;
+  struct RadauSystems *systems = &radau->systems;
+  for (int j = 0; j <= method->stages / 2; j++) {
+    struct Complex *w = radau->w + (size_t)j * states, mu = systems->mu[j];
+    for (size_t k = 0; k < states; k++) {
+      struct Complex rate = to_eigenvector(method, j, radau->rates + k);
+      systems->right_side[k].real = rate.real - (mu.real * w[k].real - mu.imaginary * w[k].imaginary);
+      systems->right_side[k].imaginary = rate.imaginary - (mu.real * w[k].imaginary + mu.imaginary * w[k].real);
+    }
+    radau_systems_solve(systems, j);
+    for (size_t k = 0; k < states; k++) {
+      w[k].real += systems->solution[k].real;
+      w[k].imaginary += systems->solution[k].imaginary;
+    }
+  }
+  memcpy(radau->rates, radau->z, (size_t)method->stages * states * sizeof(double));
+  from_eigenvectors(method, radau->w, radau->z);
+  double sum = 0.0;
+  for (int i = 0; i < method->stages; i++) {
+    for (size_t k = 0; k < states; k++)
+      radau->trial[k] = radau->z[(size_t)i * states + k] - radau->rates[(size_t)i * states + k];
+    double change = norm(radau, radau->trial);
+    sum += change * change;
+  }
+  return sqrt(sum / method->stages);
+}
+
+/* Solves for the stages; the number of iterations, or 0 where Newton's method does not converge. */
+static int solve_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
+                        double step, double *contraction) {
+  double relative = radau_tolerance(instance);
+  double enough = fmax(10 * DBL_EPSILON / relative, fmin(0.01, sqrt(relative))), before = 0.0;
+  double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
+  predict(radau, method, step);
+  to_eigenvectors(method, radau->z, radau->w);
+  *contraction = expected; /* what one iteration tells nothing about grows from step to step */
+  for (int iteration = 1; iteration <= ITERATION_LIMIT; iteration++) {
+    if (!evaluate_stages(instance, radau, method, time, step)) return 0;
+    double change = iterate(radau, method);
+    if (!isfinite(change)) return 0;
+    if (iteration > 1) {
+      double theta = change / before;
+      *contraction = iteration == 2 ? theta : sqrt(theta * *contraction);
+      bool rounds = change <= 200 * DBL_EPSILON / relative; /* rounding alone changes the iterates */
+      if (*contraction >= 0.99 && !rounds) return 0;
+      expected = rounds ? 0.0 : *contraction / (1.0 - *contraction);
+      if (expected * change * pow(*contraction, ITERATION_LIMIT - 1 - iteration) > enough && !rounds) return 0;
+    }
+    before = change;
+    if (expected * change <= enough || change == 0.0) return iteration;
+  }
+  return 0;
+}
+
+/* (mu - J)^-1 (f + the error's weights times the stages / step); the estimate is left in trial. */
+static double estimate(struct Radau *radau, const struct RadauMethod *method, const double *rate, double step) {
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) {
+    double sum = 0.0;
+    for (int i = 0; i < method->stages; i++) sum += method->error[i] * radau->z[(size_t)i * states + k];
+    radau->systems.right_side[k] = (struct Complex){rate[k] + sum / step, 0.0};
+  }
+  radau_systems_solve(&radau->systems, 0);
+  for (size_t k = 0; k < states; k++) radau->trial[k] = radau->systems.solution[k].real;
+  return norm(radau, radau->trial);
+}
+
+/* A second filtering with f at the state moved by the estimate takes what is stiff out of it. */
+static double estimate_error(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
+                             double time, double step, bool is_sudden) {
+  double error = estimate(radau, method, radau->first, step);
+  if (error < 1.0 || !is_sudden) return fmax(error, 1e-10);
+  size_t states = lagrangian.state_count;
+  for (size_t k = 0; k < states; k++) radau->trial[k] += radau->state[k];
+  if (!solver_derivatives(instance, time, radau->trial, radau->rates)) return error;
+  return fmax(estimate(radau, method, radau->rates, step), 1e-10);
+}
+
+/* What the step is multiplied by; the last two errors tell where they go. */
+static double factor_of_step(const struct RadauSaved *saved, const struct RadauMethod *method, double step,
+                             double error, int iterations) {
+  double power = 1.0 / (method->stages + 1);
+  double caution = 0.9 * (2.0 * ITERATION_LIMIT + 1.0) / (2.0 * ITERATION_LIMIT + iterations);
+  double factor = caution * pow(error, -power);
+  if (saved->step > 0.0 && saved->error > 0.0 && error < 1.0)
+    factor = fmin(factor, factor * step / saved->step * pow(saved->error / error, power));
+  return fmin(8.0, fmax(0.2, factor));
+}
+
+/* A first step that moves the state by a small share of its scale. */
+static double first_step(const struct Instance *instance, const struct Radau *radau, double length) {
+  double rate = norm(radau, radau->first) * radau_tolerance(instance);
+  return rate * length > 1.0 ? 1e-3 / rate : 1e-3 * length;
+}
+
+/*
+ * Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. NULL, or why
+ * that cannot be.
+ */
+static const char *begin(struct Instance *instance, struct Radau *radau, double time) {
+  double relative = radau_tolerance(instance);
+  radau_interpolate(instance, time, radau->state);
+  const char *problem = solver_project(instance, time, radau->state);
+  if (problem != NULL) return problem;
+  for (size_t k = 0; k < lagrangian.state_count; k++)
+    radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.nominal[k]);
+  bool is_solvable = solver_derivatives(instance, time, radau->state, radau->first) &&
+                     radau_systems_evaluate(instance, &radau->systems, time, radau->state);
+  return is_solvable ? NULL : "the equations have no solution there";
+}
+
+/*
+ * The step to try: what the control says, at first no more than the length of the communication step, of which less may be
+ * left behind an event, but always enough to change the time.
+ */
+static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
+  const struct RadauSaved *saved = radau->saved;
+  double step = saved->next;
+  if (saved->step == 0.0) {
+    step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
+    step = fmax(step, shortest_first_step * fabs(time));
+  }
+  double longest = fmin(lagrangian.max_step, 2.0 * step);
+  return fmin(step, first_terms_step(instance, radau->series, time, radau->state, longest));
+}
+
+static void accept(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
+                   double step) {
+  struct Situation *situation = instance->situation;
+  size_t states = lagrangian.state_count;
+  memcpy(radau->start, radau->state, states * sizeof(double));
+  memcpy(radau->stages, radau->z, (size_t)method->stages * states * sizeof(double));
+  radau->saved->method = method - methods;
+  radau->saved->step = step;
+  situation->last_step = (struct Span){time, time + step};
+  situation->statistics[STATISTIC_STEPS]++;
+}
+
+/*
+ * A lower order where Newton's method hardly converges, as its starting values come from a polynomial of that order; a
+ * higher one again, up to what the tolerance asks for, where it converges well and has for a while.
+ */
+static void choose_method(const struct Instance *instance, struct RadauSaved *saved, bool failed) {
+  saved->steps = failed ? 0 : saved->steps < STEPS_OF_CAUTION ? saved->steps + 1 : STEPS_OF_CAUTION;
+  bool is_lowest = saved->next_method == 0,
+       is_highest = saved->next_method == method_for(instance->situation->tolerance);
+  if (!is_lowest && (failed || saved->contraction > 0.8)) saved->next_method--;
+  else if (!is_highest && saved->contraction < 0.002 && saved->steps == STEPS_OF_CAUTION) saved->next_method++;
+}
+
+static const char *radau_advance(struct Instance *instance, const struct CommunicationStep *communication) {
+  struct Radau *radau = instance->solver_memory;
+  struct RadauSaved *saved = radau->saved;
+  double time = instance->situation->last_step.end;
+  const char *problem = begin(instance, radau, time);
+  if (problem != NULL) return problem;
+  const struct RadauMethod *method = &methods[saved->next_method];
+  bool failed = false;
+  double step = trial_step(instance, radau, time, communication->end - communication->start);
+  for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
+    if (solver_rests(time, step)) return solver_resting;
+    double contraction = saved->contraction, error = 1.0;
+    int iterations = 0;
+    if (radau_systems_factor(&radau->systems, method, step))
+      iterations = solve_stages(instance, radau, method, time, step, &contraction);
+    failed |= iterations == 0;
+    if (iterations > 0) error = estimate_error(instance, radau, method, time, step, saved->step == 0.0 || attempt > 0);
+    double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
+    if (error < 1.0) {
+      accept(instance, radau, method, time, step);
+      saved->next = next;
+      saved->error = fmax(error, 1e-2);
+      saved->contraction = contraction;
+      choose_method(instance, saved, failed);
+      return NULL;
+    }
+    step = fmin(next, 0.9 * step);
+  }
+  return "no step is short enough";
+}
+
+void radau_try_first(struct Instance *instance, double step) {
+  struct Radau *radau = instance->solver_memory;
+  radau->saved->next = step;
+}
+
+double radau_next_step(const struct Instance *instance) {
+  const struct Radau *radau = instance->solver_memory;
+  return radau->saved->next;
+}
+
+int radau_stage_count(const struct Instance *instance) {
+  return methods[method_for(instance->situation->tolerance)].stages;
+}
+
+const double *radau_jacobian(const struct Instance *instance) {
+  const struct Radau *radau = instance->solver_memory;
+  return radau->systems.values;
+}
+
+const struct Solver solver_radau = {.name = "Radau",
+                                    .alternatives = "auto where rates are alike",
+                                    .saved_size = radau_saved_size,
+                                    .could_save = radau_could_save,
+                                    .create = radau_create,
+                                    .destroy = radau_destroy,
+                                    .restart = radau_restart,
+                                    .resume = radau_resume,
+                                    .advance = radau_advance,
+                                    .interpolate = radau_interpolate};

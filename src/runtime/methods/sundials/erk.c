@@ -1,0 +1,162 @@
+/*
+ * Dormand and Prince's explicit Runge-Kutta method of order 5(4), by ERKStep of SUNDIALS. Every communication step
+ * starts the solver anew from the state and the step size that the situation holds, so that it depends on nothing
+ * else.
+ */
+#include <math.h>
+
+#include <arkode/arkode_erkstep.h>
+
+#include "methods/sundials/sundials_support.h"
+
+/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+static const double safety = 0.1;
+
+struct Erk {
+  struct Sundials sundials;
+  N_Vector before; /* the state before a step */
+  N_Vector rate;   /* workspace for looking at a step */
+  double trial;    /* the length of the step to come */
+  void *arkode;
+};
+
+/* Brings the end of a step back to the constraints. */
+static int keep_constraints(realtype time, N_Vector state, void *data) {
+  return solver_project(data, time, N_VGetArrayPointer(state)) == NULL ? 0 : -1;
+}
+
+static bool configure(struct Instance *instance) {
+  struct Erk *erk = instance->solver_memory;
+  /* The motion goes on from a state inside of a step where it switches; else such a state is only told. */
+  int degree = lagrangian.switching != NULL ? 5 : 3;
+  SUNContext context = erk->sundials.context;
+  erk->before = N_VClone(erk->sundials.state);
+  erk->rate = N_VClone(erk->sundials.state);
+  erk->arkode = ERKStepCreate(sundials_right_side, instance->situation->time, erk->sundials.state, context);
+  return erk->arkode != NULL &&
+         sundials_succeeded(instance, ERKStepSetErrHandlerFn(erk->arkode, sundials_ignore_error, NULL),
+                            "ERKStepSetErrHandlerFn") &&
+         sundials_succeeded(instance, ERKStepSetUserData(erk->arkode, instance), "ERKStepSetUserData") &&
+         sundials_succeeded(instance, ERKStepSetTableNum(erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5),
+                            "ERKStepSetTableNum") &&
+         sundials_succeeded(instance, ERKStepSetMaxNumSteps(erk->arkode, lagrangian.max_steps),
+                            "ERKStepSetMaxNumSteps") &&
+         sundials_succeeded(instance, ERKStepSetMaxStep(erk->arkode, lagrangian.max_step), "ERKStepSetMaxStep") &&
+         (lagrangian.projection == NULL ||
+          sundials_succeeded(instance, ERKStepSetPostprocessStepFn(erk->arkode, keep_constraints),
+                             "ERKStepSetPostprocessStepFn")) &&
+         sundials_succeeded(instance, ERKStepSetMaxHnilWarns(erk->arkode, -1), "ERKStepSetMaxHnilWarns") &&
+         sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, degree), "ERKStepSetInterpolantDegree");
+}
+
+static bool create(struct Instance *instance) {
+  return sundials_create(instance, sizeof(struct Erk), configure);
+}
+
+/* Starts at time and the state there with a step of this length, 0 for one that ERKStep chooses. */
+static bool start_method(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
+  const struct Sundials *sundials = &erk->sundials;
+  return sundials_succeeded(instance, ERKStepReInit(erk->arkode, sundials_right_side, time, sundials->state),
+                            "ERKStepReInit") &&
+         sundials_succeeded(instance, ERKStepSVtolerances(erk->arkode, sundials->relative, sundials->tolerance),
+                            "ERKStepSVtolerances") &&
+         sundials_succeeded(instance, ERKStepSetInitStep(erk->arkode, fmin(first, end - time)), "ERKStepSetInitStep") &&
+         sundials_succeeded(instance, ERKStepSetStopTime(erk->arkode, end), "ERKStepSetStopTime");
+}
+
+/*
+ * Whether two values of the derivative of state i differ by as much as they are large, and by far more than the
+ * tolerance explains over a step.
+ */
+static bool differ(const struct Sundials *sundials, size_t i, double step, double one, double other) {
+  double weight =
+      sundials->relative * fabs(N_VGetArrayPointer(sundials->state)[i]) + N_VGetArrayPointer(sundials->tolerance)[i];
+  double difference = fabs(one - other);
+  return difference > 0.5 * fmax(fabs(one), fabs(other)) && step * difference > 20.0 * weight;
+}
+
+/* Whether the derivatives at both ends of the last step are alike, as those of most steps are. */
+static bool is_steady(const struct Erk *erk, double before, double time) {
+  N_Vector first = erk->sundials.inside, last = erk->rate;
+  if (ERKStepGetDky(erk->arkode, before, 1, first) < 0 || ERKStepGetDky(erk->arkode, time, 1, last) < 0) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    if (differ(&erk->sundials, i, time - before, N_VGetArrayPointer(first)[i], N_VGetArrayPointer(last)[i]))
+      return false;
+  return true;
+}
+
+/*
+ * Whether the cubic polynomial through the last step looks like a solution inside of it. The method looks at the right
+ * side in few places, and a step across a singularity may please its error estimate.
+ */
+static bool obeys_equations(struct Instance *instance, const struct Erk *erk, double before, double time) {
+  enum { SAMPLES = 8 };
+  double *derivative = instance->work + lagrangian.input_count;
+  if (is_steady(erk, before, time)) return true;
+  for (int k = 0; k < SAMPLES; k++) {
+    double place = before + (k + 0.5) / SAMPLES * (time - before);
+    N_Vector inside = erk->sundials.inside;
+    if (ERKStepGetDky(erk->arkode, place, 0, inside) < 0 || ERKStepGetDky(erk->arkode, place, 1, erk->rate) < 0 ||
+        !solver_derivatives(instance, place, N_VGetArrayPointer(inside), derivative))
+      return false;
+    for (size_t i = 0; i < lagrangian.state_count; i++)
+      if (differ(&erk->sundials, i, time - before, derivative[i], N_VGetArrayPointer(erk->rate)[i])) return false;
+  }
+  return true;
+}
+
+static bool restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
+  struct Erk *erk = instance->solver_memory;
+  sundials_load(instance, state, safety);
+  erk->trial = step->end - step->start;
+  return start_method(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step,
+                      step->end);
+}
+
+/*
+ * Where a step cannot be, as a trial stage has no right side or the polynomial does not obey the equations, a tenth of
+ * it is tried.
+ */
+static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
+  struct Erk *erk = instance->solver_memory;
+  struct Situation *situation = instance->situation;
+  N_Vector state = erk->sundials.state;
+  double before = situation->last_step.end, rest = step->end - before, time = before;
+  if (sundials_tiny_step(instance, step)) return NULL;
+  double longest = sundials_longest_step(instance, before, rest);
+  if (longest < rest && solver_rests(before, longest)) return solver_resting;
+  N_VScale(1.0, state, erk->before);
+  for (;;) {
+    ERKStepSetStopTime(erk->arkode, fmin(before + longest, step->end));
+    int flag = ERKStepEvolve(erk->arkode, step->end, state, &time, ARK_ONE_STEP);
+    if (flag >= 0 && obeys_equations(instance, erk, before, time)) break;
+    erk->trial = 0.1 * fmin(erk->trial, rest);
+    N_VScale(1.0, erk->before, state);
+    if (solver_rests(before, erk->trial)) return "the equations have no solution there, or steps would be too short";
+    if (!start_method(instance, erk, before, erk->trial, step->end)) return "SUNDIALS does not start again";
+  }
+  ERKStepGetCurrentStep(erk->arkode, &erk->trial);
+  situation->suggested_step = erk->trial;
+  situation->last_step = (struct Span){before, time};
+  situation->statistics[STATISTIC_STEPS]++;
+  return NULL;
+}
+
+static bool interpolate(struct Instance *instance, double time, double *state) {
+  const struct Erk *erk = instance->solver_memory;
+  N_Vector inside = erk->sundials.inside;
+  bool is_end = time == instance->situation->last_step.end;
+  if (!is_end && ERKStepGetDky(erk->arkode, time, 0, inside) < 0) return false;
+  sundials_copy(is_end ? erk->sundials.state : inside, state);
+  return true;
+}
+
+const struct Solver solver_erk = {.name = "ERKStep",
+                                  .alternatives = "auto where rates differ much",
+                                  .starts_anew = true,
+                                  .run = sundials_run,
+                                  .create = create,
+                                  .destroy = sundials_destroy,
+                                  .restart = restart,
+                                  .advance = advance,
+                                  .interpolate = interpolate};

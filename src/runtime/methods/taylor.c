@@ -1,0 +1,194 @@
+/*
+ * Taylor series of the motion (A. Jorba, M. Zou: A software package for the numerical integration of ODEs by means of
+ * high-order Taylor methods, 2005). The order follows from the tolerance, the step from taylor_reach.c. A step reaches
+ * past the communication point; the series is evaluated there, and goes on to serve the next communication step unless
+ * inputs, parameters or the state were changed. The situation holds all that a step depends on.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "instance/projection.h"
+#include "instance/snapshot.h"
+#include "instance/solver.h"
+#include "methods/taylor.h"
+
+enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
+enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
+
+static size_t taylor_saved_size(void) {
+  return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
+}
+
+static bool taylor_could_save(const struct Situation *situation, const void *saved) {
+  struct TaylorSaved first;
+  memcpy(&first, saved, sizeof first);
+  bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
+  bool is_new = first.order == 0 && situation->changed != 0; /* the first step is to come */
+  return (has_order || is_new) && first.reach >= 0.0 &&
+         situation->last_step.end == situation->last_step.start + first.reach &&
+         snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
+}
+
+static bool taylor_create(struct Instance *instance) {
+  size_t rows = lagrangian.input_count + lagrangian.series_rows;
+  size_t terms = 2 * lagrangian.state_count * sizeof(double);
+  struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
+  if (taylor == NULL) return solver_lacks_memory(instance);
+  taylor->saved = instance->saved;
+  taylor->span = &instance->situation->last_step;
+  taylor->low = (double *)(taylor->saved + 1);
+  taylor->x = (Series *)(taylor->low + lagrangian.state_count);
+  taylor->input = (Series *)(taylor + 1);
+  taylor->work = taylor->input + lagrangian.input_count;
+  taylor->term = (double *)(taylor->work + lagrangian.series_rows);
+  taylor->derivative = taylor->term + lagrangian.state_count;
+  instance->solver_memory = taylor;
+  return true;
+}
+
+static void taylor_destroy(struct Instance *instance) {
+  instance->memory.free(instance->solver_memory);
+  instance->solver_memory = NULL;
+}
+
+/*
+ * d state / dt at the origin, and the first coefficients of all series, which are there already where the defect was
+ * measured. False where there are no accelerations.
+ */
+static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
+  if (taylor->is_measured) return true;
+  for (size_t i = 0; i < lagrangian.state_count; i++) instance->work[i] = taylor->x[i][0];
+  instance->singular = taylor_start(instance, taylor, taylor->span->start, taylor->derivative);
+  return instance->singular == 0;
+}
+
+/* The series about the origin, where x[i][0] is the state, and its reach. False where no step can be taken. */
+static bool expand(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+  double origin = taylor->span->start;
+  if (!evaluate_origin(instance, taylor)) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->x[i][1] = taylor->derivative[i];
+  for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
+  struct Point point = evaluate_point(instance);
+  point.time = origin;
+  lagrangian.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
+  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  taylor_choose_reach(instance, taylor, communication_step);
+  taylor->span->end = origin + taylor->saved->reach;
+  return taylor->saved->reach > 0.0;
+}
+
+/*
+ * Moves the origin to the end of the series; what rounding takes from the state is carried along in low. Returns the
+ * largest change in units of the variables' scales.
+ */
+static double move_origin(struct Taylor *taylor) {
+  struct TaylorSaved *saved = taylor->saved;
+  double largest = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->reach);
+    double before = taylor->x[i][0], term = change + taylor->low[i];
+    double sum = before + term, part = sum - before, moved = fabs(term) / taylor_scale(taylor, i);
+    if (moved > largest) largest = moved;
+    taylor->low[i] = (before - (sum - part)) + (term - part);
+    taylor->x[i][0] = sum;
+  }
+  taylor->span->start = taylor->span->end;
+  saved->reach = 0.0;
+  return largest;
+}
+
+int64_t taylor_order(const struct Instance *instance) {
+  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
+  return (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
+}
+
+/* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
+static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
+  if (lagrangian.projection == NULL) return NULL;
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
+  const char *problem = solver_project(instance, taylor->span->start, taylor->term);
+  for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];
+  taylor->is_measured = false;
+  return problem;
+}
+
+static bool taylor_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
+  struct Taylor *taylor = instance->solver_memory;
+  (void)step;
+  taylor->saved->reach = 0.0;
+  taylor->is_measured = false;
+  taylor->saved->order = taylor_order(instance);
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    taylor->low[i] = 0.0;
+    taylor->x[i][0] = state[i];
+  }
+  return true;
+}
+
+static void taylor_resume(struct Instance *instance) {
+  struct Taylor *taylor = instance->solver_memory;
+  taylor->is_measured = false;
+}
+
+static bool taylor_interpolate(struct Instance *instance, double time, double *state) {
+  const struct Taylor *taylor = instance->solver_memory;
+  double s = time - taylor->span->start;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    state[i] = taylor->x[i][0] + (taylor_change(taylor, i, s) + taylor->low[i]);
+  return true;
+}
+
+static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
+  crawl->path += moved;
+  if (++crawl->steps < CRAWL_STEPS) return false;
+  bool stays = crawl->path < CRAWL_STEPS * tolerance;
+  *crawl = (struct Crawl){0};
+  return stays;
+}
+
+/*
+ * Why a system that moved by this much is not worth another step; NULL where it is. Where a system is stiff, many steps
+ * hardly move it: none would need to be so short, but that its fast modes must not grow. Where dry friction sticks, one
+ * jump comes after another.
+ */
+static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
+  if (!taylor->crosses) taylor->crossing.path += moved;
+  else if (crawls(&taylor->crossing, moved, 1e-9))
+    return "a function jumps to and fro there, as dry friction that sticks, for which there is <friction>";
+  if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
+    return "the system is stiff there, which asks for <solver method=\"auto\"/> in system.xml";
+  return NULL;
+}
+
+/* There is no series about the origin: the state is that of the origin. */
+static void cut_series(struct Taylor *taylor) {
+  taylor->saved->reach = 0.0;
+  taylor->span->end = taylor->span->start;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    for (int k = 1; k < SERIES_LENGTH; k++) taylor->x[i][k] = 0.0;
+}
+
+static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
+  struct Taylor *taylor = instance->solver_memory;
+  if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
+  double moved = taylor->saved->reach > 0.0 ? move_origin(taylor) : 0.0;
+  const char *problem = reason_to_stop(instance, taylor, moved);
+  if (problem == NULL) problem = keep_constraints(instance, taylor);
+  if (problem == NULL && !expand(instance, taylor, step->length))
+    problem = "the motion has a singularity there, or grows beyond all numbers";
+  if (problem != NULL) cut_series(taylor);
+  else instance->situation->statistics[STATISTIC_STEPS]++;
+  return problem;
+}
+
+const struct Solver solver_taylor = {.name = "the Taylor series",
+                                     .alternatives = "auto where rates differ much",
+                                     .saved_size = taylor_saved_size,
+                                     .could_save = taylor_could_save,
+                                     .create = taylor_create,
+                                     .destroy = taylor_destroy,
+                                     .restart = taylor_restart,
+                                     .resume = taylor_resume,
+                                     .advance = taylor_advance,
+                                     .interpolate = taylor_interpolate};

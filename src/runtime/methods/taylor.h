@@ -1,0 +1,80 @@
+/* What the files of the Taylor solver share. */
+#ifndef TAYLOR_H
+#define TAYLOR_H
+
+#include <math.h>
+
+#include "instance/instance.h"
+
+/* What the situation holds for this solver, beside the span of its last step; they tell all that a step depends on. */
+struct TaylorSaved {
+  double reach; /* how far from the origin the series is right, the length of the last step; 0 for no series yet */
+  int64_t order;
+  /* double low[state_count]: what rounding left of the state at origin; Series x[state_count] */
+};
+
+/* Steps of one kind that hardly move the system; the kind goes on where a thousand of them do not. */
+struct Crawl {
+  int steps;
+  double path;
+};
+
+struct Taylor {
+  struct TaylorSaved *saved;
+  struct Span *span; /* of the last step; its start is the origin of the series */
+  double *low;
+  Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
+  Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.series */
+  /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
+  double *term, *derivative;
+  bool is_measured; /* lagrangian.start was called last for the end of the reach */
+  bool is_limited;  /* the step is short for another reason than the size of its coefficients */
+  bool crosses;     /* the step crosses a point where a function has no series */
+  struct Crawl regular, crossing;
+};
+
+/* The size of a state variable at the origin, or its nominal value where that is larger. */
+static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
+  double size = fabs(taylor->x[i][0]);
+  return size < lagrangian.nominal[i] ? lagrangian.nominal[i] : size;
+}
+
+/*
+ * The change of state variable i from the origin to s after it, by Horner's rule for even and odd powers apart, which
+ * do not wait for one another.
+ */
+static inline double taylor_change(const struct Taylor *taylor, size_t i, double s) {
+  const double *x = taylor->x[i], square = s * s;
+  int64_t j = taylor->saved->order;
+  double first = x[j], second = x[j - 1];
+  for (j -= 2; j > 1; j -= 2) {
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+  }
+  if (j == 1) return ((first * s + second) * s + x[1]) * s;
+  return (first * s + second) * s;
+}
+
+/* The tolerance of a local error: errors of its order add up to more than it; see tests/test_motion.py. */
+static inline double taylor_tolerance(const struct Instance *instance) {
+  double tolerance = 0.1 * instance->situation->tolerance;
+  return tolerance > 1e-17 ? tolerance : 1e-17;
+}
+
+/* The order that the tolerance asks for. */
+int64_t taylor_order(const struct Instance *instance);
+
+/*
+ * d state / dt at a time and at the state that instance->work holds, and the first coefficients of all series. Returns
+ * what lagrangian.start returns.
+ */
+int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative);
+
+/*
+ * Sets the reach of the series that taylor->x holds: as long as its last coefficients promise, but no longer than the
+ * functions in the equations allow (series_limit.h), and so that the polynomials were found to obey the equations of
+ * motion at its end. 0 where no step can be taken.
+ */
+void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step);
+
+#endif

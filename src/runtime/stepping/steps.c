@@ -1,0 +1,318 @@
+/* The way from one communication point to the next, for every solver. */
+#include "stepping/steps.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/guides.h"
+#include "instance/projection.h"
+#include "instance/solver.h"
+#include "instance/switching.h"
+
+enum StepResult {
+  STEP_DONE,
+  STEP_PARTIAL, /* the state belongs to a time before the end */
+  STEP_FAILED   /* the state is as it was */
+};
+
+/* Steps too short to change the time are a singularity, which a solver could pass through. */
+enum { RESTING_STEP_LIMIT = 20 };
+
+/* So many steps in one communication step, or operations (see auto.c), take a good part of a second. */
+enum { SLOW_STEPS = 50000 };
+static const double SLOW_WORK = 2e9;
+
+/* Operations in one communication step, where the system gives no number of steps: some 10 s. */
+static const double WORK_LIMIT = 3e10;
+
+const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
+
+static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
+                                   "parameters or other coordinates";
+
+bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
+  struct Point point = solver_point(instance, time, state);
+  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  return evaluate_derivatives(instance, &point, derivative);
+}
+
+bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
+  struct Point point = solver_point(instance, time, state);
+  instance->situation->statistics[STATISTIC_JACOBIANS]++;
+  instance->singular = lagrangian.jacobian(&point, values);
+  return instance->singular == 0;
+}
+
+struct Point solver_point(struct Instance *instance, double time, const double *state) {
+  struct Point point = evaluate_point(instance);
+  point.time = time;
+  point.state = state;
+  if (instance->situation->input_derivatives_set) {
+    evaluate_inputs(instance, time, instance->work);
+    point.input = instance->work;
+  }
+  return point;
+}
+
+/* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
+const char *solver_project(struct Instance *instance, double time, double *state) {
+  static const char problem[] = "a constraint cannot be kept there";
+  if (lagrangian.projection == NULL) return NULL;
+  double moved = lagrangian.projection->project(instance, time, state);
+  return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
+}
+
+bool solver_lacks_memory(const struct Instance *instance) {
+  log_message(instance, STATUS_ERROR, "there is no memory for the solver");
+  return false;
+}
+
+bool solver_rests(double time, double step) {
+  return step <= 8 * DBL_EPSILON * fabs(time);
+}
+
+bool communication_settle(struct Instance *instance) {
+  double time = instance->situation->time;
+  if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
+  if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
+  return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
+}
+
+/* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
+static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
+  const struct Solver *solver = lagrangian.solver;
+  struct Situation *situation = instance->situation;
+  if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
+  bool goes_on = !solver->starts_anew && situation->changed == CHANGED_NOTHING &&
+                 step->start >= situation->last_step.start && step->start <= situation->last_step.end &&
+                 (!instance->solver_is_stale || solver->resume != NULL);
+  if (!goes_on) {
+    situation->last_step = (struct Span){step->start, step->start};
+    /* The state or the parameters may have been set, unless an event has settled all. */
+    bool is_settled = situation->changed == CHANGED_BY_EVENT;
+    if (!is_settled && !communication_settle(instance)) return STEP_PARTIAL;
+    if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
+  } else if (instance->solver_is_stale) solver->resume(instance);
+  instance->solver_is_stale = false;
+  situation->changed = CHANGED_NOTHING;
+  return STEP_DONE;
+}
+
+/* A user should hear of much work long before it is too much. */
+static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step, double work) {
+  log_message(
+      instance, STATUS_WARNING,
+      "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
+      "maxSteps of <solver> in system.xml %s",
+      lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
+      lagrangian.max_steps > 0 ? lagrangian.max_steps : (long)((double)step->count * WORK_LIMIT / work),
+      lagrangian.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
+}
+
+/* Operations in the communication step; before: the statistics as it began. */
+static double work_since(const struct Instance *instance, const struct CommunicationStep *step, const int64_t *before) {
+  const int64_t *present = instance->situation->statistics;
+  return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.work.evaluation +
+         (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.work.event +
+         (double)step->count * lagrangian.work.step;
+}
+
+/* NULL, or why the solver gives up. */
+static const char *excess(const struct CommunicationStep *step, double work) {
+  if (lagrangian.max_steps == 0)
+    return work < WORK_LIMIT ? NULL
+                             : "it has taken as many steps within one communication step as take some 10 s; expected a "
+                               "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
+  return step->count < lagrangian.max_steps
+             ? NULL
+             : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
+}
+
+/* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
+static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
+  const struct Span *last = &instance->situation->last_step;
+  const struct Switching *switcher = lagrangian.switching;
+  struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
+  int64_t before[STATISTIC_COUNT];
+  memcpy(before, instance->situation->statistics, sizeof before);
+  bool is_told = false;
+  int resting = 0;
+  for (;; step->count++) {
+    const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    *ends_at_event = problem != NULL;
+    if (problem != NULL) return problem;
+    bool is_inside = last->end > step->start && last->end < step->end;
+    if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
+    if (last->end >= step->end) return NULL;
+    double work = work_since(instance, step, before);
+    problem = excess(step, work);
+    if (problem != NULL && switcher != NULL) switcher->explain(instance, step, &progress);
+    if (problem != NULL) return problem;
+    bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
+    if (is_slow && !is_told) warn_of_slowness(instance, step, work);
+    is_told |= is_slow;
+    problem = lagrangian.solver->advance(instance, step);
+    if (problem != NULL && switcher != NULL) problem = switcher->pass_barrier(instance, step, problem, &progress);
+    if (problem != NULL) return problem;
+    resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
+    if (resting == RESTING_STEP_LIMIT) return solver_resting;
+  }
+}
+
+bool solver_take_state(struct Instance *instance, double time) {
+  const struct Span *last = &instance->situation->last_step;
+  bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
+  if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
+  else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
+  return are_finite(instance->state, lagrangian.state_count);
+}
+
+/* Where a mechanism comes to its limit, its user looks for the part that holds it. */
+static void log_weakest(struct Instance *instance, double time) {
+  const struct Switching *switcher = lagrangian.switching;
+  const char *name = lagrangian.projection->weakest(instance, time, instance->state);
+  if (name != NULL && (switcher == NULL || !switcher->holds_at_times(name)))
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "
+        "limit of its reach; constraints also end where they contradict each other, jump or have a kink",
+        time, name);
+}
+
+/* What to do about a solver that stopped: no solver helps where an event has no end. */
+static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
+                     bool ends_at_event, double reached) {
+  const struct Solver *solver = lagrangian.solver;
+  const char *function = instance->limited_by, *others = ends_at_event ? NULL : solver->alternatives;
+  const char *remedy = ends_at_event ? "" : solver->remedy != NULL ? solver->remedy : usual_remedy;
+  log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s%s%s%s%s", solver->name, reached,
+              step->end, reason, function != NULL && !ends_at_event ? ", by " : "",
+              function != NULL && !ends_at_event ? function : "", ends_at_event ? "" : "; ", remedy,
+              others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
+}
+
+/* The state becomes that of the time which the solver came to, and says why it is not the end. */
+static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
+                            bool ends_at_event, double reached) {
+  if (!solver_take_state(instance, reached)) return STEP_FAILED;
+  /* Where the constraints fail, the state is that of the solver. */
+  if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
+    return STEP_FAILED;
+  if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
+  if (lagrangian.projection != NULL && !ends_at_event) log_weakest(instance, reached);
+  log_stop(instance, step, reason, ends_at_event, reached);
+  instance->situation->changed = CHANGED_VALUES;
+  return STEP_PARTIAL;
+}
+
+static enum StepResult advance_to_end(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+  const struct Span *last = &instance->situation->last_step;
+  *reached = step->end;
+  if (lagrangian.solver == NULL) return STEP_DONE;
+  enum StepResult readiness = make_ready(instance, step);
+  if (readiness != STEP_DONE) {
+    *reached = step->start;
+    return readiness;
+  }
+  bool ends_at_event = false;
+  const char *law = NULL; /* that does not hold at the end */
+  const char *problem = reach(instance, step, &ends_at_event);
+  if (problem == NULL && solver_take_state(instance, step->end)) {
+    problem = solver_project(instance, step->end, instance->state);
+    *reached = step->end; /* an observer may have shortened the step */
+    if (problem == NULL && lagrangian.switching != NULL) law = lagrangian.switching->check(instance, step->end);
+    if (problem == NULL && law == NULL) return STEP_DONE;
+  }
+  *reached = problem != NULL ? last->end : last->start;
+  if (*reached > step->end) *reached = last->start;
+  if (*reached < step->start) *reached = step->start; /* what was told already stays */
+  if (law != NULL) return stop(instance, step, law, true, *reached);
+  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", ends_at_event,
+              *reached);
+}
+
+struct Advance {
+  struct Instance *instance;
+  struct CommunicationStep *step;
+  double *reached;
+  enum StepResult result;
+};
+
+static void do_advance(void *argument) {
+  struct Advance *task = argument;
+  task->result = advance_to_end(task->instance, task->step, task->reached);
+}
+
+/* Advances inside of what the solver needs around it. */
+static enum StepResult run(struct Instance *instance, struct CommunicationStep *step, double *reached) {
+  const struct Solver *solver = lagrangian.solver;
+  if (solver == NULL || solver->run == NULL) return advance_to_end(instance, step, reached);
+  struct Advance task = {.instance = instance, .step = step, .reached = reached};
+  if (solver->run(instance, do_advance, &task)) return task.result;
+  solver_lacks_memory(instance);
+  return STEP_FAILED;
+}
+
+/*
+ * How far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at each of
+ * them. Half a step is more than rounding.
+ */
+static double rounding_of_sum(const struct Situation *situation, double end, double size) {
+  double steps = (end - situation->start_time) / size + 1.0;
+  return fmin(0.5 * DBL_EPSILON * steps * fmax(fabs(end), fabs(situation->start_time)), 0.5 * size);
+}
+
+/* What is wrong with a communication step. */
+static enum Status check_step(struct Instance *instance, double time, double size, const char *function) {
+  const struct Situation *situation = instance->situation;
+  if (!isfinite(time))
+    return log_error(instance, "%s: currentCommunicationPoint is %g; expected a finite time", function, time);
+  if (!isfinite(size) || size <= 0.0)
+    return log_error(instance, "%s: step %g at time %g; expected a finite step larger than 0", function, size, time);
+  double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
+  if (fabs(time - situation->time) > rounding)
+    return log_error(instance, "%s: currentCommunicationPoint is %.15g; expected %.15g, where the instance is",
+                     function, time, situation->time);
+  if (time + size <= time)
+    return log_error(instance, "%s: step %g does not advance the time %g; expected a larger one", function, size, time);
+  if (!isfinite(time + size))
+    return log_error(instance, "%s: step %g from time %g ends beyond all numbers; expected a shorter one", function,
+                     size, time);
+  double excess = fmax(rounding, rounding_of_sum(situation, time + size, size));
+  if (situation->stop_time_defined && time + size - situation->stop_time > excess)
+    return log_error(instance, "%s: the step ends at %.15g; expected none past stopTime %.15g", function, time + size,
+                     situation->stop_time);
+  return STATUS_DONE;
+}
+
+/* The step to time + size, or to stopTime where rounding alone leads past it. */
+static struct CommunicationStep step_within_experiment(const struct Situation *situation, double time, double size) {
+  double stop = situation->stop_time;
+  if (situation->stop_time_defined && time < stop && stop < time + size)
+    return (struct CommunicationStep){.start = time, .end = stop, .length = stop - time};
+  return (struct CommunicationStep){.start = time, .end = time + size, .length = size};
+}
+
+enum Status communication_step(struct Instance *instance, double time, double size, const char *function) {
+  struct Situation *situation = instance->situation;
+  if (check_step(instance, time, size, function) != STATUS_DONE) return STATUS_ERROR;
+  if (evaluate_prepare(instance) != STATUS_DONE)
+    return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
+  situation->time = time;
+  instance->foresight = FORESIGHT_STALE;
+  if (!situation->input_derivatives_set)
+    memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
+  guides_begin_step(instance);
+  struct CommunicationStep step = step_within_experiment(situation, time, size);
+  double reached;
+  enum StepResult result = run(instance, &step, &reached);
+  if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
+  evaluate_advance_inputs(instance, reached);
+  situation->input_derivatives_set = 0;
+  situation->time = reached;
+  if (result == STEP_DONE) return STATUS_DONE;
+  situation->mode = MODE_STEP_FAILED;
+  return STATUS_DISCARD;
+}

@@ -1,0 +1,19 @@
+/* Communication steps. */
+#ifndef STEPS_H
+#define STEPS_H
+
+#include "instance/instance.h"
+
+/*
+ * Goes on from time by size; messages come under the name of the function that the caller called. Discards after
+ * logging where the solver came to a part of the step alone, which situation->time then tells.
+ */
+enum Status communication_step(struct Instance *instance, double time, double size, const char *function);
+
+/*
+ * Brings constraints and modes into agreement with parameters, inputs and a state that were set, as a step begins. False
+ * after logging why the step is discarded.
+ */
+bool communication_settle(struct Instance *instance);
+
+#endif
