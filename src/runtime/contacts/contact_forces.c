@@ -12,9 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "contacts/contacts.h"
 #include "contacts/pushes.h"
-#include "instance/solver.h"
+#include "evaluation/services.h"
 
 /* Of so many contacts that act on one another all combinations are tried out. */
 enum { COMBINED_LIMIT = 12 };

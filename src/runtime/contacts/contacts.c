@@ -3,8 +3,6 @@
  * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
  * on.
  */
-#include "contacts/contacts.h"
-
 #include <float.h>
 #include <math.h>
 
@@ -23,12 +21,6 @@ static const double equal_share = 1e-9;
 static const double largest_penetration = 1e-9;
 
 static const char no_impact[] = "a contact cannot take an impact there";
-
-bool is_touching(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
-  double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
-  return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
-}
 
 /* The touching contact that closes fastest; contact_count for none. */
 static size_t find_impact(const struct Settlement *settlement) {

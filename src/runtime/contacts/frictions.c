@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "events/settlement.h"
-#include "instance/solver.h"
 
 enum { FRICTION_FLIP_LIMIT = 500 };
 

@@ -16,7 +16,7 @@
 
 #include "contacts/complementarity.h"
 #include "contacts/pushes.h"
-#include "instance/solver.h"
+#include "evaluation/services.h"
 
 enum { HALVINGS = 52, SOLUTIONS = 50 };
 

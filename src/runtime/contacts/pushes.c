@@ -4,7 +4,13 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "instance/solver.h"
+#include "evaluation/services.h"
+
+bool is_touching(const struct Settlement *settlement, size_t contact) {
+  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
+  double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
+  return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
+}
 
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
   return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];

@@ -27,4 +27,7 @@ void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
 /* Whether the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
 
+/* Whether the gap is 0, but for rounding. */
+bool is_touching(const struct Settlement *settlement, size_t contact);
+
 #endif

@@ -48,15 +48,6 @@ enum Status evaluate_prepare(struct Instance *instance) {
   return STATUS_DONE;
 }
 
-struct Point evaluate_point(const struct Instance *instance) {
-  return (struct Point){.time = instance->situation->time,
-                        .state = instance->state,
-                        .input = instance->input,
-                        .parameter = instance->parameter,
-                        .prepared = instance->prepared,
-                        .work = instance->point_work};
-}
-
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {
   instance->singular = lagrangian.derivatives(point, derivative);
   if (instance->singular != 0) return false;
@@ -72,41 +63,10 @@ static bool come_back(struct Instance *instance, struct Point *point) {
 enum Status evaluate_situation(struct Instance *instance, double *derivative) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
   if (come_back(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
   return discard_for_singularity(instance);
-}
-
-void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
-  double s = time - instance->situation->time;
-  size_t n = lagrangian.input_count;
-  const double *d = instance->input_derivatives + i;
-  coefficient[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
-  coefficient[1] = d[0] + s * (d[n] + s / 2 * d[2 * n]);
-  coefficient[2] = (d[n] + s * d[2 * n]) / 2;
-  coefficient[3] = d[2 * n] / 6;
-}
-
-void evaluate_inputs(const struct Instance *instance, double time, double *input) {
-  for (size_t i = 0; i < lagrangian.input_count; i++) {
-    double coefficient[INPUT_ORDER + 1];
-    expand_input(instance, i, time, coefficient);
-    input[i] = coefficient[0];
-  }
-}
-
-void evaluate_advance_inputs(struct Instance *instance, double end) {
-  if (!instance->situation->input_derivatives_set) return;
-  size_t n = lagrangian.input_count;
-  for (size_t i = 0; i < n; i++) {
-    double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
-    expand_input(instance, i, end, coefficient);
-    instance->input[i] = coefficient[0];
-    derivative[0] = coefficient[1];
-    derivative[n] = 2.0 * coefficient[2];
-  }
-  instance->situation->changed = CHANGED_COURSE;
 }
 
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
@@ -138,7 +98,7 @@ static bool evaluate_result_at(struct Instance *instance, const struct Point *po
 static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   bool has_value = evaluate_result_at(instance, &point, variable->index, value);
   if (!(has_value && isfinite(*value)) && come_back(instance, &point))
     has_value = evaluate_result_at(instance, &point, variable->index, value);

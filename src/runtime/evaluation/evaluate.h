@@ -17,9 +17,6 @@ const char *evaluate_state_name(size_t state);
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);
 
-/* The point of the situation: its time, state, inputs and parameters. */
-struct Point evaluate_point(const struct Instance *instance);
-
 /*
  * derivative[state_count] at a point whose prepared values are up to date. False where it is not finite or the mass
  * matrix is singular, which instance->singular then tells.
@@ -34,15 +31,6 @@ void log_singularity(const struct Instance *instance, enum Status status, double
 
 /* The same where a value or derivative is asked for at the situation: logs once for each situation. Discards. */
 enum Status discard_for_singularity(struct Instance *instance);
-
-/* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
-void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
-
-/* The inputs at time; input[input_count]. */
-void evaluate_inputs(const struct Instance *instance, double time, double *input);
-
-/* Continues the inputs and their polynomials from a later time in the communication step. */
-void evaluate_advance_inputs(struct Instance *instance, double time);
 
 /*
  * What result() takes at a point, from the derivative of the state there: the accelerations and the forces of

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
 #include "events/settlement.h"
 
 enum { APPROACH_LIMIT = 20 };

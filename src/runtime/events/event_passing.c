@@ -3,9 +3,9 @@
 #include <math.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "events/settlement.h"
 #include "events/switching_parts.h"
-#include "instance/solver.h"
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/services.h"
 #include "events/switching_parts.h"
-#include "instance/solver.h"
 
 enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 

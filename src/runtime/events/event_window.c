@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
+#include "evaluation/inputs.h"
+#include "evaluation/services.h"
 #include "events/switching_parts.h"
-#include "instance/solver.h"
 
 /* What the last coefficients may have of all, for a polynomial that is the motion. */
 static const double resolved_motion = 1e-3;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "instance/solver.h"
+#include "evaluation/services.h"
 
 /* A state is not told from others nearer than the last digit of this share of its nominal value. */
 static const double least_share = 0.1;

@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "events/settlement.h"
-#include "instance/solver.h"
 
 enum { ROUND_LIMIT = 2000, FLIP_LIMIT = 8 };
 
@@ -289,7 +289,7 @@ static const char *settle(struct Instance *instance, double time, double *state,
 /* Signs of the present values, without events: what a reader may expect before the simulation starts. */
 static void guess(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   double *value = settlement_of(instance).value;
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
@@ -315,7 +315,7 @@ static void guess(struct Instance *instance) {
 static void complete_indicators(struct Instance *instance, double *value) {
   size_t count = indicator_count(lagrangian.switches);
   double *completed = instance->switching_work + count; /* the first so many may be the values */
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   bool lacks = false;
   for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
   if (!lacks || !switching_come_back(instance, &point)) return;

@@ -93,7 +93,7 @@ static enum Status derivative_along_seed(struct Instance *instance, const unsign
   }
   initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
   enum Status status = evaluate_prepare(instance);
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
   return read_along(instance, &point, &direction, unknown, unknown_count, value, function);
@@ -138,7 +138,7 @@ enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknow
 
 enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                                 const char *function) {
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   struct Direction direction = direction_create(instance);
   direction.seed.time = 1.0;
   direction.seed.input = instance->input_derivatives;

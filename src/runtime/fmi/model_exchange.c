@@ -7,7 +7,7 @@
 #include "fmi/check.h"
 #include "instance/projection.h"
 #include "instance/switching.h"
-#include "stepping/start.h"
+#include "stepping/reading.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
   if (!isfinite(time)) return log_error(instance, "%s: the time is %g; expected a finite number", function, time);
@@ -33,9 +33,9 @@ enum Status exchange_set_states(struct Instance *instance, const double *state, 
 
 enum Status exchange_get_states(struct Instance *instance, double *state, size_t count, const char *function) {
   if (!check_states(instance, state, count, function)) return STATUS_ERROR;
-  start_show(instance, function);
+  reading_begin(instance, function);
   if (count > 0) memcpy(state, instance->state, count * sizeof *state);
-  start_hide(instance);
+  reading_end(instance);
   return STATUS_DONE;
 }
 
@@ -43,10 +43,10 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
                                      const char *function) {
   if (!check_states(instance, derivative, count, function)) return STATUS_ERROR;
   if (count == 0) return STATUS_DONE;
-  start_show(instance, function);
+  reading_begin(instance, function);
   enum Status status = evaluate_situation(instance, instance->work);
   if (status == STATUS_DONE) memcpy(derivative, instance->work, count * sizeof *derivative);
-  start_hide(instance);
+  reading_end(instance);
   return status;
 }
 
@@ -64,10 +64,10 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
                      expected);
   if (count == 0) return STATUS_DONE;
   if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
-  start_show(instance, function);
+  reading_begin(instance, function);
   bool has_values = lagrangian.switching->indicators(instance, indicator);
   enum Status status = has_values ? STATUS_DONE : discard_for_singularity(instance);
-  start_hide(instance);
+  reading_end(instance);
   return status;
 }
 

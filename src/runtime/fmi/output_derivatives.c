@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/inputs.h"
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
 #include "stepping/reading.h"
@@ -49,7 +50,7 @@ static void expand_linear(const struct Instance *instance, int order, const stru
 }
 
 static enum Status fill_expansion(struct Instance *instance, int order, const struct Expansion *expansion) {
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   const Series *input = (const Series *)expansion->input;
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
   if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);

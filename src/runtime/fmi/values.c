@@ -136,7 +136,6 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->situation->changed = CHANGED_VALUES;
-  instance->foresight = FORESIGHT_STALE;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 

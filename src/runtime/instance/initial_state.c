@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "evaluation/evaluate.h"
-
 /* Whether the state has the value that follows from the parameters. */
 static bool follows(const struct Instance *instance, const struct ScalarVariable *variable) {
   return has_following_start(variable) && instance->state_was_set[variable->index] == 0.0;
@@ -15,7 +13,7 @@ void initial_state_set(struct Instance *instance, size_t state) {
 
 void initial_state_follow(struct Instance *instance) {
   if (lagrangian.initial_state == NULL) return;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   lagrangian.initial_state(&point, instance->work);
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
@@ -25,7 +23,7 @@ void initial_state_follow(struct Instance *instance) {
 
 void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch) {
   if (lagrangian.initial_state == NULL || !is_before_start(instance)) return;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   lagrangian.initial_state_along(&point, &(struct Seed){.parameter = parameter}, scratch);
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];

@@ -6,7 +6,6 @@
 #include "instance/projection.h"
 #include "instance/solver.h"
 #include "instance/switching.h"
-#include "stepping/start.h"
 
 static size_t set_count(void) {
   return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
@@ -45,7 +44,6 @@ void instance_reset(struct Instance *instance) {
   instance->situation->changed = CHANGED_VALUES;
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_early_reading = instance->told_impossible_start = false;
-  instance->foresight = FORESIGHT_STALE;
   instance->told_singularity = 0;
 }
 
@@ -60,7 +58,7 @@ static size_t switching_work_count(void) {
 
 static size_t evaluation_count(void) {
   return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + switching_work_count() +
-         start_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+         2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
          lagrangian.parameter_count + 1;
 }
 
@@ -80,20 +78,28 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->point_work = instance->prepared + lagrangian.prepared_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
-  instance->start_work = instance->switching_work + switching_work_count();
-  instance->acceleration = instance->start_work + start_work_count();
+  instance->acceleration = instance->switching_work + switching_work_count();
   if (lagrangian.switching != NULL)
     instance->event_state = instance->switching_work + lagrangian.switching->work_count();
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 
+static void free_shown(const struct Instance *instance) {
+  if (instance->given != NULL) instance->memory.free(instance->given);
+  if (instance->shown != NULL) instance->memory.free(instance->shown);
+}
+
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
-  bool foresees = lagrangian.switching != NULL && kind == KIND_CO_SIMULATION;
+  bool shows = lagrangian.projection != NULL || lagrangian.switching != NULL;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
   struct Situation *situation = memory->allocate(1, situation_size());
-  if (foresees) instance->foreseen = memory->allocate(1, situation_size());
-  if (situation != NULL && evaluation != NULL && (!foresees || instance->foreseen != NULL)) {
+  if (shows) {
+    instance->given = memory->allocate(1, situation_size());
+    instance->shown = memory->allocate(1, situation_size());
+  }
+  bool has_shown = instance->given != NULL && instance->shown != NULL;
+  if (situation != NULL && evaluation != NULL && (!shows || has_shown)) {
     instance_use(instance, situation);
     lay_out(instance, evaluation);
     instance_reset(instance);
@@ -101,7 +107,7 @@ bool instance_create(struct Instance *instance, enum Kind kind, const struct All
   }
   if (situation != NULL) memory->free(situation);
   if (evaluation != NULL) memory->free(evaluation);
-  if (instance->foreseen != NULL) memory->free(instance->foreseen);
+  free_shown(instance);
   return false;
 }
 
@@ -109,13 +115,12 @@ void instance_destroy(struct Instance *instance) {
   if (instance->solver_memory != NULL) lagrangian.solver->destroy(instance);
   instance->memory.free(instance->prepared);
   instance->memory.free(instance->situation);
-  if (instance->foreseen != NULL) instance->memory.free(instance->foreseen);
+  free_shown(instance);
 }
 
 void instance_restore(struct Instance *instance, const void *situation) {
   memcpy(instance->situation, situation, situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->foresight = FORESIGHT_STALE;
   instance->told_singularity = 0;
 }
 

@@ -32,9 +32,6 @@ enum Mode {
  */
 enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT, CHANGED_COURSE };
 
-/* What the next step begins with, see foresight.h: to be found; known; or the present situation. */
-enum Foresight { FORESIGHT_STALE, FORESIGHT_READY, FORESIGHT_NONE };
-
 /* From one time to a later one. */
 struct Span {
   double start, end;
@@ -73,10 +70,10 @@ struct Instance {
   struct Log log;
   enum Kind kind;
   struct Situation *situation;
-  struct Situation
-      *foreseen; /* the other one of the two in foresight.h; NULL in FMUs that do not switch, and of exchange */
-  enum Foresight foresight;
-  bool is_foreseeing;                                                    /* the two are exchanged */
+  /* See reading.h: the one that what is told was found from last, and that one. NULL where no start or step moves states. */
+  struct Situation *given, *shown;
+  bool is_reading;     /* the situation is what is told, and shown the one that was set */
+  bool shown_is_found; /* it is not as it was given */
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;
@@ -84,9 +81,7 @@ struct Instance {
   bool modes_stay;            /* before the start too: those of the start are being found, or shown */
   bool solver_is_stale;       /* the situation was replaced: what the solver keeps outside of it no longer counts */
   bool told_early_reading;    /* that a variable was read before it should be, since the last reset */
-  bool start_exists;          /* of the values that it was looked for last, see start.h */
-  bool shows_start;           /* the values are those of the start, not those that were set */
-  bool told_impossible_start; /* that there is none, since the last reset */
+  bool told_impossible_start; /* that there is no start, since the last reset */
   uint64_t told_singularity;  /* the checksum of the situation whose lack of accelerations was logged last */
   int singular;               /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
   const char *limited_by;     /* the elementary function that shortened the solver's last step; NULL for none */
@@ -94,7 +89,6 @@ struct Instance {
   double *point_work;         /* lagrangian.work_count, for generated functions */
   double *projection_work;    /* projection_work_count() */
   double *switching_work;     /* switching->work_count() */
-  double *start_work;         /* start_work_count() */
   double departure;           /* the sign with which a branch that rested at 0 leaves it, as found last */
   bool uses_event_mode;       /* of a co-simulation: the importer goes through events between steps */
   bool stops_at_events;       /* and an event ends the step */
@@ -119,6 +113,16 @@ void instance_reset(struct Instance *instance);
 
 /* Goes back to a situation of this instance, situation_size() bytes. */
 void instance_restore(struct Instance *instance, const void *situation);
+
+/* The point of the situation: its time, state, inputs and parameters. */
+static inline struct Point instance_point(const struct Instance *instance) {
+  return (struct Point){.time = instance->situation->time,
+                        .state = instance->state,
+                        .input = instance->input,
+                        .parameter = instance->parameter,
+                        .prepared = instance->prepared,
+                        .work = instance->point_work};
+}
 
 /* The mode as messages name it. */
 const char *instance_mode_name(const struct Instance *instance);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/services.h"
 #include "instance/snapshot.h"
 #include "methods/radau.h"
 #include "methods/stiffness.h"

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/services.h"
 #include "instance/snapshot.h"
-#include "instance/solver.h"
 
 /* What is kept of the last step: with the same step and parameters, its matrix serves again. */
 struct Exact {

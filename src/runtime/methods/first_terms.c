@@ -1,6 +1,7 @@
 #include "methods/first_terms.h"
 
-#include "evaluation/evaluate.h"
+#include "evaluation/inputs.h"
+#include "evaluation/services.h"
 
 size_t first_terms_rows(void) {
   if (lagrangian.limit == NULL) return 0;

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "instance/solver.h"
+#include "evaluation/services.h"
 
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 

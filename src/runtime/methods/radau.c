@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "instance/snapshot.h"
 #include "methods/first_terms.h"
 #include "methods/radau.h"

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "methods/radau.h"
 #include "support/lu.h"
 

@@ -7,10 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
+#include "evaluation/inputs.h"
+#include "evaluation/services.h"
 #include "instance/projection.h"
 #include "instance/snapshot.h"
-#include "instance/solver.h"
 #include "methods/taylor.h"
 
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
@@ -69,7 +69,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   if (!evaluate_origin(instance, taylor)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->x[i][1] = taylor->derivative[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   point.time = origin;
   lagrangian.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
   instance->situation->statistics[STATISTIC_DERIVATIVES]++;

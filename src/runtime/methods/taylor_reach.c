@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
+#include "evaluation/inputs.h"
 #include "methods/taylor.h"
 
 /* A step of the promised length has a defect of about a third of the order times the tolerance. */
@@ -90,7 +90,7 @@ static double promised_step(const struct Taylor *taylor) {
 }
 
 int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative) {
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   point.time = time;
   point.state = instance->work;
   if (lagrangian.input_count > 0) {
@@ -171,7 +171,7 @@ static struct SeriesLimit limited(const struct Instance *instance, const struct 
                                   bool crosses) {
   struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
   if (lagrangian.limit == NULL) return limit;
-  struct Point point = evaluate_point(instance);
+  struct Point point = instance_point(instance);
   point.time = taylor->span->start;
   lagrangian.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x, (const Series *)taylor->work,
                    &limit);

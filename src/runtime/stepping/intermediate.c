@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
-#include "instance/solver.h"
+#include "evaluation/inputs.h"
+#include "evaluation/services.h"
 
 /* Gives the instance the values of a time within the step. False where they do not exist. */
 static bool move_to(struct Instance *instance, double time) {

@@ -1,10 +1,16 @@
-/* What is told of an instance: in initialization mode its start, between steps what the next one begins with. */
+/*
+ * What is told of an instance: in initialization mode its start, and between steps, where a value was set, what the next one
+ * begins with. It is found on a copy, so that reading leaves no trace: what is set are the values that it is found from.
+ */
 #ifndef READING_H
 #define READING_H
 
 #include "instance/instance.h"
 
-/* Between these two, variables have the values that they are told with; nothing may be set. */
+/*
+ * Between these two, variables have the values that they are told with; nothing may be set. Where there is no start, a warning
+ * says once why, and the values stay as they were set; so they do where the next step will be discarded.
+ */
 void reading_begin(struct Instance *instance, const char *function);
 void reading_end(struct Instance *instance);
 

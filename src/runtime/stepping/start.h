@@ -1,24 +1,21 @@
 /*
- * The start of the simulation: constraints fulfilled, modes found, impacts and events at the start behind it. What is read in
- * initialization mode is that of this start; what is set are the values that it is found from.
+ * How the simulation and each of its steps set out: constraints fulfilled, and modes found, from the values that were set.
  */
 #ifndef START_H
 #define START_H
 
 #include "instance/instance.h"
 
-/* Brings the instance from the values that were set to the start; an error, logged, where there is none. */
+/*
+ * Brings the instance from the values that were set to the start of the simulation, behind impacts and events at the start
+ * itself; an error, logged, where there is none.
+ */
 enum Status start_find(struct Instance *instance, const char *function);
 
 /*
- * Gives an instance in initialization mode the values of the start, to be read alone, until start_hide() gives it back those
- * that were set. Where there is no start, a warning says once why, and the values stay as they were set. In other modes
- * nothing happens.
+ * Brings constraints and modes into agreement with parameters, inputs and a state that were set, as a step begins. False
+ * after logging why the step is discarded.
  */
-void start_show(struct Instance *instance, const char *function);
-void start_hide(struct Instance *instance);
-
-/* Numbers of workspace that an instance needs to show it. */
-size_t start_work_count(void);
+bool start_step(struct Instance *instance);
 
 #endif

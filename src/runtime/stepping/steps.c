@@ -7,9 +7,11 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/guides.h"
+#include "evaluation/inputs.h"
+#include "evaluation/services.h"
 #include "instance/projection.h"
-#include "instance/solver.h"
 #include "instance/switching.h"
+#include "stepping/start.h"
 
 enum StepResult {
   STEP_DONE,
@@ -27,58 +29,8 @@ static const double SLOW_WORK = 2e9;
 /* Operations in one communication step, where the system gives no number of steps: some 10 s. */
 static const double WORK_LIMIT = 3e10;
 
-const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
-
 static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
                                    "parameters or other coordinates";
-
-bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
-  struct Point point = solver_point(instance, time, state);
-  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
-  return evaluate_derivatives(instance, &point, derivative);
-}
-
-bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
-  struct Point point = solver_point(instance, time, state);
-  instance->situation->statistics[STATISTIC_JACOBIANS]++;
-  instance->singular = lagrangian.jacobian(&point, values);
-  return instance->singular == 0;
-}
-
-struct Point solver_point(struct Instance *instance, double time, const double *state) {
-  struct Point point = evaluate_point(instance);
-  point.time = time;
-  point.state = state;
-  if (instance->situation->input_derivatives_set) {
-    evaluate_inputs(instance, time, instance->work);
-    point.input = instance->work;
-  }
-  return point;
-}
-
-/* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
-const char *solver_project(struct Instance *instance, double time, double *state) {
-  static const char problem[] = "a constraint cannot be kept there";
-  if (lagrangian.projection == NULL) return NULL;
-  double moved = lagrangian.projection->project(instance, time, state);
-  return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
-}
-
-bool solver_lacks_memory(const struct Instance *instance) {
-  log_message(instance, STATUS_ERROR, "there is no memory for the solver");
-  return false;
-}
-
-bool solver_rests(double time, double step) {
-  return step <= 8 * DBL_EPSILON * fabs(time);
-}
-
-bool communication_settle(struct Instance *instance) {
-  double time = instance->situation->time;
-  if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
-  if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
-  return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
-}
 
 /* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
@@ -92,7 +44,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
     situation->last_step = (struct Span){step->start, step->start};
     /* The state or the parameters may have been set, unless an event has settled all. */
     bool is_settled = situation->changed == CHANGED_BY_EVENT;
-    if (!is_settled && !communication_settle(instance)) return STEP_PARTIAL;
+    if (!is_settled && !start_step(instance)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
@@ -159,14 +111,6 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return solver_resting;
   }
-}
-
-bool solver_take_state(struct Instance *instance, double time) {
-  const struct Span *last = &instance->situation->last_step;
-  bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
-  if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
-  else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
-  return are_finite(instance->state, lagrangian.state_count);
 }
 
 /* Where a mechanism comes to its limit, its user looks for the part that holds it. */
@@ -301,7 +245,6 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (evaluate_prepare(instance) != STATUS_DONE)
     return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
   situation->time = time;
-  instance->foresight = FORESIGHT_STALE;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   guides_begin_step(instance);

@@ -10,10 +10,4 @@
  */
 enum Status communication_step(struct Instance *instance, double time, double size, const char *function);
 
-/*
- * Brings constraints and modes into agreement with parameters, inputs and a state that were set, as a step begins. False
- * after logging why the step is discarded.
- */
-bool communication_settle(struct Instance *instance);
-
 #endif

@@ -12,6 +12,8 @@
 
 #include <cvode/cvode.h>
 
+#include "evaluation/services.h"
+
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.01;
 

@@ -9,6 +9,8 @@
 
 #include "methods/sundials/sundials_support.h"
 
+#include "evaluation/services.h"
+
 /* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
 static const double safety = 0.1;
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/services.h"
 #include "methods/first_terms.h"
 
 bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(struct Instance *instance)) {

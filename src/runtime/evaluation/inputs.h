@@ -1,0 +1,16 @@
+/* Inputs as polynomials of time over a communication step. */
+#ifndef INPUTS_H
+#define INPUTS_H
+
+#include "instance/instance.h"
+
+/* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
+void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
+
+/* The inputs at time; input[input_count]. */
+void evaluate_inputs(const struct Instance *instance, double time, double *input);
+
+/* Continues the inputs and their polynomials from a later time in the communication step. */
+void evaluate_advance_inputs(struct Instance *instance, double time);
+
+#endif
