@@ -9,6 +9,7 @@
 #include "contacts/contact_forces.h"
 #include "contacts/impacts.h"
 #include "contacts/pushes.h"
+#include "events/continuity.h"
 #include "events/settlement.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };

@@ -1,12 +1,9 @@
-/*
- * A branch that switches must leave positions and velocities as they are: neither constraints nor energies may jump there.
- * How velocities would have to jump with them, the system does not tell.
- */
+#include "events/continuity.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "events/settlement.h"
 #include "instance/projection.h"
 
 /* In units of the scales of the state: less of a change may be rounding. */

@@ -6,9 +6,8 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
-
-/* A state is not told from others nearer than the last digit of this share of its nominal value. */
-static const double least_share = 0.1;
+#include "events/indicators.h"
+#include "events/search.h"
 
 size_t settlement_value_count(const struct SwitchTable *switches) {
   return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
@@ -57,14 +56,6 @@ struct Settlement settlement_at(struct Instance *instance, double time, double *
   settlement.state = state;
   settlement.occasion = occasion;
   return settlement;
-}
-
-void switching_round(const double *state, bool otherwise, double *rounded) {
-  for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
-    double change = (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
-    rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
-  }
 }
 
 bool settlement_values(struct Settlement *settlement, const double *state, double *value) {

@@ -1,8 +1,8 @@
-/* What finds the modes behind an event: switching.c, continuity.c, contacts.c and frictions.c share it. */
+/* An event on its way: what finds the modes and the state behind it shares this. */
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
-#include "events/switching_parts.h"
+#include "instance/switching.h"
 
 /* Parts of value[], see struct SwitchTable. */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
@@ -138,8 +138,6 @@ double continuity_allowed_share(const struct Settlement *settlement);
 
 /* The largest scale among the velocities. */
 double settlement_velocity_scale(const struct Settlement *settlement);
-
-extern const char constraints_not_kept[];
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
 

@@ -1,15 +1,12 @@
-/*
- * A window of time in which what the indicators look at hides nothing: a hill exp(-(x/w)^2), flat where a window begins, has
- * no sample on it. Along the polynomials of the solver's last step, of whatever method, each elementary function is bounded
- * over the disc about the middle of the window, as series_limit.h does it for steps.
- */
+#include "events/window.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
-#include "events/switching_parts.h"
+#include "events/chebyshev.h"
 
 /* What the last coefficients may have of all, for a polynomial that is the motion. */
 static const double resolved_motion = 1e-3;

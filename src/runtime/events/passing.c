@@ -1,11 +1,14 @@
-/* How a communication step goes through events: the solver starts anew behind each of them. */
+#include "events/passing.h"
+
 #include <float.h>
 #include <math.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "events/search.h"
+#include "events/settle.h"
 #include "events/settlement.h"
-#include "events/switching_parts.h"
+#include "events/window.h"
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
@@ -29,7 +32,7 @@ static const char no_modes[] = "the parameters leave no acceleration there";
 static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
                             size_t indicator) {
   bool changed;
-  const char *problem = switching.settle(instance, time, state, occasion, indicator, &changed);
+  const char *problem = settle(instance, time, state, occasion, indicator, &changed);
   return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
 }
 
@@ -59,7 +62,7 @@ const char *switching_update(struct Instance *instance, bool *changed) {
   enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
-  const char *problem = switching.settle(instance, situation->time, instance->state, occasion, indicator, changed);
+  const char *problem = settle(instance, situation->time, instance->state, occasion, indicator, changed);
   bool is_new = occasion == AT_EVENT || *changed;
   if (is_new && situation->changed == CHANGED_NOTHING) situation->changed = CHANGED_BY_EVENT;
   situation->waiting_event = 0;
@@ -73,6 +76,16 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
   return is_done ? NULL : "there is no memory for the solver";
 }
 
+/* The communication step ends before an event, whose modes the importer asks for. */
+static const char *stop_at_event(struct Instance *instance, struct CommunicationStep *step, double time,
+                                 size_t indicator) {
+  instance->situation->waiting_event = (int32_t)indicator + 1;
+  instance->situation->last_step = (struct Span){time, time};
+  step->end = time;
+  step->length = time - step->start;
+  return start_anew(instance, step);
+}
+
 /*
  * Goes through an event, whose state is in event_state, or ends the step before it. NULL, or the reason why the motion ends
  * there.
@@ -80,13 +93,7 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
 static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
                               size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
-  if (instance->stops_at_events) {
-    instance->situation->waiting_event = (int32_t)indicator + 1;
-    instance->situation->last_step = (struct Span){time, time};
-    step->end = time;
-    step->length = time - step->start;
-    return start_anew(instance, step);
-  }
+  if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
   const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
   instance->situation->last_step = (struct Span){time, time};
   const char *obstacle = start_anew(instance, step);
@@ -124,6 +131,24 @@ static bool is_bounce(const struct Instance *instance, size_t indicator) {
          instance->parameter[switches->contacts[indicator - switches->branch_count].mode] == 0.0;
 }
 
+/* Takes an event into the progress of the step. */
+static void count_event(const struct Instance *instance, const struct CommunicationStep *step, double time,
+                        size_t indicator, struct EventProgress *progress) {
+  double since_last = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
+  bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
+  bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
+  bool is_crowded = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
+                    time - (step->start + progress->last) <= crowding_share * fabs(time);
+  progress->gathered = is_close ? progress->gathered + 1 : 0;
+  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
+  progress->distance = since_last;
+  progress->last = time - step->start;
+  progress->count++;
+  progress->indicator = indicator;
+  progress->searched = time;
+}
+
+/* Search, pass, settle, go on. */
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator = 0;
@@ -131,17 +156,7 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
   if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
-  bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
-  bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
-  bool is_crowded = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
-                    time - (step->start + progress->last) <= crowding_share * fabs(time);
-  progress->gathered = is_close ? progress->gathered + 1 : 0;
-  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
-  progress->distance = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
-  progress->last = time - step->start;
-  progress->count++;
-  progress->indicator = indicator;
-  progress->searched = time;
+  count_event(instance, step, time, indicator, progress);
   if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
     return is_of_contact(indicator) ? flutter : gathering;
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;

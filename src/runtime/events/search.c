@@ -1,15 +1,13 @@
-/*
- * Where an indicator leaves its sign. In a window of time that hides nothing (event_window.c) it is held against its
- * Chebyshev polynomial of degree 8: where the coefficients say that it cannot come to 0, or falls throughout, that is known;
- * else each half of the window is looked at, with new values. So two zeros that lie close, or one at the very start, are
- * found as well, whatever the solver.
- */
+#include "events/search.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "evaluation/services.h"
-#include "events/switching_parts.h"
+#include "events/chebyshev.h"
+#include "events/indicators.h"
+#include "events/window.h"
 
 enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 

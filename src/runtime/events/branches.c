@@ -1,0 +1,114 @@
+#include "events/branches.h"
+
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+#include "events/continuity.h"
+#include "events/indicators.h"
+
+enum { FLIP_LIMIT = 8 };
+
+static const char without_end[] = "a mode changes to and fro there without end";
+
+static double sign_with_noise(double value, double noise) {
+  return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
+}
+
+/* Where its zero was located, it may be left as far below as the search takes for rounding. */
+static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
+  double noise = settlement_noise(settlement, branch, settlement->switches->branch_count + branch);
+  return noise * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
+}
+
+/* Whether an event has left it a little beyond 0, and it comes back to the sign of its mode. */
+static bool comes_back(const struct Settlement *settlement, size_t branch, double mode, double noise) {
+  size_t rate = settlement->switches->branch_count + branch;
+  double value = settlement->value[branch];
+  return mode * sign_with_noise(value, noise) < 0.0 && fabs(value) <= FLOOR_IN_NOISE * noise &&
+         mode * settlement->value[rate] > settlement->noise[rate];
+}
+
+/* Whether it goes through a 0 at which it rests: where a piece ends or a friction sticks there, a side stays. */
+static bool passes(const struct Settlement *settlement, size_t branch) {
+  bool rests = settlement->switches->branches[branch].is_side && settlement->changed;
+  return is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
+}
+
+/* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
+static double branch_mode(const struct Settlement *settlement, size_t branch) {
+  size_t rate = settlement->switches->branch_count + branch;
+  double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
+  double noise = noise_of_branch(settlement, branch);
+  if (comes_back(settlement, branch, mode, noise)) return mode;
+  double sign = sign_with_noise(settlement->value[branch], noise);
+  if (sign != 0.0) return sign;
+  /* What an event has set is not what rounding has left, however small. */
+  sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
+  if (sign != 0.0) return sign;
+  if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
+  /* What was set to rest at 0 is there, wherever it comes from. */
+  bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
+  return was_set ? 0.0 : mode;
+}
+
+/* Where neither side of a zero leads away from it. */
+static const char *refuse_branch(const struct Settlement *settlement, size_t branch) {
+  const struct BranchFacts *facts = &settlement->switches->branches[branch];
+  log_message(
+      settlement->instance, STATUS_DISCARD,
+      "time %g: %s, line %ld of system.xml, jumps to and fro there: on either side of its jump the motion leads "
+      "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
+      settlement->time, facts->function, facts->line);
+  return without_end;
+}
+
+const char *branches_switch(struct Settlement *settlement, bool sides, bool *switched) {
+  const struct SwitchTable *switches = settlement->switches;
+  *switched = false;
+  for (size_t i = 0; i < switches->branch_count; i++) {
+    if (switches->branches[i].is_side != sides) continue;
+    double mode = branch_mode(settlement, i);
+    if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
+    if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
+    continuity_note(settlement, i);
+    settlement_set_mode(settlement, switches->branches[i].mode, mode);
+    *switched = true;
+  }
+  return NULL;
+}
+
+bool branches_begin(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t round = 0; round <= switches->branch_count; round++) {
+    if (!settlement_evaluate(settlement)) return false;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double noise = settlement_noise(settlement, i, switches->branch_count + i);
+      settlement_set_mode(settlement, switches->branches[i].mode, sign_with_noise(settlement->value[i], noise));
+    }
+  }
+  return true;
+}
+
+void branches_guess(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Point point = instance_point(instance);
+  double *value = settlement_of(instance).value;
+  for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
+  /* Of a mass that a sign decides on, 0 leaves nothing. */
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
+  for (size_t round = 0; round <= switches->branch_count; round++) {
+    if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
+    if (switches->feels_forces && lagrangian.accelerations(&point, instance->acceleration) != 0) return;
+    switches->indicators(&point, instance->acceleration, value);
+    bool same = true;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double *mode = &instance->parameter[switches->branches[i].mode], sign = sign_with_noise(value[i], 0.0);
+      same &= *mode == sign;
+      *mode = sign;
+    }
+    if (same) return;
+  }
+}

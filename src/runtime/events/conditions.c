@@ -1,0 +1,104 @@
+#include "events/conditions.h"
+
+static void assign(struct Settlement *settlement, const struct EventFacts *event) {
+  const struct SwitchTable *switches = settlement->switches;
+  const double *value = settlement->value + condition_place(settlement) + switches->event_count;
+  for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
+    const struct AssignmentFacts *facts = &switches->assignments[i];
+    if (facts->kind == VARIABLE_MODE) {
+      settlement_set_mode(settlement, facts->index, value[i]);
+      settlement->set_mode = true;
+    } else {
+      settlement->state[facts->index] = value[i];
+      settlement->jumped = settlement->thrown = settlement->changed = true;
+      settlement->moved |= facts->index < lagrangian.coordinate_count;
+    }
+  }
+}
+
+/*
+ * Conditions as they are before events, all of them or those of contacts alone. Of an expression it is the side of 0 on which it
+ * was last.
+ */
+static void note_conditions(struct Settlement *settlement, bool all) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool stays = event->passage != PASSAGE_HOLDS && condition == 0.0;
+    if (!stays && (all || event->is_of_contacts)) settlement->condition[i] = condition;
+  }
+}
+
+void conditions_begin(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double condition = settlement->value[condition_place(settlement) + i];
+    bool was_at_side = event->passage != PASSAGE_HOLDS && mode_of(settlement, event->side) != 0.0;
+    settlement->condition[i] = was_at_side ? mode_of(settlement, event->side) : condition;
+  }
+}
+
+/* An event may have turned an expression round before it came to the other side: that keeps its side. */
+static void keep_sides(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct EventFacts *event = &switches->events[i];
+    double sign = settlement->value[condition_place(settlement) + i];
+    if (event->passage != PASSAGE_HOLDS && sign != 0.0) settlement->instance->parameter[event->side] = sign;
+  }
+}
+
+/* An expression that has only been at 0 passes nothing. */
+static bool happens(const struct Settlement *settlement, size_t event) {
+  const struct EventFacts *facts = &settlement->switches->events[event];
+  double condition = settlement->value[condition_place(settlement) + event], before = settlement->condition[event];
+  if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(before > 0.0);
+  bool rises = condition > 0.0 && before < 0.0, falls = condition < 0.0 && before > 0.0;
+  return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
+}
+
+/* Whether two events set the same. */
+static bool are_rivals(const struct SwitchTable *switches, const struct EventFacts *one,
+                       const struct EventFacts *other) {
+  for (size_t i = one->first_assignment; i < one->first_assignment + one->assignment_count; i++)
+    for (size_t j = other->first_assignment; j < other->first_assignment + other->assignment_count; j++) {
+      const struct AssignmentFacts *first = &switches->assignments[i], *second = &switches->assignments[j];
+      if (first->kind == second->kind && first->index == second->index) return true;
+    }
+  return false;
+}
+
+/* Logs two events that happen at once and set the same. Whether there are any. */
+static bool find_rivals(const struct Settlement *settlement, size_t event) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t k = 0; k < event; k++) {
+    if (!happens(settlement, k)) continue;
+    if (!are_rivals(switches, &switches->events[k], &switches->events[event])) continue;
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the events of when=\"%s\" and when=\"%s\" happen at once and set the same; expected one event, or "
+        "conditions that keep them apart",
+        settlement->time, switches->events[k].when, switches->events[event].when);
+    return true;
+  }
+  return false;
+}
+
+const char *conditions_happen(struct Settlement *settlement, bool *again) {
+  const struct SwitchTable *switches = settlement->switches;
+  *again = false;
+  /* What contacts and frictions come to at the start has held before. */
+  if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
+  settlement->has_started = true;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    if (!happens(settlement, i)) continue;
+    if (find_rivals(settlement, i)) return "two events contradict each other";
+    assign(settlement, &switches->events[i]);
+    *again = true;
+  }
+  note_conditions(settlement, true);
+  if (!*again) keep_sides(settlement);
+  return NULL;
+}

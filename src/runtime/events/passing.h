@@ -1,0 +1,19 @@
+/* How a communication step goes through events: the solver starts anew behind each of them. */
+#ifndef PASSING_H
+#define PASSING_H
+
+#include "instance/switching.h"
+
+/* The functions of the same names in struct Switching. */
+bool switching_start(struct Instance *instance, const char *function);
+bool switching_release(struct Instance *instance, double time);
+bool switching_resume(struct Instance *instance, double time);
+const char *switching_check(struct Instance *instance, double time);
+void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
+                       const struct EventProgress *progress);
+const char *switching_update(struct Instance *instance, bool *changed);
+const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
+const char *switching_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
+                                   struct EventProgress *progress);
+
+#endif

@@ -1,0 +1,27 @@
+/*
+ * Where an indicator leaves its sign. In a window of time that hides nothing (window.h) it is held against its
+ * Chebyshev polynomial of degree 8: where the coefficients say that it cannot come to 0, or falls throughout, that is known;
+ * else each half of the window is looked at, with new values. So two zeros that lie close, or one at the very start, are
+ * found as well, whatever the solver.
+ */
+#ifndef SEARCH_H
+#define SEARCH_H
+
+#include "instance/instance.h"
+
+/* Numbers of workspace that a search needs, those of switching_narrow() among them. */
+size_t switching_search_count(void);
+
+/*
+ * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
+ * where none does. The time is NAN where its zeros cannot be told from one another.
+ */
+bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator);
+
+/*
+ * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
+ * last step along its tangent behind a zero that is nearer than the state's digits matter. False where there is none.
+ */
+bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
+
+#endif

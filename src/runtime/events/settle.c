@@ -1,0 +1,123 @@
+#include "events/settle.h"
+
+#include "evaluation/services.h"
+#include "events/branches.h"
+#include "events/conditions.h"
+#include "events/continuity.h"
+
+enum { ROUND_LIMIT = 2000 };
+
+static const char no_accelerations[] = "there are no accelerations at an event";
+
+static const char *act_by_contacts(struct Settlement *settlement, bool *again) {
+  const struct ContactLaws *laws = settlement->switches->contact_laws;
+  return laws != NULL ? laws->act(settlement, again) : NULL;
+}
+
+static const char *switch_pieces(struct Settlement *settlement, bool *again) {
+  return branches_switch(settlement, false, again);
+}
+
+static const char *act_by_frictions(struct Settlement *settlement, bool *again) {
+  const struct FrictionLaws *laws = settlement->switches->friction_laws;
+  const char *problem = laws != NULL ? laws->act(settlement, again) : NULL;
+  settlement->lags |= *again && settlement->occasion != AT_START;
+  return problem;
+}
+
+static const char *settle_contact_forces(struct Settlement *settlement, bool *again) {
+  const struct ContactLaws *laws = settlement->switches->contact_laws;
+  return laws != NULL ? laws->settle_forces(settlement, again) : NULL;
+}
+
+static const char *tell_friction_modes(struct Settlement *settlement, bool *again) {
+  const struct FrictionLaws *laws = settlement->switches->friction_laws;
+  return laws == NULL || laws->tell(settlement, again) ? NULL : no_accelerations;
+}
+
+static bool has_sides(const struct SwitchTable *switches) {
+  bool has = false;
+  for (size_t i = 0; i < switches->branch_count; i++) has |= switches->branches[i].is_side;
+  return has;
+}
+
+/* An importer comes to an event a little late: velocities that stick from it on are at rest before their side is asked for. */
+static const char *switch_sides(struct Settlement *settlement, bool *again) {
+  if (!has_sides(settlement->switches)) return NULL;
+  if (!settlement->lags) return branches_switch(settlement, true, again);
+  settlement->lags = false;
+  *again = true;
+  return settlement_push(settlement) ? NULL : constraints_not_kept;
+}
+
+/* What a round tries in turn, up to the first that changes something. */
+static const char *(*const actions[])(struct Settlement *settlement, bool *again) = {
+    act_by_contacts,     switch_pieces, act_by_frictions, settle_contact_forces,
+    tell_friction_modes, switch_sides,  conditions_happen};
+enum { ACTION_COUNT = sizeof actions / sizeof *actions };
+
+/* One round; *again where it changed something. */
+static const char *settle_once(struct Settlement *settlement, bool *again) {
+  const char *problem = NULL;
+  *again = false;
+  for (int i = 0; i < ACTION_COUNT && problem == NULL && !*again; i++) problem = actions[i](settlement, again);
+  return problem;
+}
+
+static const char *settle_in_rounds(struct Settlement *settlement) {
+  const char *problem = NULL;
+  bool again = true;
+  for (int round = 0; problem == NULL && again; round++) {
+    if (round == ROUND_LIMIT) return "events follow one another there without end";
+    if (!settlement_evaluate(settlement)) return no_accelerations;
+    if (round == 0) conditions_begin(settlement);
+    problem = settle_once(settlement, &again);
+  }
+  return problem;
+}
+
+/* Modes as the signs of the start values say, or what the solver has left of the constraints. */
+static const char *begin_settlement(struct Settlement *settlement) {
+  const struct ContactLaws *laws = settlement->switches->contact_laws;
+  if (settlement->occasion != AT_START) return continuity_begin(settlement);
+  if (!branches_begin(settlement)) return "there are no accelerations";
+  return laws != NULL ? laws->check_gaps(settlement) : NULL;
+}
+
+/* Velocities that have jumped keep the constraints. */
+static const char *push(struct Settlement *settlement) {
+  bool has_to_keep = settlement->jumped && lagrangian.projection != NULL;
+  return has_to_keep && !settlement_push(settlement) ? constraints_not_kept : NULL;
+}
+
+/* What must hold of contacts and frictions behind an event. */
+static const char *check_laws(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  const char *problem = NULL;
+  if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement)))
+    problem = switches->contact_laws->check_gaps(settlement);
+  if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(settlement);
+  return problem;
+}
+
+/* In exchange the event mode itself takes up what an importer went too far. */
+static const char *keep_on_constraints(const struct Settlement *settlement) {
+  bool has_to_keep = settlement->occasion != AT_START && settlement->occasion != IN_EXCHANGE;
+  if (!settlement->changed || !has_to_keep) return NULL;
+  return solver_project(settlement->instance, settlement->time, settlement->state);
+}
+
+const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                   bool *changed) {
+  struct Settlement settlement = settlement_at(instance, time, state, occasion);
+  settlement.indicator = indicator;
+  const char *problem = begin_settlement(&settlement);
+  if (problem == NULL) problem = settle_in_rounds(&settlement);
+  if (problem == NULL) problem = push(&settlement);
+  if (problem == NULL) problem = continuity_check(&settlement);
+  if (problem == NULL) problem = check_laws(&settlement);
+  if (problem == NULL) problem = keep_on_constraints(&settlement);
+  if (settlement.changed && occasion != AT_START) instance->situation->statistics[STATISTIC_EVENTS]++;
+  *changed = settlement.changed;
+  return problem;
+}

@@ -1,0 +1,15 @@
+/*
+ * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; branches of pieces; frictions
+ * that stick or slip; the sides of the expressions of events; and these events, each of which happens when its condition comes
+ * to hold.
+ */
+#ifndef SETTLE_H
+#define SETTLE_H
+
+#include "instance/switching.h"
+
+/* As in struct Switching. */
+const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                   bool *changed);
+
+#endif

@@ -1,0 +1,20 @@
+/*
+ * A window of time in which what the indicators look at hides nothing: a hill exp(-(x/w)^2), flat where a window begins, has
+ * no sample on it. Along the polynomials of the solver's last step, of whatever method, each elementary function is bounded
+ * over the disc about the middle of the window, as series_limit.h does it for steps.
+ */
+#ifndef WINDOW_H
+#define WINDOW_H
+
+#include "instance/instance.h"
+
+/* Numbers of workspace that this needs. */
+size_t switching_window_count(void);
+
+/*
+ * Brings the end of a window of time in the solver's last step nearer to its begin until nothing that the indicators look at
+ * can hide between samples. False where the window is as short as time can tell and may still hide something.
+ */
+bool switching_narrow(struct Instance *instance, double from, double *to);
+
+#endif
