@@ -1,5 +1,5 @@
 """
-The rooms of lagc and what it writes by: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
+The rooms of lagc and of what is linked into FMUs: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
 Prints what is otherwise; no output where all is well.
 """
 
@@ -46,7 +46,23 @@ LAGC = House(
     """.split(),
     ["src/compiler", "modelDescription"],
 )
-HOUSES = [LAGC]
+RUNTIME = House(
+    """
+    src/runtime/support
+    src/runtime/instance
+    src/runtime/evaluation
+    src/runtime/methods
+    src/runtime/methods/sundials
+    src/runtime/events
+    src/runtime/contacts
+    src/runtime/stepping
+    src/runtime/fmi
+    src/runtime/fmi2
+    src/runtime/fmi3
+    """.split(),
+    ["src/runtime"],
+)
+HOUSES = [LAGC, RUNTIME]
 
 
 def files_of(house):
