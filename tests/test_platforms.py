@@ -255,16 +255,6 @@ def test_same_bytes_from_another_folder(name, tmp_path):
         assert [entry.name for entry in (tmp_path / platform).iterdir()] == [path.name]
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-@pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau", "auto"])
-def test_what_switches_compiles_in_one_piece(method, fmi, tmp_path):
-    """With each solver: all names of the runtime meet in one file."""
-    platforms()
-    assert fmu.lagc(ROOT / "fmu" / "StickSlip" / "system.xml", "-o", tmp_path, "--solver", method).returncode == 0
-    compile_fmu("linux64", tmp_path / "system.c", tmp_path, "StickSlip", fmi, sundials=ROOT / "build" / "sundials-all")
-    assert (tmp_path / next(iter(libraries_of("linux64", "StickSlip", fmi)))).exists()
-
-
 def test_what_cannot_be_compiled(tmp_path):
     system = tmp_path / "system.c"
     system.write_text("int f(void) { return unknown; }\n")

@@ -12,7 +12,8 @@ from lxml import etree
 
 import clashes
 import fmu
-from fmu import ROOT, complaints_about
+from differential.build import runtime
+from fmu import BUILD, ROOT, complaints_about
 
 WITH_SOURCES = fmu.all_names()
 
@@ -63,6 +64,32 @@ def test_no_names_of_the_runtime_clash(version):
     assert clashes.complaints(unit) == ""
     assert "'rests_on' redeclared" in clashes.complaints(unit + "static const int rests_on[] = {0};\n").replace("‘", "'").replace("’", "'")
     assert {"rests", "variables", "derivatives", "lu_place", "switching_values"} <= set(clashes.generated_names())
+
+
+# What makes lagc take other files of the runtime, with the words for lagc; FMI 2.0 and 3.0 in turn.
+KINDS = [
+    *(("StickSlip", "--solver", method) for method in ("taylor", "erk", "bdf", "radau", "auto")),
+    ("BouncingBall",),
+    ("FourBar", "--form", "tables"),
+    ("FlyballGovernor", "--form", "statements"),
+    ("SimplePendulumLinear",),
+    ("StateFeedback",),
+]
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=" ".join)
+def test_one_piece_has_all_that_it_calls(kind, tmp_path):
+    """What lagc includes of the runtime, as for other platforms and for packages: nothing is missing, and no names clash."""
+    system, *words = kind
+    assert fmu.lagc(ROOT / "fmu" / system / "system.xml", "-o", tmp_path, *words).returncode == 0
+    version = 2 + KINDS.index(kind) % 2
+    layer = [word for file in (ROOT / "src" / "runtime" / f"fmi{version}").glob("*.c") for word in ("-include", file)]
+    libraries = [word for word in runtime(version) if not str(word).endswith(".o") and word != BUILD / "libsolvers.a"]
+    headers = [f"-I{folder}" for folder in (ROOT / "include", ROOT / "src" / "runtime")]
+    headers += [f"-isystem{folder}" for folder in (ROOT / "build" / "sundials" / "include", "/usr/include/suitesparse")]
+    compiled = ["gcc", "-std=c11", "-O0", "-fPIC", "-shared", "-DFMU_IN_ONE_FILE", "-DSERIES_ROLLED", *headers, *layer, tmp_path / "system.c"]
+    result = subprocess.run([*compiled, *libraries, "-Wl,--no-undefined", "-o", tmp_path / "fmu.so"], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr[:2000]
 
 
 def test_global_names_are_those_of_the_fmu(tmp_path):
