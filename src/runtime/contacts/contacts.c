@@ -9,6 +9,7 @@
 #include "contacts/contact_forces.h"
 #include "contacts/impacts.h"
 #include "contacts/pushes.h"
+#include "evaluation/evaluate.h"
 #include "events/continuity.h"
 #include "events/settlement.h"
 
@@ -165,10 +166,7 @@ static bool close_contacts(struct Settlement *settlement) {
 
 /* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */
 static double largest_drift(const struct Settlement *settlement) {
-  double scale = 0.0;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++)
-    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
-  return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * scale;
+  return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(settlement->state, 0);
 }
 
 /* Opens contacts that were lifted. Whether there were any. */
@@ -188,7 +186,7 @@ static bool open_lifted(struct Settlement *settlement) {
 /* Opens contacts whose gap has just turned away, as at an edge, or that an event throws apart. Whether there were any. */
 static bool open_parting(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
-  double drift = continuity_allowed_share(settlement) * settlement_velocity_scale(settlement);
+  double drift = continuity_allowed_share(settlement) * largest_scale(settlement->state, lagrangian.coordinate_count);
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t place = contact_place(settlement, i, CONTACT_RATE);

@@ -24,41 +24,63 @@ static double frictionless_mode(const struct Settlement *settlement, size_t plac
   return next < 0.0 ? -1.0 : 1.0;
 }
 
-/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
-static double friction_mode(const struct Settlement *settlement, size_t friction) {
+/* What decides on the mode of a friction. */
+struct FrictionState {
+  double mode, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
+  bool is_hit;                                  /* its zero was found, or its limit reached */
+  bool is_first;                                /* it has not switched in this settlement */
+  bool may_jump;                                /* velocities have jumped, or the simulation starts */
+  bool is_moving;                               /* by more than rounding */
+};
+
+static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
-  double mode = mode_of(settlement, facts->mode), velocity = settlement->value[place];
-  double rate = settlement->value[place + FRICTION_RATE];
+  size_t indicator = indicator_of_friction(settlement, friction);
+  struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
+                                .velocity = settlement->value[place],
+                                .rate = settlement->value[place + FRICTION_RATE],
+                                .stiction = settlement->value[place + FRICTION_STICTION],
+                                .is_hit = is_hit(settlement, indicator),
+                                .is_first = settlement->flips[indicator] == 0.0,
+                                .may_jump = settlement->jumped || settlement->occasion == AT_START};
+  if (state.mode == 0.0) state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
   /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
   double noise = settlement->noise[place] +
                  8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
-  double flips = settlement->flips[indicator_of_friction(settlement, friction)];
-  bool is_first = flips == 0.0, is_first_of_all = settlement->occasion == AT_START;
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
-  bool is_at_zero = !is_first || is_hit(settlement, indicator_of_friction(settlement, friction));
-  bool is_moving = fabs(velocity) > noise && (settlement->jumped || is_first_of_all || !is_at_zero);
-  double direction = velocity > 0.0 ? 1.0 : -1.0;
-  bool is_absent = settlement->switches->rests_on != NULL && settlement->value[place + FRICTION_STICTION] == 0.0 &&
-                   settlement->value[place + FRICTION_FORCE] == 0.0;
-  if (is_absent) return frictionless_mode(settlement, place, mode, is_moving);
-  if (mode == 0.0) {
-    double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    double stiction = settlement->value[place + FRICTION_STICTION];
-    /* An importer comes to a zero or past it, and does not tell whose. */
-    bool is_reached = is_hit(settlement, indicator_of_friction(settlement, friction)) ||
-                      (settlement->occasion == IN_EXCHANGE && fabs(force) >= stiction);
-    bool slips = fabs(force) > stiction || (is_reached && is_first && !settlement->jumped);
-    if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
-    return slips ? (force > 0.0 ? 1.0 : -1.0) : 0.0;
-  }
-  bool turns = mode * velocity < 0.0 || is_hit(settlement, indicator_of_friction(settlement, friction));
-  if (is_moving && (settlement->jumped || is_first_of_all)) return direction;
-  if (is_moving && !turns) return mode;
-  if (is_first_of_all && is_first) return 0.0;
+  bool is_at_zero = !state.is_first || state.is_hit;
+  state.is_moving = fabs(state.velocity) > noise && (state.may_jump || !is_at_zero);
+  return state;
+}
+
+/* Of one that sticks. */
+static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
+  /* An importer comes to a zero or past it, and does not tell whose. */
+  bool is_reached = state->is_hit || (settlement->occasion == IN_EXCHANGE && fabs(state->force) >= state->stiction);
+  bool slips = fabs(state->force) > state->stiction || (is_reached && state->is_first && !settlement->jumped);
+  return slips ? (state->force > 0.0 ? 1.0 : -1.0) : 0.0;
+}
+
+/* Of one that slides, at a velocity that has not jumped. */
+static double mode_from_sliding(const struct Settlement *settlement, size_t place, const struct FrictionState *state) {
+  bool turns = state->mode * state->velocity < 0.0 || state->is_hit;
+  if (state->is_moving && !turns) return state->mode;
+  if (settlement->occasion == AT_START && state->is_first) return 0.0;
   double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
-  if (!is_moving && mode * rate >= least && (!turns || !is_first)) return mode;
-  return 0.0;
+  bool leaves = !state->is_moving && state->mode * state->rate >= least && (!turns || !state->is_first);
+  return leaves ? state->mode : 0.0;
+}
+
+/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
+static double friction_mode(const struct Settlement *settlement, size_t friction) {
+  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
+  struct FrictionState state = friction_state(settlement, friction);
+  bool is_absent = settlement->switches->rests_on != NULL && state.stiction == 0.0 &&
+                   settlement->value[place + FRICTION_FORCE] == 0.0;
+  if (is_absent) return frictionless_mode(settlement, place, state.mode, state.is_moving);
+  if (state.is_moving && state.may_jump) return state.velocity > 0.0 ? 1.0 : -1.0;
+  return state.mode == 0.0 ? mode_from_rest(settlement, &state) : mode_from_sliding(settlement, place, &state);
 }
 
 static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
@@ -114,7 +136,7 @@ static bool find_held(struct Settlement *settlement, const struct FrictionFacts 
 static bool tell_frictions(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
-  double slowest = share * settlement_velocity_scale(settlement);
+  double slowest = share * largest_scale(settlement->state, lagrangian.coordinate_count);
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionFacts *facts = &switches->frictions[i];

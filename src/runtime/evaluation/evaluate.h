@@ -2,6 +2,8 @@
 #ifndef EVALUATE_H
 #define EVALUATE_H
 
+#include <math.h>
+
 #include "instance/instance.h"
 
 /* Whether all of value[count] are finite: infinities and NaN leave a NaN in the sum. */
@@ -9,6 +11,18 @@ static inline bool are_finite(const double *value, size_t count) {
   double sum = 0.0;
   for (size_t i = 0; i < count; i++) sum += value[i] - value[i];
   return sum == 0.0;
+}
+
+/* The size of a state, for comparisons: at least its nominal value. */
+static inline double scale_of(const double *state, size_t i) {
+  return fmax(fabs(state[i]), lagrangian.nominal[i]);
+}
+
+/* The largest among the coordinates, or the velocities, where first is the first of them. */
+static inline double largest_scale(const double *state, size_t first) {
+  double scale = 0.0;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
+  return scale;
 }
 
 /* The name of the state with this index. */

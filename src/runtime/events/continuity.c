@@ -37,8 +37,7 @@ double continuity_allowed_share(const struct Settlement *settlement) {
   double change = 0.0;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     size_t velocity = lagrangian.coordinate_count + i;
-    double scale = fmax(fabs(settlement->state[velocity]), lagrangian.nominal[velocity]);
-    change = fmax(change, fabs(settlement->acceleration[i]) / scale);
+    change = fmax(change, fabs(settlement->acceleration[i]) / scale_of(settlement->state, velocity));
   }
   return least_kink + 4.0 * settlement->overshoot * change;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "events/chebyshev.h"
 #include "events/indicators.h"
@@ -191,7 +192,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
   size_t count = indicator_count(lagrangian.switches);
   double way = INFINITY, share = INFINITY, least = 8.0 * DBL_EPSILON * fabs(time);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    share = fmin(share, tangent_share * fmax(fabs(search->state[i]), lagrangian.nominal[i]) / fabs(rate[i]));
+    share = fmin(share, tangent_share * scale_of(search->state, i) / fabs(rate[i]));
   share = fmax(share, least);
   if (!switching_indicators(search->instance, time, search->state, search->values)) return INFINITY;
   memcpy(search->samples, search->values, count * sizeof *search->samples);

@@ -115,13 +115,6 @@ double settlement_noise(const struct Settlement *settlement, size_t place, size_
   return settlement->noise[place] + (isfinite(change) ? change : 0.0);
 }
 
-double settlement_velocity_scale(const struct Settlement *settlement) {
-  double scale = 0.0;
-  for (size_t i = lagrangian.coordinate_count; i < 2 * lagrangian.coordinate_count; i++)
-    scale = fmax(scale, fmax(fabs(settlement->state[i]), lagrangian.nominal[i]));
-  return scale;
-}
-
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value) {
   settlement->instance->parameter[mode] = value;
   settlement->instance->prepared_is_stale = true;

@@ -124,21 +124,6 @@ static inline double mode_of(const struct Settlement *settlement, size_t mode) {
   return settlement->instance->parameter[mode];
 }
 
-/* Takes up what the solver has left of the constraints. NULL, or why the motion cannot go on. */
-const char *continuity_begin(struct Settlement *settlement);
-
-/* Before a branch switches: how things are until then. */
-void continuity_note(struct Settlement *settlement, size_t branch);
-
-/* Behind all: whether branches, or events that set modes or coordinates, have left things in their places. */
-const char *continuity_check(struct Settlement *settlement);
-
-/* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
-double continuity_allowed_share(const struct Settlement *settlement);
-
-/* The largest scale among the velocities. */
-double settlement_velocity_scale(const struct Settlement *settlement);
-
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
 
 /* What is tried out in between leaves no mode behind. */

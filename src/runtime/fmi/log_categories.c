@@ -30,8 +30,9 @@ const char *log_category_of(enum Status status) {
   return categories[category_of(status)];
 }
 
-unsigned log_wanted(unsigned chosen) {
+unsigned log_wanted(bool has_logger, unsigned chosen) {
   unsigned wanted = 0;
+  if (!has_logger) return 0;
   for (int status = STATUS_DONE; status <= STATUS_ERROR; status++)
     if ((chosen & (1u << category_of((enum Status)status) | 1u << CATEGORY_ALL)) != 0) wanted |= 1u << status;
   return wanted;

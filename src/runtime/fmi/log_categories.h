@@ -13,8 +13,8 @@ enum {
 /* The name of the category of a message with this status. */
 const char *log_category_of(enum Status status);
 
-/* Which statuses, as bits 1 << status, have messages in these categories. */
-unsigned log_wanted(unsigned categories);
+/* Which statuses, as bits 1 << status, have messages in these categories, for a caller who has a logger. */
+unsigned log_wanted(bool has_logger, unsigned categories);
 
 /* Adds the categories with these names to a set. False after logging a name that there is not. */
 bool log_choose(struct Instance *instance, const char *const *names, size_t count, unsigned *chosen,

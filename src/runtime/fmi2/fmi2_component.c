@@ -6,17 +6,18 @@
 #include "fmi/log_categories.h"
 #include "fmi2/fmi2_life_cycle.h"
 
-/* Which messages the core has to write. */
-static unsigned wanted_statuses(const struct Component *component) {
-  return component->logger != NULL ? log_wanted(component->categories) : 0;
-}
-
 /* The message is itself a printf format, and '#' introduces a variable in it (section 2.1.5). */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
   log_escape(message, "%#", escaped);
   component->logger(component->environment, component->name, fmi2_status(status), log_category_of(status), escaped);
+}
+
+/* Where the component's messages go. */
+static struct Log log_of(struct Component *component) {
+  return (struct Log){
+      .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
 
 /* Checks the arguments of fmi2Instantiate. */
@@ -44,7 +45,7 @@ static struct Component *component_create(const struct Component *description, e
   if (component != NULL && name != NULL) {
     *component = *description;
     component->name = memcpy(name, description->name, name_size);
-    struct Log log = {.write = send, .receiver = component, .wanted = wanted_statuses(component)};
+    struct Log log = log_of(component);
     if (instance_create(&component->instance, kind, memory, &log)) return component;
   }
   if (component != NULL) memory->free(component);
@@ -62,7 +63,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                                   .environment = functions->componentEnvironment,
                                   .name = instanceName != NULL ? instanceName : "",
                                   .categories = ALL_CATEGORIES};
-  struct Log log = {.write = send, .receiver = &description, .wanted = wanted_statuses(&description)};
+  struct Log log = log_of(&description);
   struct Allocator memory = {functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
   /* What goes wrong is sent without debug logging too, unless fmi2SetDebugLogging names categories. */
@@ -90,6 +91,6 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
   if (instance == NULL || !log_choose(instance, names, nCategories, &chosen, __func__)) return fmi2Error;
   if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : PROBLEM_CATEGORIES;
   else component->categories = loggingOn ? chosen : component->categories & ~chosen;
-  instance->log.wanted = wanted_statuses(component);
+  instance->log = log_of(component);
   return fmi2OK;
 }

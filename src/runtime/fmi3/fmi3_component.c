@@ -7,10 +7,6 @@
 #include "fmi3/fmi3_life_cycle.h"
 #include "fmi3/fmi3_memory.h"
 
-static unsigned wanted_statuses(const struct Component *component) {
-  return component->logger != NULL ? log_wanted(component->categories) : 0;
-}
-
 /* '#' introduces a variable in a message. */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
@@ -21,7 +17,8 @@ static void send(void *receiver, enum Status status, const char *message) {
 
 /* Where the component's messages go. */
 static struct Log log_of(struct Component *component) {
-  return (struct Log){.write = send, .receiver = component, .wanted = wanted_statuses(component)};
+  return (struct Log){
+      .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
 
 /* Checks the arguments that all kinds have. Why there is no instance is told with logging or without. */
@@ -162,6 +159,6 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean loggingOn, size_t nCa
   if (instance == NULL || !log_choose(instance, categories, nCategories, &chosen, __func__)) return fmi3Error;
   if (nCategories == 0) chosen = ALL_CATEGORIES;
   component->categories = loggingOn ? chosen : component->categories & ~chosen;
-  instance->log.wanted = wanted_statuses(component);
+  instance->log = log_of(component);
   return fmi3OK;
 }

@@ -66,18 +66,29 @@ static size_t auto_saved_size(void) {
   return largest_saved_size() + sizeof(struct Choice);
 }
 
+static bool are_possible_counts(const struct Choice *choice) {
+  const int64_t counts[] = {choice->steps, choice->restarts,      choice->windows, choice->patience,
+                            choice->stay,  choice->next_patience, choice->crosses, choice->is_trial};
+  return snapshot_are_counts(counts, sizeof counts / sizeof *counts) && choice->steps <= window[choice->method] &&
+         choice->next_patience <= 2 * LONG_PATIENCE && choice->stay <= 4 * LONG_STAY && choice->is_trial <= 1 &&
+         choice->crosses <= 1;
+}
+
+/* Not NaN, which no comparison holds of. */
+static bool are_possible_numbers(const struct Choice *choice) {
+  bool is_work = choice->work >= 0.0 && choice->work <= LARGEST_WORK;
+  bool is_trial_work = choice->trial_work >= 0.0 && choice->trial_work <= LARGEST_WORK;
+  bool are_speeds = choice->last_speed >= 0.0 && choice->taylor_speed >= 0.0;
+  bool are_rates = choice->taylor_rate >= 0.0 && choice->rate >= 0.0;
+  bool is_step = choice->promised_step >= 0.0 && isfinite(choice->promised_step);
+  return isfinite(choice->begin) && is_work && is_trial_work && are_speeds && are_rates && is_step;
+}
+
 static bool auto_could_save(const struct Situation *situation, const void *saved) {
   struct Choice choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
-  const int64_t counts[] = {choice.steps, choice.restarts,      choice.windows, choice.patience,
-                            choice.stay,  choice.next_patience, choice.crosses, choice.is_trial};
-  return choice.method >= 0 && choice.method < AUTO_METHODS &&
-         snapshot_are_counts(counts, sizeof counts / sizeof *counts) && choice.steps <= window[choice.method] &&
-         choice.next_patience <= 2 * LONG_PATIENCE && choice.stay <= 4 * LONG_STAY && choice.is_trial <= 1 &&
-         choice.crosses <= 1 && isfinite(choice.begin) && choice.work >= 0.0 && choice.work <= LARGEST_WORK &&
-         choice.last_speed >= 0.0 && choice.trial_work >= 0.0 && choice.trial_work <= LARGEST_WORK &&
-         choice.promised_step >= 0.0 && isfinite(choice.promised_step) && choice.taylor_speed >= 0.0 &&
-         choice.taylor_rate >= 0.0 && choice.rate >= 0.0 && solvers[choice.method]->could_save(situation, saved);
+  return choice.method >= 0 && choice.method < AUTO_METHODS && are_possible_counts(&choice) &&
+         are_possible_numbers(&choice) && solvers[choice.method]->could_save(situation, saved);
 }
 
 /* Each method finds its own memory in the instance while it works. */

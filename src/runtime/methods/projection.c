@@ -44,10 +44,6 @@ static struct Work work_of(const struct Instance *instance) {
   return work;
 }
 
-static double scale_of(const double *state, size_t i) {
-  return fmax(fabs(state[i]), lagrangian.nominal[i]);
-}
-
 /* The largest of the n values from first on, in units of the scales of the state. */
 static double size_of(const double *value, const double *state, size_t first) {
   double largest = 0.0;
@@ -56,13 +52,6 @@ static double size_of(const double *value, const double *state, size_t first) {
     if (!(size <= largest)) largest = size;
   }
   return largest;
-}
-
-/* The largest scale among the coordinates, or the velocities, where first is the first of them. */
-static double largest_scale(const double *state, size_t first) {
-  double scale = 0.0;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) scale = fmax(scale, scale_of(state, first + i));
-  return scale;
 }
 
 /* What is to fulfil the constraints: coordinates or velocities, those of a step or of the start. */

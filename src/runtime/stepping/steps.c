@@ -82,14 +82,41 @@ static const char *excess(const struct CommunicationStep *step, double work) {
              : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
 }
 
+/* What a communication step has cost; before: the statistics as it began. */
+struct Cost {
+  int64_t before[STATISTIC_COUNT];
+  bool is_told; /* that it is slow */
+};
+
+/* NULL, or why the solver gives up. */
+static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step,
+                              const struct EventProgress *progress, struct Cost *cost) {
+  double work = work_since(instance, step, cost->before);
+  const char *problem = excess(step, work);
+  if (problem != NULL && lagrangian.switching != NULL) lagrangian.switching->explain(instance, step, progress);
+  if (problem != NULL) return problem;
+  bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
+  if (is_slow && !cost->is_told) warn_of_slowness(instance, step, work);
+  cost->is_told |= is_slow;
+  return NULL;
+}
+
+/* One step of the solver, or one past a zero that it cannot reach. NULL, or the reason why there is none. */
+static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
+                                struct EventProgress *progress) {
+  const struct Switching *switcher = lagrangian.switching;
+  const char *problem = lagrangian.solver->advance(instance, step);
+  if (problem == NULL || switcher == NULL) return problem;
+  return switcher->pass_barrier(instance, step, problem, progress);
+}
+
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
   const struct Span *last = &instance->situation->last_step;
   const struct Switching *switcher = lagrangian.switching;
   struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
-  int64_t before[STATISTIC_COUNT];
-  memcpy(before, instance->situation->statistics, sizeof before);
-  bool is_told = false;
+  struct Cost cost = {.is_told = false};
+  memcpy(cost.before, instance->situation->statistics, sizeof cost.before);
   int resting = 0;
   for (;; step->count++) {
     const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
@@ -98,15 +125,8 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     bool is_inside = last->end > step->start && last->end < step->end;
     if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
     if (last->end >= step->end) return NULL;
-    double work = work_since(instance, step, before);
-    problem = excess(step, work);
-    if (problem != NULL && switcher != NULL) switcher->explain(instance, step, &progress);
-    if (problem != NULL) return problem;
-    bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
-    if (is_slow && !is_told) warn_of_slowness(instance, step, work);
-    is_told |= is_slow;
-    problem = lagrangian.solver->advance(instance, step);
-    if (problem != NULL && switcher != NULL) problem = switcher->pass_barrier(instance, step, problem, &progress);
+    problem = check_cost(instance, step, &progress, &cost);
+    if (problem == NULL) problem = advance_once(instance, step, &progress);
     if (problem != NULL) return problem;
     resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
     if (resting == RESTING_STEP_LIMIT) return solver_resting;
