@@ -1,6 +1,7 @@
 """Finds what the build made; every test runs on the packed FMUs."""
 
 import sys
+from collections import Counter
 
 import pytest
 
@@ -8,6 +9,10 @@ import fmi3
 import fmu
 
 sys.path.append(str(fmu.ROOT / "scripts"))
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "release: before a release, by scripts/test --all: what packages, platforms, reports and long searches need")
 
 
 def pytest_generate_tests(metafunc):
@@ -19,12 +24,26 @@ def pytest_generate_tests(metafunc):
         metafunc.parametrize("name", fmu.all_names())
 
 
+def seconds_of_files(terminalreporter):
+    """What the tests of each file took, with all that they built, of two workers together; the longest first."""
+    seconds = Counter()
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if isinstance(report, pytest.TestReport):
+                seconds[report.nodeid.partition("::")[0]] += report.duration
+    return seconds.most_common()
+
+
 def pytest_terminal_summary(terminalreporter):
     from test_left_out import sizes
 
     terminalreporter.write_line(f"\n{'FMU':34}{'archive':>10}{'library':>10}{'SUNDIALS':>10}{'equations':>10}  bytes")
     for name, *numbers in sizes():
         terminalreporter.write_line(f"{name:34}" + "".join(f"{number:10}" for number in numbers))
+    taken = seconds_of_files(terminalreporter)
+    terminalreporter.write_line(f"\n{sum(seconds for _, seconds in taken):.0f} s of all workers, of that by file:")
+    for name, seconds in taken[:30]:
+        terminalreporter.write_line(f"{seconds:7.0f}  {name}")
 
 
 def created(kind):

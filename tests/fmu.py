@@ -40,6 +40,15 @@ def small_names():
     return [name for name in all_names() if name not in ("Rope", "NFourBar")]
 
 
+# Each kind of runtime once: taylor, auto, exact and nothing to solve; tables; constraints, contacts, frictions.
+OF_EACH_KIND = (ROOT / "tests" / "of_each_kind.txt").read_text().split()
+
+
+def one_of_each_kind(names):
+    """For tests under sanitizers: the others are for a release."""
+    return [pytest.param(name, marks=() if name in OF_EACH_KIND else pytest.mark.release) for name in names]
+
+
 @functools.cache
 def unpacked_archive(path):
     folder = tempfile.TemporaryDirectory(prefix=path.stem)

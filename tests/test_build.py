@@ -11,6 +11,8 @@ import pytest
 import fmu
 from fmu import BUILD, ROOT, lagc
 
+pytestmark = pytest.mark.release
+
 NAMES_OF_TARGETS = ("all", "lagc", "solvers", "test", "SimplePendulum_fmu")
 OFFICIAL = Path(fmpy.__file__).parent / "c-code"
 

@@ -13,6 +13,8 @@ from coupling.master import Diverged, Master
 from coupling.slaves import FMUS, Slave
 from fmu import ROOT
 
+pytestmark = pytest.mark.release
+
 
 def test_gains_of_the_archive_are_those_of_lqr():
     """The SSP holds numbers; they are right for the cart as it is, to the digits that are written there."""

@@ -22,6 +22,8 @@ from sympy.physics.mechanics import (
 import fmu
 import wheel
 
+pytestmark = pytest.mark.release
+
 t = dynamicsymbols._t
 m, M, l, g, R, k, Omega = sm.symbols("m M l g R k Omega")
 VALUES = {m: 0.7, M: 1.9, l: 0.6, g: 9.81, R: 0.3, k: 2.5, Omega: 1.7}

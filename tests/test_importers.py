@@ -19,6 +19,8 @@ import fmi3
 import fmu
 from fmu import BUILD, ROOT
 
+pytestmark = pytest.mark.release
+
 END, STEP = 0.5, 0.01
 NANOSECONDS = 10**9  # libcosim counts time in them
 

@@ -17,6 +17,8 @@ from fmpy.validation import validate_fmu
 import fmu
 from fmu import ROOT
 
+pytestmark = pytest.mark.release
+
 BEAD = (ROOT / "tests" / "systems" / "BeadOnHoop" / "system.xml").read_text()  # solver erk
 PENDULUM = ROOT / "fmu" / "SimplePendulum" / "system.xml"
 

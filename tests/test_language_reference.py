@@ -9,6 +9,8 @@ import fmu
 from closed_forms import pendulum_angle
 from fmu import ROOT, Instance, build_systems, lagc
 
+pytestmark = pytest.mark.release
+
 REFERENCE = (ROOT / "fmu" / "README.md").read_text()
 EXAMPLES = {
     re.search(r' name="(\w+)"', text).group(1): text

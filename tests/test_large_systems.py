@@ -6,6 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from fmu import ROOT, build_systems, lagc
 
+pytestmark = pytest.mark.release
+
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 JOINTS = 7
 MASS, LENGTH, ACROSS, ALONG, GRAVITY = 2, 0.3, 0.02, 0.004, 9.81

@@ -21,6 +21,8 @@ from fmu import BUILD, ROOT, alone
 sys.path.append(str(ROOT / "scripts"))
 from cross import PLATFORMS, Failure, compile_fmu, libraries_of  # noqa: E402
 
+pytestmark = pytest.mark.release
+
 FOLDER = BUILD / "platforms"
 ENVIRONMENT = {**os.environ, "WINEPREFIX": str(FOLDER / "wine"), "WINEDEBUG": "-all"}
 # By taylor, auto, exact, nothing, erk, bdf, and bdf with KLU; and one with events.

@@ -13,6 +13,8 @@ import pytest
 import fmu
 from fmu import BUILD, ROOT
 
+pytestmark = pytest.mark.release
+
 CALLS = int(os.environ.get("RANDOM_CALLS", "20000"))
 SEED = os.environ.get("RANDOM_SEED", "1")
 

@@ -17,6 +17,8 @@ from numerics.stiff import Sample
 from numerics.stiff_problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
 from test_rope import START, accelerations
 
+pytestmark = pytest.mark.release
+
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 
 

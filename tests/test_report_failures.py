@@ -11,6 +11,8 @@ from numerics.mechanism_problems import PROBLEMS as MECHANISMS
 from numerics.stiff import Sample
 from numerics.stiff_problems import Problem
 
+pytestmark = pytest.mark.release
+
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch, tmp_path):

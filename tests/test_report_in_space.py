@@ -12,6 +12,8 @@ from numerics.accelerations import ROBOTS, Missing
 from numerics.mechanisms import METHODS, Fmu, Peer, first_run
 from numerics.spatial_problems import PROBLEMS
 
+pytestmark = pytest.mark.release
+
 BRICARD, GOVERNOR, TOP, FREE_BODY, ARM = PROBLEMS
 
 

@@ -13,6 +13,8 @@ from numerics import driver, mechanisms
 from numerics.mechanism_problems import ANGLES, PROBLEMS, squeezer_angles
 from numerics.mechanisms import METHODS, Fmu, Sample, first_run
 
+pytestmark = pytest.mark.release
+
 PENDULUM, FOUR_BARS, SQUEEZER, KNIFE_EDGE = PROBLEMS
 
 

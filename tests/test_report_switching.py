@@ -13,6 +13,8 @@ from numerics.switching import Sample, first_run
 from numerics.switching_peers import METHODS
 from numerics.switching_problems import BALL, BLOCK, CRADLE, GROWING, LOSSLESS_PENDULUM, PENDULUM, PROBLEMS, RESTING_BALL, quarter
 
+pytestmark = pytest.mark.release
+
 INSTALLED = {"SciPy": "scipy", "heyoka": "heyoka", "MuJoCo": "mujoco"}
 
 

@@ -12,6 +12,8 @@ from fmpy.fmi2 import FMU2Model
 import fmu
 from fmu import build_systems, lagc
 
+pytestmark = pytest.mark.release
+
 ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots"
 # The file, and whether the robot flies.
 FILES = {

@@ -14,6 +14,8 @@ import pytest
 
 from fmu import ROOT, archive
 
+pytestmark = pytest.mark.release
+
 
 def command(output, *words):
     return [sys.executable, str(ROOT / "scripts" / "sweep.py"), *words, "--output", str(output)]

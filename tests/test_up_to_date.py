@@ -14,6 +14,8 @@ import fmu
 from fmu import DISCARD, ERROR
 from test_state import serialized
 
+pytestmark = pytest.mark.release
+
 OSCILLATOR = """<system name="{name}">
   <parameter name="m" start="2" min="0" max="10"/><parameter name="k" start="3"/>{drift}<input name="u"/>
   <coordinate name="x" velocity="v" start="1"/>

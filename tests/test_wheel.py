@@ -17,6 +17,8 @@ import fmu
 import wheel
 from fmu import ROOT
 
+pytestmark = pytest.mark.release
+
 
 def succeed(*words, cwd, **options):
     result = wheel.run(*words, cwd=cwd, **options)
