@@ -8,7 +8,7 @@ from fmpy.fmi1 import FMICallException
 import fmi3
 import fmu
 from fmu import ERROR
-from test_fmi3 import Importer, observed, opened  # noqa: F401
+from test_fmi3 import Importer, observed
 from test_switching import SWITCHED, bounces
 
 # Bounces that an event makes, which come without end in a finite time.
@@ -55,13 +55,13 @@ def to(instance, end, at_event=lambda: None):
     return count
 
 
-def test_who_has_event_mode(opened):  # noqa: F811
+def test_who_has_event_mode(opened):
     for name in fmu.all_names():
         has = name in SWITCHED or bool(fmi3.description(name).eventIndicators)
         assert fmi3.description(name).coSimulation.hasEventMode == has
 
 
-def test_an_importer_sees_both_sides_of_a_bounce(opened):  # noqa: F811
+def test_an_importer_sees_both_sides_of_a_bounce(opened):
     h, e = 0.7, 0.6
     instance = start(opened, "BouncingBall", {"h": h, "e": e})
     times, speeds = bounces(h, e, 8)
@@ -90,7 +90,7 @@ def test_event_mode_does_not_change_the_motion(opened, name):  # noqa: F811
     assert count > 0
 
 
-def test_a_step_to_an_event_and_no_further(opened):  # noqa: F811
+def test_a_step_to_an_event_and_no_further(opened):
     """Where the communication point is the time of the event, to rounding, the event is told then or at once after it."""
     first = start(opened, "BouncingBall")
     _, _, _, impact = first.step(1.0)
@@ -106,7 +106,7 @@ def test_a_step_to_an_event_and_no_further(opened):  # noqa: F811
         assert last == pytest.approx(impact, rel=1e-14)
 
 
-def test_an_event_must_be_gone_through(opened):  # noqa: F811
+def test_an_event_must_be_gone_through(opened):
     instance = start(opened, "BouncingBall")
     instance.step(1.0)
     with pytest.raises(FMICallException) as raised:
@@ -114,7 +114,7 @@ def test_an_event_must_be_gone_through(opened):  # noqa: F811
     assert raised.value.status == ERROR and "expected fmi3EnterEventMode" in instance.messages[-1][2]
 
 
-def test_event_mode_without_an_event(opened):  # noqa: F811
+def test_event_mode_without_an_event(opened):
     """An importer may enter it at any communication point, as where it changes a parameter."""
     instance, plain = start(opened, "BouncingBall", {"h": 0.3}), opened("BouncingBall").initialize({"h": 0.3})
     for one in (instance, plain):
@@ -128,7 +128,7 @@ def test_event_mode_without_an_event(opened):  # noqa: F811
     assert instance.get("h", "v") == pytest.approx(plain.get("h", "v"), abs=1e-12)
 
 
-def test_a_state_at_an_event_is_kept(opened):  # noqa: F811
+def test_a_state_at_an_event_is_kept(opened):
     instance = start(opened, "NewtonsCradle")
     while not instance.step(0.1)[0]:
         pass
@@ -157,7 +157,7 @@ def test_a_state_at_an_event_is_kept(opened):  # noqa: F811
     assert "no instance can have saved" in plain.messages[-1][2]
 
 
-def test_events_without_end_come_to_an_end(opened):  # noqa: F811
+def test_events_without_end_come_to_an_end(opened):
     instance = start(opened, "Zeno")
     end = 3 * np.sqrt(2 / 9.81)
     with pytest.raises(FMICallException):
@@ -169,7 +169,7 @@ def test_events_without_end_come_to_an_end(opened):  # noqa: F811
     assert instance.time == pytest.approx(end, rel=1e-6)
 
 
-def test_intermediate_update_and_event_mode(opened):  # noqa: F811
+def test_intermediate_update_and_event_mode(opened):
     """At the end of a step that an event ends, the state before it is told."""
     importer = Importer()
     ball = observed(opened, "BouncingBall", importer, ["h", "v"], **EVENTS).initialize()
@@ -190,7 +190,7 @@ def test_fmpy_goes_through_events(name):
         assert last[0] == pytest.approx(last[1], abs=1e-10)
 
 
-def test_no_event_mode_where_it_was_not_asked_for(opened):  # noqa: F811
+def test_no_event_mode_where_it_was_not_asked_for(opened):
     instance = opened("BouncingBall").initialize()
     with pytest.raises(FMICallException):
         instance.fmu.enterEventMode()
