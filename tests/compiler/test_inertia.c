@@ -14,7 +14,7 @@ static void close_pattern(bool coupled[COORDINATES][COORDINATES]) {
 
 /* Elements at positions (i, j), j <= i, of a matrix that has all of its diagonal. The node of an element tells it again. */
 static void check_components(struct Position *positions, size_t count) {
-  struct Elements elements = {.count = count, .capacity = count};
+  struct Elements elements = {.count = count};
   bool coupled[COORDINATES][COORDINATES] = {{false}};
   elements.positions = malloc(count * sizeof *elements.positions);
   elements.nodes = malloc(count * sizeof *elements.nodes);
