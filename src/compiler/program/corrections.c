@@ -77,7 +77,7 @@ static void compute_blocks(const struct Program *program, struct Values *values,
   free(targets.nodes);
 }
 
-/* side: a right side for each row. */
+/* side: a right side for each row; starting: fixed coordinates stay where they are. */
 static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *side,
                                           bool starting) {
   struct Routine *routine = values_begin(values);
@@ -95,12 +95,20 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   return routine;
 }
 
-struct Routine *correct_positions_routine(const struct Program *program, struct Values *values, bool starting) {
-  return correction_routine(program, values, program->expressions->corrections.position, starting);
+struct Routine *correct_positions_routine(const struct Program *program, struct Values *values) {
+  return correction_routine(program, values, program->expressions->corrections.position, false);
 }
 
-struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values, bool starting) {
-  return correction_routine(program, values, program->expressions->corrections.velocity, starting);
+struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values) {
+  return correction_routine(program, values, program->expressions->corrections.velocity, false);
+}
+
+struct Routine *start_positions_routine(const struct Program *program, struct Values *values) {
+  return correction_routine(program, values, program->expressions->corrections.position, true);
+}
+
+struct Routine *start_velocities_routine(const struct Program *program, struct Values *values) {
+  return correction_routine(program, values, program->expressions->corrections.velocity, true);
 }
 
 struct Routine *responses_routine(const struct Program *program, struct Values *values) {

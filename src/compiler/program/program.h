@@ -4,6 +4,7 @@
 
 #include "program/expressions/accelerations.h"
 #include "program/expressions/expressions.h"
+#include "program/routines.h"
 #include "program/series/series_program.h"
 
 /* How the instructions are written; BY_SIZE: small systems as statements, large ones as tables. */
@@ -16,18 +17,10 @@ struct Program {
   const struct Expressions *expressions;
   struct Prepared *prepared;
   struct LoopedBlocks blocks;
-  struct Routine *prepare;
-  struct Routine *derivatives, *directional;              /* NULL without coordinates */
-  struct Routine *initial, *initial_along;                /* NULL where no start value follows from parameters */
-  struct Routine *jacobian, *linear;                      /* NULL unless the solver asks */
-  struct Routine *accelerations, *accelerations_along;    /* of all rows of K; NULL without constraints, as are */
-  struct Routine *correct_positions, *correct_velocities; /* corrections.h */
-  struct Routine *responses;                              /* NULL without contacts */
-  struct Routine *start_positions, *start_velocities;     /* where some coordinates are fixed at the start */
+  struct Routine *routines[ROUTINE_COUNT]; /* NULL where a system needs none */
   /* Of each result, or of it and those that it is continued by; along is NULL unless it is an output. */
   struct Routine **result, **result_along;
-  size_t *leader;                                /* of each result: the first of those that are computed together */
-  struct Routine *indicators, *switching_values; /* NULL where nothing switches */
+  size_t *leader; /* of each result: the first of those that are computed together */
   struct SeriesProgram *series, *output_series;
   struct SeriesProgram *watched_series; /* NULL where events look at nothing that can hide */
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
@@ -37,7 +30,7 @@ struct Program {
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
 
-/* How many instructions all routines have together. */
+/* How many instructions all routines have together, but those of linear(), which copies alone. */
 size_t instruction_count(const struct Program *program);
 
 void program_free(struct Program *program);

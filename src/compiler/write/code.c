@@ -47,10 +47,10 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (lu != NULL) fprintf(file, "#include \"support/%s.c\"\n", lu);
   if (program->is_table) include_source(file, "support/instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "support/ldlt.c");
-  if (program->accelerations != NULL) include_source(file, "support/saddle.c");
+  if (program->routines[ROUTINE_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
   if (has_oblique_block(program)) include_source(file, "support/oblique.c");
-  if (program->accelerations != NULL) include_source(file, "methods/projection.c");
-  if (program->indicators != NULL) include_room(file, "events");
+  if (program->routines[ROUTINE_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
+  if (program->routines[ROUTINE_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   fputs("#endif\n", file);
 }
@@ -66,7 +66,8 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
-  if (program->accelerations != NULL) fputs("#include \"instance/projection.h\"\n#include \"saddle.h\"\n", file);
+  if (program->routines[ROUTINE_ACCELERATIONS] != NULL)
+    fputs("#include \"instance/projection.h\"\n#include \"saddle.h\"\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
   fputs("\n", file);
 }
@@ -101,30 +102,14 @@ static void write_blocks(FILE *file, const struct Program *program) {
   }
 }
 
-/* Each function of one routine, as far as the system has it. */
+/* The functions of one routine, as far as the system has them. */
 static void write_routines(FILE *file, const struct Program *program, const struct TableContext *tables) {
-  const struct {
-    const struct FunctionText *text;
-    const struct Routine *routine;
-  } functions[] = {{&prepare_text, program->prepare},
-                   {&initial_state_text, program->initial},
-                   {&initial_state_along_text, program->initial_along},
-                   {&derivatives_text, program->derivatives},
-                   {&directional_text, program->directional},
-                   {&jacobian_text, program->jacobian},
-                   {&linear_text, program->linear},
-                   {&accelerations_text, program->accelerations},
-                   {&accelerations_along_text, program->accelerations_along},
-                   {&correct_positions_text, program->correct_positions},
-                   {&correct_velocities_text, program->correct_velocities},
-                   {&respond_text, program->responses},
-                   {&start_positions_text, program->start_positions},
-                   {&start_velocities_text, program->start_velocities}};
-  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
-    if (functions[i].routine == NULL) continue;
-    bool is_table = tables != NULL && (functions[i].text != &derivatives_text || program->derivatives_are_table);
-    if (is_table) tables_function(file, tables, functions[i].text, functions[i].routine);
-    else statements_function(file, program, functions[i].text, "", functions[i].routine);
+  for (enum RoutineName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
+    const struct Routine *routine = program->routines[i];
+    if (routine == NULL) continue;
+    bool is_table = tables != NULL && (i != ROUTINE_DERIVATIVES || program->derivatives_are_table);
+    if (is_table) tables_function(file, tables, &routine_facts[i].text, routine);
+    else statements_function(file, program, &routine_facts[i].text, "", routine);
   }
 }
 

@@ -48,9 +48,8 @@ static void declare_block_spaces(FILE *file, const struct Program *program, cons
 void statements_function(FILE *file, const struct Program *program, const struct FunctionText *text, const char *suffix,
                          const struct Routine *routine) {
   size_t n = program->equations->count;
-  bool has_point = text != &prepare_text && text != &linear_text;
   write_head(file, text, suffix, routine->operation_count);
-  if (has_point) statements_declare_point(file, program, routine);
+  if (takes(text, "*point")) statements_declare_point(file, program, routine);
   declare_block_spaces(file, program, routine);
   if (text->accelerations == IN_TARGET) fprintf(file, "  double *a = %s + %zu;\n", text->target, n);
   else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))

@@ -1,7 +1,6 @@
 #include "write/tables.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "algebra/functions.h"
 #include "base/memory.h"
@@ -41,20 +40,7 @@ struct TableContext *table_context_create(const struct Program *program) {
   struct TableContext *context = allocate(1, sizeof *context);
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
-  note(context, program->prepare);
-  note(context, program->initial);
-  note(context, program->initial_along);
-  note(context, program->derivatives);
-  note(context, program->directional);
-  note(context, program->jacobian);
-  note(context, program->linear);
-  note(context, program->accelerations);
-  note(context, program->accelerations_along);
-  note(context, program->correct_positions);
-  note(context, program->correct_velocities);
-  note(context, program->responses);
-  note(context, program->start_positions);
-  note(context, program->start_velocities);
+  for (enum RoutineName i = 0; i < LAGRANGIAN_ROUTINES; i++) note(context, program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     note(context, program->result[i]);
     note(context, program->result_along[i]);
@@ -86,14 +72,11 @@ static size_t longest(size_t length, const struct Routine *routine) {
   return routine != NULL && routine->local_count > length ? routine->local_count : length;
 }
 
-/* The local variables of the routine that has most. */
+/* The local variables of the routine that has most; those of prepare() stand behind what it computes. */
 static size_t local_count(const struct Program *program) {
-  size_t count = longest(longest(longest(0, program->derivatives), program->directional), program->jacobian);
-  count = longest(longest(count, program->initial), program->initial_along);
-  count = longest(longest(count, program->accelerations), program->accelerations_along);
-  count = longest(longest(count, program->correct_positions), program->correct_velocities);
-  count = longest(count, program->responses);
-  count = longest(longest(count, program->start_positions), program->start_velocities);
+  size_t count = 0;
+  for (enum RoutineName i = ROUTINE_PREPARE + 1; i < LAGRANGIAN_ROUTINES; i++)
+    count = longest(count, program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count = longest(longest(count, program->result[i]), program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series};
@@ -213,16 +196,14 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
   const struct Program *program = context->program;
   write_table(file, context, text->name, routine);
   write_head(file, text, "", routine->operation_count);
-  if (text == &prepare_text) {
-    fputs("  const struct Point values = {.parameter = p};\n  const struct Point *point = &values;\n", file);
-  } else if (text == &linear_text) {
-    fputs("  const struct Point values = {.parameter = p, .prepared = c};\n  const struct Point *point = &values;\n",
-          file);
-  }
-  begin_frame(file, strstr(text->arguments, "*seed") != NULL);
+  if (!takes(text, "*point"))
+    fprintf(file, "  const struct Point values = {.parameter = p%s};\n  const struct Point *point = &values;\n",
+            takes(text, "*c,") ? ", .prepared = c" : "");
+  begin_frame(file, takes(text, "*seed"));
   set_base(file, "TARGET", text->target);
-  if (text == &respond_text) set_base(file, "SEED_ACCELERATION", "(double *)da");
-  if (text == &prepare_text) fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
+  if (takes(text, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  if (takes(text, "*prepared"))
+    fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)
     fprintf(file, "  frame.base[SPACE_ACCELERATION] = %s + %zu;\n", text->target, program->equations->count);
   if (text == &start_text) {
@@ -257,11 +238,11 @@ static void write_results(FILE *file, const struct TableContext *context, const 
   free(name);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
           operations, text->name, text->arguments);
-  begin_frame(file, text == &result_along_text);
+  begin_frame(file, takes(text, "*seed"));
   fprintf(file, "  double value[%zu] = {NAN};\n", largest + 1);
   set_base(file, "TARGET", "value");
   set_base(file, "ACCELERATION", "(double *)a");
-  if (text == &result_along_text) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  if (takes(text, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
   fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
           text->name, text->name, text->name);
   free(start);

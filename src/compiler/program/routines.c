@@ -1,0 +1,339 @@
+#include "program/routines.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "program/corrections.h"
+#include "program/least_forces.h"
+#include "program/program.h"
+
+static Place target(size_t index) {
+  return place_in(SPACE_TARGET, index);
+}
+
+static void copy_place(struct Values *values, Place to, Place from) {
+  routine_append(values->routine, COPY, to, from, 0, 0);
+}
+
+static struct Routine *prepare_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  struct NodeList targets = {0};
+  const struct Inertia *inertia = program->equations->inertia;
+  append_nodes(&targets, values->prepared->nodes, values->prepared->count);
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &inertia->pivots[i];
+    if (pivot_is_prepared(values->graph, pivot))
+      append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
+  }
+  values_compute(values, targets.nodes, targets.count, true);
+  for (size_t i = 0; i < inertia->pivot_count; i++)
+    if (pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
+  for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target(i), values->prepared->nodes[i]);
+  free(targets.nodes);
+  return routine;
+}
+
+static struct Routine *derivatives_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  size_t n = program->equations->count;
+  append_accelerations(values, program->equations, &program->blocks, false);
+  if (program->equations->has_work) values_compute(values, &program->equations->power, 1, false);
+  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_STATE, n + i));
+  if (program->equations->has_work) values_copy(values, target(2 * n), program->equations->power);
+  return routine;
+}
+
+/* Where differentiated equations hold accelerations, or blocks must be factored. */
+static void append_needed_accelerations(const struct Program *program, struct Values *values, const Node *nodes,
+                                        size_t count) {
+  bool needed = false;
+  for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(values->graph, nodes[i], ACCELERATION);
+  if (needed) append_accelerations(values, program->equations, &program->blocks, true);
+  else append_factors(values, &program->blocks);
+}
+
+/* Where the rows of K stand in large blocks: 1 + the block's number, 0 for none, and the place of the right side. */
+struct BlockRows {
+  size_t *number;
+  Place *side;
+  size_t *solved; /* of each block: 1 + the column of the Jacobian that its right side holds the solution for */
+};
+
+static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t count) {
+  struct BlockRows rows = {allocate(count, sizeof(size_t)), allocate(count, sizeof(Place)),
+                           allocate(blocks->count, sizeof(size_t))};
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct LoopedBlock *looped = &blocks->items[b];
+    for (size_t i = 0; i < looped->block->count; i++) {
+      rows.number[looped->block->coordinates[i]] = b + 1;
+      rows.side[looped->block->coordinates[i]] = place_in(SPACE_SIDE, looped->first_side + i);
+    }
+  }
+  return rows;
+}
+
+static void block_rows_free(struct BlockRows *rows) {
+  free(rows->number);
+  free(rows->side);
+  free(rows->solved);
+}
+
+/*
+ * The accelerations along the direction of the seed, and of the forces of constraints as many as count reaches, to the
+ * targets from first on.
+ */
+static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count) {
+  const struct Equations *equations = program->equations;
+  const Node *along = program->expressions->along;
+  size_t row_total = equations->explicit_form ? equations->count : row_count(equations);
+  append_needed_accelerations(program, values, along, row_total);
+  values_compute(values, along, row_total, false);
+  struct BlockRows rows = block_rows_create(&program->blocks, row_total);
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct InertiaBlock *block = program->blocks.items[b].block;
+    Node *right_side = allocate(block->count, sizeof *right_side);
+    for (size_t i = 0; i < block->count; i++) right_side[i] = along[block->coordinates[i]];
+    append_solution(values, &program->blocks, b, right_side);
+    free(right_side);
+  }
+  for (size_t i = 0; i < count; i++)
+    copy_place(values, target(first + i), rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
+  block_rows_free(&rows);
+}
+
+static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  const struct Expressions *expressions = program->expressions;
+  size_t n = program->equations->count;
+  append_along(program, values, n, n);
+  if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
+  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
+  if (expressions->equations->has_work) values_copy(values, target(2 * n), expressions->power_along);
+  return routine;
+}
+
+/* First the right sides of large blocks, of which a column has all rows or none; then their solutions. */
+static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
+                                   struct BlockRows *rows) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  size_t n = program->equations->count, first = jacobian->start[column], end = jacobian->start[column + 1];
+  for (size_t e = first; e < end; e++) {
+    size_t row = jacobian->row[e];
+    bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
+    values_copy(values, in_block ? rows->side[row - n] : target(e), jacobian->value[e]);
+  }
+  for (size_t e = first; e < end; e++) {
+    size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
+    if (number == 0) continue;
+    if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
+    rows->solved[number - 1] = column + 1;
+    copy_place(values, target(e), rows->side[row - n]);
+  }
+}
+
+/* The right sides of constraints stand by columns. */
+static void append_constraint_sides(const struct Program *program, struct Values *values, size_t column,
+                                    const struct BlockRows *rows, size_t *next) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  for (; *next < jacobian->side_count && jacobian->sides[*next].column == column; (*next)++) {
+    const struct ConstraintSide *side = &jacobian->sides[*next];
+    values_copy(values, rows->side[program->equations->count + side->constraint], side->value);
+  }
+}
+
+static struct Routine *jacobian_routine(const struct Program *program, struct Values *values) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  struct Routine *routine = values_begin(values);
+  struct BlockRows rows = block_rows_create(&program->blocks, row_count(program->equations));
+  struct NodeList targets = {0};
+  size_t next_side = 0;
+  append_nodes(&targets, jacobian->value, jacobian->count);
+  for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+  append_needed_accelerations(program, values, targets.nodes, targets.count);
+  values_compute(values, targets.nodes, targets.count, false);
+  free(targets.nodes);
+  for (size_t column = 0; column < program->interface->state_count; column++) {
+    append_constraint_sides(program, values, column, &rows, &next_side);
+    append_jacobian_column(program, values, column, &rows);
+  }
+  block_rows_free(&rows);
+  return routine;
+}
+
+/* Rows of A, B and c. */
+static struct Routine *linear_routine(const struct Program *program, struct Values *values) {
+  const struct LinearSystem *linear = program->expressions->linear;
+  struct Routine *routine = values_begin(values);
+  size_t states = linear->states, inputs = linear->inputs, columns = states + inputs + 1;
+  for (size_t i = 0; i < states; i++) {
+    for (size_t j = 0; j < states; j++) values_copy(values, target(i * columns + j), linear->a[i * states + j]);
+    for (size_t j = 0; j < inputs; j++)
+      values_copy(values, target(i * columns + states + j), linear->b[i * inputs + j]);
+    values_copy(values, target(i * columns + states + inputs), linear->c[i]);
+  }
+  return routine;
+}
+
+/* Of the start values that follow, or of their derivatives. Without prepared values, which may not exist. */
+static struct Routine *starts_routine(const struct Program *program, struct Values *values, const Node *nodes) {
+  const struct Interface *interface = program->interface;
+  struct Routine *routine = values_begin(values);
+  size_t count = 2 * program->equations->count;
+  values_compute(values, nodes, count, true);
+  for (size_t i = 0; i < count; i++)
+    if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
+      values_copy(values, target(i), nodes[i]);
+  return routine;
+}
+
+static struct Routine *initial_state_routine(const struct Program *program, struct Values *values) {
+  return starts_routine(program, values, program->expressions->initial);
+}
+
+static struct Routine *initial_state_along_routine(const struct Program *program, struct Values *values) {
+  return starts_routine(program, values, program->expressions->initial_along);
+}
+
+static struct Routine *accelerations_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  append_accelerations(values, program->equations, &program->blocks, true);
+  for (size_t i = 0; i < row_count(program->equations); i++)
+    copy_place(values, target(i), place_in(SPACE_ACCELERATION, i));
+  return routine;
+}
+
+static struct Routine *accelerations_along_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  append_along(program, values, 0, row_count(program->equations));
+  if (program->blocks.count > 0) append_least_forces_along(program, values);
+  return routine;
+}
+
+struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count) {
+  struct Routine *routine = values_begin(values);
+  values_compute(values, nodes, count, false);
+  for (size_t i = 0; i < count; i++) values_copy(values, target(i), nodes[i]);
+  return routine;
+}
+
+static struct Routine *indicators_routine(const struct Program *program, struct Values *values) {
+  const struct SwitchingExpressions *switching = program->interface->switching;
+  return targets_routine(values, switching->indicators, switching->indicator_count);
+}
+
+static struct Routine *switching_values_routine(const struct Program *program, struct Values *values) {
+  const struct SwitchingExpressions *switching = program->interface->switching;
+  return targets_routine(values, switching->values, switching->value_count);
+}
+
+static bool starts_follow(const struct Program *program) {
+  bool any = false;
+  for (size_t i = 0; i < 2 * program->equations->count; i++) any |= program->expressions->initial[i] != ZERO;
+  return any;
+}
+
+static bool moves(const struct Program *program) {
+  return program->equations->count > 0;
+}
+
+static bool has_jacobian(const struct Program *program) {
+  return program->expressions->jacobian != NULL;
+}
+
+static bool is_exact(const struct Program *program) {
+  return program->expressions->linear != NULL;
+}
+
+static bool is_constrained(const struct Program *program) {
+  return program->equations->constraints->count > 0;
+}
+
+static bool has_contacts(const struct Program *program) {
+  return program->model->switches.contact_count > 0;
+}
+
+static bool is_fixed_at_start(const struct Program *program) {
+  return is_constrained(program) && has_fixed_coordinates(program->model);
+}
+
+static bool switches(const struct Program *program) {
+  return program->interface->switching != NULL;
+}
+
+const struct RoutineFacts routine_facts[ROUTINE_COUNT] = {
+    [ROUTINE_PREPARE] = {NULL,
+                         prepare_routine,
+                         {"What depends on parameters alone", "prepare", "const double *p, double *prepared",
+                          "prepared", RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_INITIAL_STATE] = {starts_follow,
+                               initial_state_routine,
+                               {"Start values that follow from parameters", "initial_state",
+                                "const struct Point *point, double *state", "state", RETURNS_NOTHING, IN_WORKSPACE}},
+    [ROUTINE_INITIAL_STATE_ALONG] = {starts_follow,
+                                     initial_state_along_routine,
+                                     {"Start values along a direction", "initial_state_along",
+                                      "const struct Point *point, const struct Seed *seed, double *state", "state",
+                                      RETURNS_NOTHING, IN_WORKSPACE}},
+    [ROUTINE_DERIVATIVES] = {moves,
+                             derivatives_routine,
+                             {"d state / dt", "derivatives", "const struct Point *point, double *derivative",
+                              "derivative", RETURNS_STATUS, IN_TARGET}},
+    [ROUTINE_DIRECTIONAL] = {moves,
+                             directional_routine,
+                             {"d state / dt along a direction", "directional",
+                              "const struct Point *point, const struct Seed *seed, double *derivative", "derivative",
+                              RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_JACOBIAN] = {has_jacobian,
+                          jacobian_routine,
+                          {"Jacobian matrix", "jacobian", "const struct Point *point, double *values", "values",
+                           RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_LINEAR] = {is_exact,
+                        linear_routine,
+                        {"A, B and c", "linear", "const double *p, const double *c, double *matrix", "matrix",
+                         RETURNS_NOTHING, IN_WORKSPACE}},
+    [ROUTINE_ACCELERATIONS] = {is_constrained,
+                               accelerations_routine,
+                               {"Accelerations and the forces of constraints", "accelerations",
+                                "const struct Point *point, double *acceleration", "acceleration", RETURNS_STATUS,
+                                IN_WORKSPACE}},
+    [ROUTINE_ACCELERATIONS_ALONG] = {is_constrained,
+                                     accelerations_along_routine,
+                                     {"The same along a direction", "accelerations_along",
+                                      "const struct Point *point, const struct Seed *seed, double *acceleration",
+                                      "acceleration", RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_CORRECT_POSITIONS] = {is_constrained,
+                                   correct_positions_routine,
+                                   {"What brings the coordinates back to the constraints", "correct_positions",
+                                    "const struct Point *point, const struct Seed *seed, double *correction",
+                                    "correction", RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_CORRECT_VELOCITIES] = {is_constrained,
+                                    correct_velocities_routine,
+                                    {"The same of the velocities", "correct_velocities",
+                                     "const struct Point *point, double *correction", "correction", RETURNS_STATUS,
+                                     IN_WORKSPACE}},
+    [ROUTINE_RESPOND] = {has_contacts,
+                         responses_routine,
+                         {"What impulses of contacts and frictions do", "respond",
+                          "const struct Point *point, const double *da, double *response", "response", RETURNS_STATUS,
+                          IN_WORKSPACE}},
+    [ROUTINE_START_POSITIONS] = {is_fixed_at_start,
+                                 start_positions_routine,
+                                 {"The same where fixed coordinates stay", "start_positions",
+                                  "const struct Point *point, const struct Seed *seed, double *correction",
+                                  "correction", RETURNS_STATUS, IN_WORKSPACE}},
+    [ROUTINE_START_VELOCITIES] = {is_fixed_at_start,
+                                  start_velocities_routine,
+                                  {"And of the velocities", "start_velocities",
+                                   "const struct Point *point, double *correction", "correction", RETURNS_STATUS,
+                                   IN_WORKSPACE}},
+    [ROUTINE_INDICATORS] = {switches,
+                            indicators_routine,
+                            {"What changes its sign at events", "indicators",
+                             "const struct Point *point, const double *a, double *indicator", "indicator",
+                             RETURNS_NOTHING, IN_ARGUMENT}},
+    [ROUTINE_SWITCHING_VALUES] = {switches,
+                                  switching_values_routine,
+                                  {"What decides on the modes", "switching_values",
+                                   "const struct Point *point, const double *a, double *value", "value",
+                                   RETURNS_NOTHING, IN_ARGUMENT}},
+};
