@@ -23,7 +23,7 @@ def generated_names():
     folder = ROOT / "src" / "compiler" / "write"
     texts = "".join(path.read_text() for path in folder.glob("*.c"))
     found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'write_sizes\(file, "\w+", "(\w+)"', texts)
-    found += re.findall(r'"([a-z]+(?:_[a-z]+)*)"', (folder / "function_text.c").read_text())
+    found += re.findall(r'"([a-z]+(?:_[a-z]+)*)"', (ROOT / "src" / "compiler" / "program" / "generated_functions.c").read_text())
     return sorted(set(found) - {"double", "int", "void"})
 
 

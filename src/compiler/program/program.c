@@ -47,8 +47,8 @@ static size_t count_of(const struct Routine *routine) {
 
 size_t instruction_count(const struct Program *program) {
   size_t count = 0;
-  for (enum RoutineName i = 0; i < ROUTINE_COUNT; i++)
-    if (i != ROUTINE_LINEAR) count += count_of(program->routines[i]);
+  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
+    if (i != FUNCTION_LINEAR) count += count_of(program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count += count_of(program->result[i]) + count_of(program->result_along[i]);
   const struct SeriesProgram *const series[] = {program->series, program->output_series, program->watched_series};
@@ -64,7 +64,7 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   program->series_is_table = form == TABLES || (program->is_table && length > SERIES_STATEMENT_LIMIT);
   program->derivatives_are_table =
       form == TABLES ||
-      (program->is_table && count_of(program->routines[ROUTINE_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
+      (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
 }
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {
@@ -78,9 +78,9 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   free(targets.nodes);
   program->blocks = looped_blocks_of(expressions->equations);
   struct Values *values = values_create(expressions->model->graph, program->prepared, expressions->equations->count);
-  for (enum RoutineName i = 0; i < ROUTINE_COUNT; i++)
-    if (routine_facts[i].is_needed == NULL || routine_facts[i].is_needed(program))
-      program->routines[i] = routine_facts[i].build(program, values);
+  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
+    if (generated_functions[i].is_needed == NULL || generated_functions[i].is_needed(program))
+      program->routines[i] = generated_functions[i].build(program, values);
   create_results(program, values);
   create_series(program, values);
   values_free(values);
@@ -90,7 +90,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
 
 void program_free(struct Program *program) {
   if (program == NULL) return;
-  for (enum RoutineName i = 0; i < ROUTINE_COUNT; i++) routine_free(program->routines[i]);
+  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++) routine_free(program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     routine_free(program->result[i]);
     routine_free(program->result_along[i]);

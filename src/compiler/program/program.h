@@ -4,7 +4,7 @@
 
 #include "program/expressions/accelerations.h"
 #include "program/expressions/expressions.h"
-#include "program/routines.h"
+#include "program/generated_functions.h"
 #include "program/series/series_program.h"
 
 /* How the instructions are written; BY_SIZE: small systems as statements, large ones as tables. */

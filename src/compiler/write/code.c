@@ -47,10 +47,10 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (lu != NULL) fprintf(file, "#include \"support/%s.c\"\n", lu);
   if (program->is_table) include_source(file, "support/instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "support/ldlt.c");
-  if (program->routines[ROUTINE_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
+  if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
   if (has_oblique_block(program)) include_source(file, "support/oblique.c");
-  if (program->routines[ROUTINE_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
-  if (program->routines[ROUTINE_INDICATORS] != NULL) include_room(file, "events");
+  if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
+  if (program->routines[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   fputs("#endif\n", file);
 }
@@ -66,7 +66,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
-  if (program->routines[ROUTINE_ACCELERATIONS] != NULL)
+  if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"instance/projection.h\"\n#include \"saddle.h\"\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
   fputs("\n", file);
@@ -102,14 +102,14 @@ static void write_blocks(FILE *file, const struct Program *program) {
   }
 }
 
-/* The functions of one routine, as far as the system has them. */
+/* The functions of one routine that struct Lagrangian holds, as far as the system has them. */
 static void write_routines(FILE *file, const struct Program *program, const struct TableContext *tables) {
-  for (enum RoutineName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
+  for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
-    bool is_table = tables != NULL && (i != ROUTINE_DERIVATIVES || program->derivatives_are_table);
-    if (is_table) tables_function(file, tables, &routine_facts[i].text, routine);
-    else statements_function(file, program, &routine_facts[i].text, "", routine);
+    bool is_table = tables != NULL && (i != FUNCTION_DERIVATIVES || program->derivatives_are_table);
+    if (is_table) tables_function(file, tables, i, routine);
+    else statements_function(file, program, i, "", routine);
   }
 }
 

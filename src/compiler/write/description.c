@@ -123,7 +123,7 @@ static void write_fixed(FILE *file, const struct Program *program) {
 static void write_constraint_names(FILE *file, const struct Program *program) {
   const struct VariableList *constraints = &program->model->constraints;
   if (constraints->count == 0) return;
-  if (program->routines[ROUTINE_START_POSITIONS] != NULL) write_fixed(file, program);
+  if (program->routines[FUNCTION_START_POSITIONS] != NULL) write_fixed(file, program);
   if (has_guides(program->model)) guides_write(file, program->model);
   fputs("static const char *const constraint_names[] = {", file);
   for (size_t i = 0; i < constraints->count; i++) {
@@ -134,30 +134,30 @@ static void write_constraint_names(FILE *file, const struct Program *program) {
 }
 
 /* The functions first .. end - 1 of one routine, as far as the system has them. */
-static void write_fields(FILE *file, const struct Program *program, enum RoutineName first, enum RoutineName end) {
-  for (enum RoutineName i = first; i < end; i++) {
-    const char *name = routine_facts[i].text.name;
+static void write_fields(FILE *file, const struct Program *program, enum FunctionName first, enum FunctionName end) {
+  for (enum FunctionName i = first; i < end; i++) {
+    const char *name = generated_functions[i].name;
     if (program->routines[i] != NULL) fprintf(file, "    .%s = %s,\n", name, name);
   }
 }
 
 static void write_constraints(FILE *file, const struct Program *program) {
-  if (program->routines[ROUTINE_ACCELERATIONS] == NULL) return;
+  if (program->routines[FUNCTION_ACCELERATIONS] == NULL) return;
   fprintf(file, "    .constraint_count = %zu,\n    .constraints = constraint_names,\n    .projection = &projection,\n",
           program->model->constraints.count);
-  write_fields(file, program, ROUTINE_ACCELERATIONS, ROUTINE_START_POSITIONS);
+  write_fields(file, program, FUNCTION_ACCELERATIONS, FUNCTION_START_POSITIONS);
   if (has_guides(program->model))
     fputs("    .constraint_inputs = constraint_inputs,\n    .guides = guides,\n"
           "    .guide_count = sizeof guides / sizeof *guides,\n",
           file);
-  if (program->routines[ROUTINE_START_POSITIONS] != NULL)
+  if (program->routines[FUNCTION_START_POSITIONS] != NULL)
     fputs("    .coordinate_is_fixed = coordinate_is_fixed,\n", file);
-  write_fields(file, program, ROUTINE_START_POSITIONS, LAGRANGIAN_ROUTINES);
+  write_fields(file, program, FUNCTION_START_POSITIONS, LAGRANGIAN_ROUTINES);
 }
 
 static void write_counts(FILE *file, const struct Program *program, size_t work_count) {
   const struct Interface *interface = program->interface;
-  size_t scratch = program->is_table ? program->routines[ROUTINE_PREPARE]->local_count : 0;
+  size_t scratch = program->is_table ? program->routines[FUNCTION_PREPARE]->local_count : 0;
   fprintf(file, "    .coordinate_count = %zu,\n    .state_count = %zu,\n    .input_count = %zu,\n",
           program->equations->count, interface->state_count, program->model->inputs.count);
   fprintf(file, "    .parameter_count = %zu,\n    .prepared_count = %zu,\n    .variable_count = %zu,\n",
@@ -168,7 +168,7 @@ static void write_counts(FILE *file, const struct Program *program, size_t work_
 
 static void write_functions(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->series, *output_series = program->output_series;
-  write_fields(file, program, ROUTINE_PREPARE, ROUTINE_JACOBIAN);
+  write_fields(file, program, FUNCTION_PREPARE, FUNCTION_JACOBIAN);
   if (program->interface->result_count > 0)
     fputs("    .result_uses_acceleration = result_uses_acceleration,\n    .result = result,\n"
           "    .result_along = result_along,\n",
@@ -178,13 +178,13 @@ static void write_functions(FILE *file, const struct Program *program) {
   if (series != NULL && series->limit.count > 0) fputs("    .limit = limit,\n", file);
   if (output_series != NULL)
     fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", output_series->row_count);
-  write_fields(file, program, ROUTINE_JACOBIAN, ROUTINE_LINEAR);
+  write_fields(file, program, FUNCTION_JACOBIAN, FUNCTION_LINEAR);
   if (program->expressions->jacobian != NULL)
     fprintf(file, "    .jacobian_pattern = {%zu, jacobian_start, jacobian_row},\n",
             program->expressions->jacobian->count);
-  write_fields(file, program, ROUTINE_LINEAR, ROUTINE_ACCELERATIONS);
+  write_fields(file, program, FUNCTION_LINEAR, FUNCTION_ACCELERATIONS);
   write_constraints(file, program);
-  if (program->routines[ROUTINE_INDICATORS] != NULL)
+  if (program->routines[FUNCTION_INDICATORS] != NULL)
     fputs("    .switches = &switches,\n    .switching = &switching,\n", file);
 }
 
@@ -214,7 +214,7 @@ static void write_operations(FILE *file, const struct Program *program) {
   double elements, squares;
   count_factors(program, &elements, &squares);
   fprintf(file, "    .operations = {%.0f, %.0f, %.0f, %zu, %.0f, %.0f},\n",
-          operations_of(program->routines[ROUTINE_DERIVATIVES]), operations_of(program->routines[ROUTINE_JACOBIAN]),
+          operations_of(program->routines[FUNCTION_DERIVATIVES]), operations_of(program->routines[FUNCTION_JACOBIAN]),
           operations_of(program->series->order), program->series->recurrences, squares, elements);
 }
 
@@ -223,17 +223,17 @@ enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
 
 /* Of an evaluation of the equations by a method of Runge and Kutta or an implicit one, with its share in linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
-  double work = 250.0 + operations_of(program->routines[ROUTINE_DERIVATIVES]);
-  if (program->routines[ROUTINE_JACOBIAN] == NULL) return work;
+  double work = 250.0 + operations_of(program->routines[FUNCTION_DERIVATIVES]);
+  if (program->routines[FUNCTION_JACOBIAN] == NULL) return work;
   double elements, squares, systems = 4.0 * STAGES - 2.0;
   count_factors(program, &elements, &squares);
   return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
-         (operations_of(program->routines[ROUTINE_JACOBIAN]) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
+         (operations_of(program->routines[FUNCTION_JACOBIAN]) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
 }
 
 static double work_of_series(const struct Program *program) {
   double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
-  return 380.0 + 4.0 * operations_of(program->routines[ROUTINE_DERIVATIVES]) +
+  return 380.0 + 4.0 * operations_of(program->routines[FUNCTION_DERIVATIVES]) +
          ORDER * (0.5 * operations_of(program->series->order) + 1.5 * states + 0.45 * ORDER * recurrences);
 }
 
@@ -245,16 +245,16 @@ static double work_of_series(const struct Program *program) {
 static void write_work(FILE *file, const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };
   bool has_series = program->interface->method->series == ALL_TERMS && program->series != NULL;
-  double share = program->routines[ROUTINE_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
+  double share = program->routines[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
   double evaluation = share * work_of_evaluation(program);
-  double step = 250.0 + CORRECTIONS * (operations_of(program->routines[ROUTINE_CORRECT_POSITIONS]) +
-                                       operations_of(program->routines[ROUTINE_CORRECT_VELOCITIES]));
+  double step = 250.0 + CORRECTIONS * (operations_of(program->routines[FUNCTION_CORRECT_POSITIONS]) +
+                                       operations_of(program->routines[FUNCTION_CORRECT_VELOCITIES]));
   if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
-  if (program->routines[ROUTINE_INDICATORS] != NULL)
-    step += SEARCHES * (LOOK + operations_of(program->routines[ROUTINE_INDICATORS]) +
+  if (program->routines[FUNCTION_INDICATORS] != NULL)
+    step += SEARCHES * (LOOK + operations_of(program->routines[FUNCTION_INDICATORS]) +
                         2.0 * ORDER * (double)program->interface->state_count);
   fprintf(file, "    .work = {%.0f, %.0f, %.0f},\n", evaluation, step,
-          EVENT + 4.0 * evaluation + operations_of(program->routines[ROUTINE_SWITCHING_VALUES]));
+          EVENT + 4.0 * evaluation + operations_of(program->routines[FUNCTION_SWITCHING_VALUES]));
 }
 
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count, bool has_arrays) {

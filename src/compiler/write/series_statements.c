@@ -103,7 +103,7 @@ static void declare_time(FILE *file, bool is_used) {
 
 static void write_series(FILE *file, const struct Program *program) {
   const struct Routine *order = program->series->order;
-  write_head(file, &series_text, "", order->operation_count);
+  write_head(file, FUNCTION_SERIES, "", order->operation_count);
   declare_time(file, routine_uses(order, SPACE_TIME_ROW));
   if (series_is_unrolled(program)) write_unrolled_orders(file, program);
   else {
@@ -159,7 +159,7 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
 static void write_limit(FILE *file, const struct Program *program) {
   const struct LimitChecks *checks = &program->series->limit;
   const struct Routine spaces = {.spaces = spaces_of(checks)}; /* none but for its spaces */
-  write_head(file, &limit_text, "", checks->count);
+  write_head(file, FUNCTION_LIMIT, "", checks->count);
   declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));
   statements_declare_point(file, program, &spaces);
   for (size_t i = 0; i < checks->count; i++) write_check(file, program, &checks->items[i]);
@@ -168,7 +168,7 @@ static void write_limit(FILE *file, const struct Program *program) {
 
 void statements_series(FILE *file, const struct Program *program) {
   if (series_is_unrolled(program)) write_next_function(file, program);
-  statements_function(file, program, &start_text, "", program->series->start);
+  statements_function(file, program, FUNCTION_START, "", program->series->start);
   write_series(file, program);
   if (program->series->limit.count > 0) write_limit(file, program);
 }
@@ -177,7 +177,7 @@ void statements_output_series(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->output_series;
   struct Routine both = *series->start; /* with the spaces of both, for the declarations */
   both.spaces |= series->order->spaces;
-  write_head(file, &output_series_text, "", series->start->operation_count);
+  write_head(file, FUNCTION_OUTPUT_SERIES, "", series->start->operation_count);
   declare_time(file, routine_uses(&both, SPACE_TIME_ROW));
   statements_declare_point(file, program, &both);
   if (routine_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  double a[%zu];\n", program->equations->count);
@@ -191,7 +191,7 @@ void statements_watched_limit(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->watched_series;
   struct Routine all = *series->start; /* with the spaces of all, for the declarations */
   all.spaces |= series->order->spaces | spaces_of(&series->limit);
-  write_head(file, &watched_limit_text, "", series->start->operation_count);
+  write_head(file, FUNCTION_WATCHED_LIMIT, "", series->start->operation_count);
   declare_time(file, routine_uses(&all, SPACE_TIME_ROW));
   statements_declare_point(file, program, &all);
   write_statements(file, program, series->start, NULL);

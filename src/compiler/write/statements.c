@@ -45,11 +45,12 @@ static void declare_block_spaces(FILE *file, const struct Program *program, cons
   else fprintf(file, "  double mass[%zu];\n", program->blocks.mass_count);
 }
 
-void statements_function(FILE *file, const struct Program *program, const struct FunctionText *text, const char *suffix,
+void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
                          const struct Routine *routine) {
+  const struct GeneratedFunction *text = &generated_functions[name];
   size_t n = program->equations->count;
-  write_head(file, text, suffix, routine->operation_count);
-  if (takes(text, "*point")) statements_declare_point(file, program, routine);
+  write_head(file, name, suffix, routine->operation_count);
+  if (takes(name, "*point")) statements_declare_point(file, program, routine);
   declare_block_spaces(file, program, routine);
   if (text->accelerations == IN_TARGET) fprintf(file, "  double *a = %s + %zu;\n", text->target, n);
   else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))
@@ -67,7 +68,7 @@ static size_t size_of_group(const struct Program *program, size_t first) {
 
 /* The same in one function, which tells one of them. */
 static void write_group(FILE *file, const struct Program *program, size_t first, size_t size, const char *suffix) {
-  statements_function(file, program, &results_text, suffix, program->result[first]);
+  statements_function(file, program, FUNCTION_RESULTS, suffix, program->result[first]);
   fprintf(file,
           "static double result%s(const struct Point *point, const double *a, size_t place) {\n  double value[%zu];\n"
           "  results%s(point, a, value);\n  return value[place];\n}\n\n",
@@ -78,11 +79,12 @@ static void write_result(FILE *file, const struct Program *program, size_t first
   size_t size = size_of_group(program, first);
   char *suffix = format_text("%zu", first);
   if (size > 1) write_group(file, program, first, size, suffix);
-  else statements_function(file, program, &result_text, suffix, program->result[first]);
+  else statements_function(file, program, FUNCTION_RESULT, suffix, program->result[first]);
   free(suffix);
 }
 
-static void begin_choice(FILE *file, const struct FunctionText *text) {
+static void begin_choice(FILE *file, enum FunctionName name) {
+  const struct GeneratedFunction *text = &generated_functions[name];
   fprintf(file, "static double %s(%s, size_t result) {\n  switch (result) {\n", text->name, text->arguments);
 }
 
@@ -96,7 +98,7 @@ void statements_results(FILE *file, const struct Program *program) {
   if (count == 0) return;
   for (size_t i = 0; i < count; i++)
     if (program->leader[i] == i) write_result(file, program, i);
-  begin_choice(file, &result_text);
+  begin_choice(file, FUNCTION_RESULT);
   for (size_t i = 0; i < count; i++) {
     size_t first = program->leader[i];
     fprintf(file, "  case %zu: return result%zu(point, a", i, first);
@@ -107,10 +109,10 @@ void statements_results(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < count; i++) {
     if (program->result_along[i] == NULL) continue;
     char *suffix = format_text("%zu", i);
-    statements_function(file, program, &result_along_text, suffix, program->result_along[i]);
+    statements_function(file, program, FUNCTION_RESULT_ALONG, suffix, program->result_along[i]);
     free(suffix);
   }
-  begin_choice(file, &result_along_text);
+  begin_choice(file, FUNCTION_RESULT_ALONG);
   for (size_t i = 0; i < count; i++)
     if (program->result_along[i] != NULL)
       fprintf(file, "  case %zu: return result_along%zu(point, seed, a, da);\n", i, i);

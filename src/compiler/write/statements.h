@@ -8,7 +8,7 @@
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);
 
 /* A function of one routine; suffix belongs to its name. */
-void statements_function(FILE *file, const struct Program *program, const struct FunctionText *text, const char *suffix,
+void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
                          const struct Routine *routine);
 
 /* result() and result_along(), which choose among a function for each result. */

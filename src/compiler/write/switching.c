@@ -129,8 +129,8 @@ void switching_write(FILE *file, const struct Program *program) {
   if (switching == NULL) return;
   const struct Switches *switches = &program->model->switches;
   fputs("extern const struct Switching switching;\n\n", file);
-  for (enum RoutineName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
-    statements_function(file, program, &routine_facts[i].text, "", program->routines[i]);
+  for (enum FunctionName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
+    statements_function(file, program, i, "", program->routines[i]);
   if (program->watched_series != NULL) statements_watched_limit(file, program);
   write_branches(file, program);
   write_contacts(file, program);

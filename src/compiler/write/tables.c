@@ -40,7 +40,7 @@ struct TableContext *table_context_create(const struct Program *program) {
   struct TableContext *context = allocate(1, sizeof *context);
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
-  for (enum RoutineName i = 0; i < LAGRANGIAN_ROUTINES; i++) note(context, program->routines[i]);
+  for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) note(context, program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     note(context, program->result[i]);
     note(context, program->result_along[i]);
@@ -75,7 +75,7 @@ static size_t longest(size_t length, const struct Routine *routine) {
 /* The local variables of the routine that has most; those of prepare() stand behind what it computes. */
 static size_t local_count(const struct Program *program) {
   size_t count = 0;
-  for (enum RoutineName i = ROUTINE_PREPARE + 1; i < LAGRANGIAN_ROUTINES; i++)
+  for (enum FunctionName i = FUNCTION_PREPARE + 1; i < LAGRANGIAN_ROUTINES; i++)
     count = longest(count, program->routines[i]);
   for (size_t i = 0; i < program->interface->result_count; i++)
     count = longest(longest(count, program->result[i]), program->result_along[i]);
@@ -191,22 +191,23 @@ static void set_base(FILE *file, const char *space, const char *source) {
   fprintf(file, "  frame.base[SPACE_%s] = %s;\n", space, source);
 }
 
-void tables_function(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+void tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
                      const struct Routine *routine) {
   const struct Program *program = context->program;
+  const struct GeneratedFunction *text = &generated_functions[name];
   write_table(file, context, text->name, routine);
-  write_head(file, text, "", routine->operation_count);
-  if (!takes(text, "*point"))
+  write_head(file, name, "", routine->operation_count);
+  if (!takes(name, "*point"))
     fprintf(file, "  const struct Point values = {.parameter = p%s};\n  const struct Point *point = &values;\n",
-            takes(text, "*c,") ? ", .prepared = c" : "");
-  begin_frame(file, takes(text, "*seed"));
+            takes(name, "*c,") ? ", .prepared = c" : "");
+  begin_frame(file, takes(name, "*seed"));
   set_base(file, "TARGET", text->target);
-  if (takes(text, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
-  if (takes(text, "*prepared"))
+  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  if (takes(name, "*prepared"))
     fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)
     fprintf(file, "  frame.base[SPACE_ACCELERATION] = %s + %zu;\n", text->target, program->equations->count);
-  if (text == &start_text) {
+  if (name == FUNCTION_START) {
     set_base(file, "ROW", "*w");
     fprintf(file, "  frame.base[SPACE_MASS] = w[%zu];\n", program->series->mass_row);
   }
@@ -215,8 +216,9 @@ void tables_function(FILE *file, const struct TableContext *context, const struc
 }
 
 /* leader: of each result, the first of those that one routine computes, whose places follow from it. */
-static void write_results(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+static void write_results(FILE *file, const struct TableContext *context, enum FunctionName name,
                           struct Routine *const *routines, const size_t *leader, size_t count) {
+  const struct GeneratedFunction *text = &generated_functions[name];
   struct CodeLine line = {.file = file};
   size_t *start = allocate(count, sizeof *start), *place = allocate(count, sizeof *place), operations = 0, largest = 0;
   fprintf(file, "static const uint32_t %s_code[] = {\n", text->name);
@@ -230,19 +232,19 @@ static void write_results(FILE *file, const struct TableContext *context, const 
   }
   write_word(&line, END);
   fputs("};\n", file);
-  char *name = format_text("%s_start", text->name);
-  write_sizes(file, "uint32_t", name, start, count);
-  free(name);
-  name = format_text("%s_place", text->name);
-  write_sizes(file, "unsigned char", name, place, count);
-  free(name);
+  char *table = format_text("%s_start", text->name);
+  write_sizes(file, "uint32_t", table, start, count);
+  free(table);
+  table = format_text("%s_place", text->name);
+  write_sizes(file, "unsigned char", table, place, count);
+  free(table);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
           operations, text->name, text->arguments);
-  begin_frame(file, takes(text, "*seed"));
+  begin_frame(file, takes(name, "*seed"));
   fprintf(file, "  double value[%zu] = {NAN};\n", largest + 1);
   set_base(file, "TARGET", "value");
   set_base(file, "ACCELERATION", "(double *)a");
-  if (takes(text, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
   fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
           text->name, text->name, text->name);
   free(start);
@@ -254,8 +256,8 @@ void tables_results(FILE *file, const struct TableContext *context) {
   if (count == 0) return;
   size_t *alone = allocate(count, sizeof *alone);
   for (size_t i = 0; i < count; i++) alone[i] = i;
-  write_results(file, context, &result_text, context->program->result, context->program->leader, count);
-  write_results(file, context, &result_along_text, context->program->result_along, alone, count);
+  write_results(file, context, FUNCTION_RESULT, context->program->result, context->program->leader, count);
+  write_results(file, context, FUNCTION_RESULT_ALONG, context->program->result_along, alone, count);
   free(alone);
 }
 
@@ -283,7 +285,7 @@ static void write_limit(FILE *file, const struct TableContext *context) {
             check->is_gated ? "true" : "false", check->is_gated ? encoded(context, check->opener) : 0u);
   }
   fputs("};\n\n", file);
-  write_head(file, &limit_text, "", checks->count);
+  write_head(file, FUNCTION_LIMIT, "", checks->count);
   begin_frame(file, false);
   set_rows(file);
   fprintf(file, "  instructions_limit(&frame, limit_checks, %zu, limit);\n}\n\n", checks->count);
@@ -291,9 +293,9 @@ static void write_limit(FILE *file, const struct TableContext *context) {
 
 void tables_series(FILE *file, const struct TableContext *context) {
   const struct SeriesProgram *series = context->program->series;
-  tables_function(file, context, &start_text, series->start);
-  write_table(file, context, series_text.name, series->order);
-  write_head(file, &series_text, "", series->order->operation_count);
+  tables_function(file, context, FUNCTION_START, series->start);
+  write_table(file, context, "series", series->order);
+  write_head(file, FUNCTION_SERIES, "", series->order->operation_count);
   begin_frame(file, false);
   set_rows(file);
   fprintf(file,
@@ -307,8 +309,8 @@ void tables_series(FILE *file, const struct TableContext *context) {
 void tables_output_series(FILE *file, const struct TableContext *context) {
   const struct SeriesProgram *series = context->program->output_series;
   write_table(file, context, "output_start", series->start);
-  write_table(file, context, output_series_text.name, series->order);
-  write_head(file, &output_series_text, "", series->start->operation_count);
+  write_table(file, context, "output_series", series->order);
+  write_head(file, FUNCTION_OUTPUT_SERIES, "", series->start->operation_count);
   begin_frame(file, false);
   set_rows(file);
   set_base(file, "TARGET_ROW", "*y");

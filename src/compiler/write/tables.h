@@ -22,7 +22,7 @@ void tables_shared(FILE *file, const struct TableContext *context);
 size_t tables_work_count(const struct TableContext *context);
 
 /* A function of one routine. */
-void tables_function(FILE *file, const struct TableContext *context, const struct FunctionText *text,
+void tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
                      const struct Routine *routine);
 
 /* result() and result_along() */

@@ -1,0 +1,61 @@
+/* The functions of the generated code: a row for each, and what builds those of one routine. */
+#ifndef GENERATED_FUNCTIONS_H
+#define GENERATED_FUNCTIONS_H
+
+#include "program/values/values.h"
+
+struct Program;
+
+/* Those of one routine come first, in the order in which they are built and written. */
+enum FunctionName {
+  FUNCTION_PREPARE,
+  FUNCTION_INITIAL_STATE,
+  FUNCTION_INITIAL_STATE_ALONG,
+  FUNCTION_DERIVATIVES,
+  FUNCTION_DIRECTIONAL,
+  FUNCTION_JACOBIAN,
+  FUNCTION_LINEAR,
+  FUNCTION_ACCELERATIONS,
+  FUNCTION_ACCELERATIONS_ALONG,
+  FUNCTION_CORRECT_POSITIONS,
+  FUNCTION_CORRECT_VELOCITIES,
+  FUNCTION_RESPOND,
+  FUNCTION_START_POSITIONS,
+  FUNCTION_START_VELOCITIES,
+  LAGRANGIAN_ROUTINES, /* those of struct Lagrangian; those of struct SwitchTable are statements always */
+  FUNCTION_INDICATORS = LAGRANGIAN_ROUTINES,
+  FUNCTION_SWITCHING_VALUES,
+  ROUTINE_COUNT, /* the others have several routines, or are one of many */
+  FUNCTION_START = ROUTINE_COUNT,
+  FUNCTION_SERIES,
+  FUNCTION_LIMIT,
+  FUNCTION_OUTPUT_SERIES,
+  FUNCTION_WATCHED_LIMIT,
+  FUNCTION_RESULT,
+  FUNCTION_RESULTS,
+  FUNCTION_RESULT_ALONG,
+  FUNCTION_COUNT
+};
+
+enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
+
+/* Where a function finds or leaves accelerations. */
+enum Accelerations { IN_WORKSPACE, IN_TARGET, IN_ARGUMENT };
+
+struct GeneratedFunction {
+  const char *comment, *name; /* the name is that of its field in struct Lagrangian too */
+  const char *arguments;      /* as declared */
+  const char *target;         /* the argument that it fills; NULL where a value is returned */
+  enum Returned returned;
+  enum Accelerations accelerations;
+  /* Of those of one routine: whether a system needs it, NULL where each does, and what builds it; NULL for the others. */
+  bool (*is_needed)(const struct Program *program);
+  struct Routine *(*build)(const struct Program *program, struct Values *values);
+};
+
+extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
+
+/* A routine that computes nodes as its targets. */
+struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count);
+
+#endif
