@@ -201,13 +201,42 @@ struct SwitchTable {
   void (*watched_limit)(const struct Point *point, const double *acceleration, const Series *input, const Series *x,
                         Series *w, struct SeriesLimit *limit);
   size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
-  /*
-   * value[]: the indicators of the branches, their time derivatives; of each contact the gap, its first and second time
-   * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
-   * slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta.
-   */
+  /* What decides on the modes: value[] as below. */
   void (*values)(const struct Point *point, const double *acceleration, double *value);
 };
+
+/*
+ * value[] of struct SwitchTable: the indicators of the branches, then their time derivatives; of each contact the gap, its first
+ * and second time derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the
+ * force while it slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta.
+ */
+enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
+enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
+
+static inline size_t branch_rate_place(const struct SwitchTable *switches, size_t branch) {
+  return switches->branch_count + branch;
+}
+
+static inline size_t contact_place(const struct SwitchTable *switches, size_t contact, size_t part) {
+  return 2 * switches->branch_count + CONTACT_VALUES * contact + part;
+}
+
+static inline size_t friction_place(const struct SwitchTable *switches, size_t friction, size_t part) {
+  return contact_place(switches, switches->contact_count, 0) + FRICTION_VALUES * friction + part;
+}
+
+static inline size_t condition_place(const struct SwitchTable *switches, size_t event) {
+  return friction_place(switches, switches->friction_count, 0) + event;
+}
+
+static inline size_t assignment_place(const struct SwitchTable *switches, size_t assignment) {
+  return condition_place(switches, switches->event_count) + assignment;
+}
+
+/* Of the kinetic energy, before the potential one and the momenta. */
+static inline size_t energy_place(const struct SwitchTable *switches) {
+  return assignment_place(switches, switches->assignment_count);
+}
 
 static inline size_t indicator_count(const struct SwitchTable *switches) {
   return switches == NULL ? 0 : switches->branch_count + switches->contact_count + switches->friction_count;

@@ -7,6 +7,7 @@
 #include "algebra/node_list.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "lagrangian.h"
 #include "mechanics/time_derivative.h"
 
 /* What decides on the motion. */
@@ -135,34 +136,58 @@ static void append_energies(const struct Model *model, const struct Equations *e
   switching->energy_count = list->count - first;
 }
 
+static void fill_contacts(const struct Model *model, const struct SwitchTable *counts, const Node *seeds,
+                          Node *values) {
+  for (size_t i = 0; i < counts->contact_count; i++) {
+    const struct Contact *contact = &model->switches.contacts[i];
+    Node rate = rate_of(model, contact->gap, seeds);
+    values[contact_place(counts, i, CONTACT_GAP)] = contact->gap;
+    values[contact_place(counts, i, CONTACT_RATE)] = rate;
+    values[contact_place(counts, i, CONTACT_ACCELERATION)] = rate_of(model, rate, seeds);
+    values[contact_place(counts, i, CONTACT_RESTITUTION)] = contact->restitution;
+  }
+}
+
+static void fill_frictions(const struct Model *model, const struct SwitchTable *counts, const Node *seeds,
+                           Node *values) {
+  for (size_t i = 0; i < counts->friction_count; i++) {
+    const struct Friction *friction = &model->switches.frictions[i];
+    values[friction_place(counts, i, FRICTION_VELOCITY)] = friction->velocity;
+    values[friction_place(counts, i, FRICTION_RATE)] = rate_of(model, friction->velocity, seeds);
+    values[friction_place(counts, i, FRICTION_STICTION)] = friction->stiction;
+    values[friction_place(counts, i, FRICTION_FORCE)] = friction->sliding;
+  }
+}
+
+static void fill_events(const struct Switches *switches, const struct SwitchTable *counts, Node *values) {
+  size_t assignment = 0;
+  for (size_t i = 0; i < counts->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    values[condition_place(counts, i)] = event->condition;
+    for (size_t j = 0; j < event->assignment_count; j++)
+      values[assignment_place(counts, assignment++)] = event->assignments[j].value;
+  }
+}
+
+/* The energies come last, as many as there are. */
 static void append_values(const struct Model *model, const struct Equations *equations,
                           struct SwitchingExpressions *switching, struct NodeList *list) {
   const struct Switches *switches = &model->switches;
-  Node *seeds = time_seeds(model, true);
-  for (size_t i = 0; i < switching->branch_count; i++) append_node(list, switching->branches[i]->indicator);
-  for (size_t i = 0; i < switching->branch_count; i++)
-    append_node(list, rate_of(model, switching->branches[i]->indicator, seeds));
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    const struct Contact *contact = &switches->contacts[i];
-    Node rate = rate_of(model, contact->gap, seeds);
-    append_node(list, contact->gap);
-    append_node(list, rate);
-    append_node(list, rate_of(model, rate, seeds));
-    append_node(list, contact->restitution);
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    const struct Friction *friction = &switches->frictions[i];
-    append_node(list, friction->velocity);
-    append_node(list, rate_of(model, friction->velocity, seeds));
-    append_node(list, friction->stiction);
-    append_node(list, friction->sliding);
-  }
-  for (size_t i = 0; i < switches->event_count; i++) append_node(list, switches->events[i].condition);
   for (size_t i = 0; i < switches->event_count; i++)
-    for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
-      append_node(list, switches->events[i].assignments[j].value);
-      switching->assignment_count++;
-    }
+    switching->assignment_count += switches->events[i].assignment_count;
+  const struct SwitchTable counts = {.branch_count = switching->branch_count,
+                                     .contact_count = switches->contact_count,
+                                     .friction_count = switches->friction_count,
+                                     .event_count = switches->event_count,
+                                     .assignment_count = switching->assignment_count};
+  Node *seeds = time_seeds(model, true);
+  while (list->count < energy_place(&counts)) append_node(list, ZERO);
+  for (size_t i = 0; i < counts.branch_count; i++) list->nodes[i] = switching->branches[i]->indicator;
+  for (size_t i = 0; i < counts.branch_count; i++)
+    list->nodes[branch_rate_place(&counts, i)] = rate_of(model, list->nodes[i], seeds);
+  fill_contacts(model, &counts, seeds, list->nodes);
+  fill_frictions(model, &counts, seeds, list->nodes);
+  fill_events(switches, &counts, list->nodes);
   append_energies(model, equations, switching, list);
   free(seeds);
 }

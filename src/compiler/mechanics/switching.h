@@ -19,13 +19,7 @@ struct SwitchingExpressions {
   /* What the indicators look at, whatever the modes: those of branches, gaps, velocities and stictions of frictions. */
   Node *watched;
   size_t watched_count;
-  /*
-   * The indicators of the branches and their time derivatives; of each contact the gap, its first and second time
-   * derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the force while it
-   * slides; the conditions of the events, and what these assign; the energies, and the
-   * momenta.
-   */
-  Node *values;
+  Node *values; /* as value[] of struct SwitchTable holds them, see include/lagrangian.h */
   size_t value_count;
 };
 

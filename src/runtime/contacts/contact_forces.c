@@ -51,7 +51,7 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
 }
 
 static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
-  size_t rate = contact_place(settlement, contact, CONTACT_RATE);
+  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
   if (mode_of(settlement, settlement->switches->contacts[contact].mode) != 0.0) return true;
   return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
 }
@@ -60,7 +60,7 @@ static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
 static bool sinks(const struct Settlement *settlement) {
   bool any = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    size_t place = contact_place(settlement, i, CONTACT_ACCELERATION);
+    size_t place = contact_place(settlement->switches, i, CONTACT_ACCELERATION);
     bool is_open = mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0;
     any |= is_open && settlement->takes_part[i] != 0.0 && settlement->value[place] < -settlement->noise[place];
   }
@@ -114,8 +114,8 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
   size_t n = resting->count;
   for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(pushes->mobility[i * pushes->count + i]);
   for (size_t i = 0; i < n; i++) {
-    resting->free[i] =
-        settlement->value[contact_place(settlement, pushes->member[i], CONTACT_ACCELERATION)] * resting->unit[i];
+    resting->free[i] = settlement->value[contact_place(settlement->switches, pushes->member[i], CONTACT_ACCELERATION)] *
+                       resting->unit[i];
     for (size_t j = 0; j < n; j++) {
       const struct ContactFacts *contact = &settlement->switches->contacts[pushes->member[j]];
       double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];

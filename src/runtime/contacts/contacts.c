@@ -29,7 +29,7 @@ static size_t find_impact(const struct Settlement *settlement) {
   size_t found = settlement->switches->contact_count;
   double fastest = 0.0;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    size_t rate = contact_place(settlement->switches, i, CONTACT_RATE);
     bool is_open =
         mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0 && settlement->was_opened[i] == 0.0;
     bool is_hit_first = is_hit(settlement, indicator_of_contact(settlement, i)) && is_open && settlement->impacts == 0;
@@ -48,7 +48,7 @@ static void open_all(struct Settlement *settlement) {
 
 /* Logs a restitution that is none. */
 static bool check_restitution(const struct Settlement *settlement, size_t contact) {
-  double restitution = settlement->value[contact_place(settlement, contact, CONTACT_RESTITUTION)];
+  double restitution = settlement->value[contact_place(settlement->switches, contact, CONTACT_RESTITUTION)];
   if (restitution >= 0.0 && restitution <= 1.0) return true;
   log_message(settlement->instance, STATUS_DISCARD,
               "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
@@ -59,11 +59,11 @@ static bool check_restitution(const struct Settlement *settlement, size_t contac
 /* The contacts that are hit as fast as one, but for rounding; where pushes go to and fro without end, all that touch. */
 static bool choose_hit(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
-  size_t place = contact_place(settlement, contact, CONTACT_RATE);
+  size_t place = contact_place(switches, contact, CONTACT_RATE);
   double fastest = settlement->value[place], noise = settlement->noise[place];
   bool bounces = settlement->impacts < IMPACT_LIMIT, is_fine = true;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t rate = contact_place(settlement, i, CONTACT_RATE);
+    size_t rate = contact_place(switches, i, CONTACT_RATE);
     double slower = settlement->value[rate] - fastest;
     bool is_tied = slower <= noise + settlement->noise[rate] - equal_share * fastest;
     settlement->takes_part[i] = is_touching(settlement, i) && (is_tied || !bounces) ? 1.0 : 0.0;
@@ -113,7 +113,7 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
 
 /* Whether an open contact that touches would come back at once. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
+  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
   const double *value = &settlement->value[gap];
   double rate = fmax(value[CONTACT_RATE], 0.0), fall = -value[CONTACT_ACCELERATION];
   if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
@@ -131,7 +131,7 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
 static void let_moving_slide(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
-    size_t place = friction_place(settlement, i, FRICTION_VELOCITY);
+    size_t place = friction_place(switches, i, FRICTION_VELOCITY);
     double velocity = settlement->value[place];
     bool sticks = mode_of(settlement, switches->frictions[i].mode) == 0.0;
     if (!sticks || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE)) continue;
@@ -143,7 +143,7 @@ static void let_moving_slide(struct Settlement *settlement) {
 static void let_stick(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY);
+    size_t velocity = friction_place(switches, i, FRICTION_VELOCITY);
     bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
     if (rests_on(switches, i, contact) && !slides) settlement_set_mode(settlement, switches->frictions[i].mode, 0.0);
   }
@@ -174,7 +174,7 @@ static bool open_lifted(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t gap = contact_place(settlement, i, CONTACT_GAP);
+    size_t gap = contact_place(switches, i, CONTACT_GAP);
     bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
     if (!is_closed || settlement->value[gap] <= largest_drift(settlement)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
@@ -189,7 +189,7 @@ static bool open_parting(struct Settlement *settlement) {
   double drift = continuity_allowed_share(settlement) * largest_scale(settlement->state, lagrangian.coordinate_count);
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t place = contact_place(settlement, i, CONTACT_RATE);
+    size_t place = contact_place(switches, i, CONTACT_RATE);
     double rate = settlement->value[place], least = settlement->thrown ? settlement->noise[place] : drift;
     if (mode_of(settlement, switches->contacts[i].mode) == 0.0 || !(rate > least)) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
@@ -203,7 +203,7 @@ static bool release(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   open_lifted(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
     bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
     if (is_closed || gap >= -largest_drift(settlement)) continue;
     log_message(
@@ -226,8 +226,8 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
   settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
-    double noise = settlement->noise[contact_place(settlement, i, CONTACT_GAP)];
+    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
+    double noise = settlement->noise[contact_place(switches, i, CONTACT_GAP)];
     bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
     if (!is_open || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
     settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
@@ -266,7 +266,7 @@ static const char *check_gaps(const struct Settlement *settlement) {
   bool starts = settlement->occasion == AT_START, moved = settlement->moved;
   double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(settlement, i, CONTACT_GAP)];
+    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
     if (gap >= -allowed) continue;
     log_message(
         settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,

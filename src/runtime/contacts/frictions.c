@@ -35,7 +35,7 @@ struct FrictionState {
 
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
-  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
+  size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
   size_t indicator = indicator_of_friction(settlement, friction);
   struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
                                 .velocity = settlement->value[place],
@@ -74,7 +74,7 @@ static double mode_from_sliding(const struct Settlement *settlement, size_t plac
 
 /* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
 static double friction_mode(const struct Settlement *settlement, size_t friction) {
-  size_t place = friction_place(settlement, friction, FRICTION_VELOCITY);
+  size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
   struct FrictionState state = friction_state(settlement, friction);
   bool is_absent = settlement->switches->rests_on != NULL && state.stiction == 0.0 &&
                    settlement->value[place + FRICTION_FORCE] == 0.0;
@@ -141,7 +141,7 @@ static bool tell_frictions(struct Settlement *settlement, bool *again) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionFacts *facts = &switches->frictions[i];
     double mode = mode_of(settlement, facts->mode);
-    double velocity = settlement->value[friction_place(settlement, i, FRICTION_VELOCITY)];
+    double velocity = settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
     bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraint_count > 1;
     if (may_rest && !find_held(settlement, facts, &held)) return false;
     if (held) mode = 0.0;
@@ -155,7 +155,7 @@ static bool tell_frictions(struct Settlement *settlement, bool *again) {
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
 static const char *check_frictions(const struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
-    size_t place = friction_place(settlement, i, FRICTION_FORCE);
+    size_t place = friction_place(settlement->switches, i, FRICTION_FORCE);
     double force = settlement->value[place];
     if (!(force < -settlement->noise[place])) continue;
     log_message(

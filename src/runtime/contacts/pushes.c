@@ -7,7 +7,7 @@
 #include "evaluation/services.h"
 
 bool is_touching(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement, contact, CONTACT_GAP);
+  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
   double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
   return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
 }
@@ -67,7 +67,7 @@ static void find_coefficients(struct Settlement *settlement, struct Pushes *push
     settlement->switches->values(&point, force, value);
     if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 0.0;
     for (size_t f = 0; f < pushes->friction_count; f++) {
-      double sliding = value[friction_place(settlement, pushes->member[contacts + f], FRICTION_FORCE)];
+      double sliding = value[friction_place(settlement->switches, pushes->member[contacts + f], FRICTION_FORCE)];
       if (i < contacts) pushes->coefficient[f * contacts + i] = sliding;
       else /* without any force */
         for (size_t k = 0; k < contacts; k++)
@@ -79,8 +79,8 @@ static void find_coefficients(struct Settlement *settlement, struct Pushes *push
 static void find_rates(const struct Settlement *settlement, struct Pushes *pushes) {
   for (size_t row = 0; row < pushes->count; row++) {
     size_t member = pushes->member[row];
-    size_t place = row < pushes->contact_count ? contact_place(settlement, member, CONTACT_RATE)
-                                               : friction_place(settlement, member, FRICTION_VELOCITY);
+    size_t place = row < pushes->contact_count ? contact_place(settlement->switches, member, CONTACT_RATE)
+                                               : friction_place(settlement->switches, member, FRICTION_VELOCITY);
     pushes->rate[row] = settlement->value[place];
   }
 }

@@ -16,13 +16,13 @@ static double sign_with_noise(double value, double noise) {
 
 /* Where its zero was located, it may be left as far below as the search takes for rounding. */
 static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
-  double noise = settlement_noise(settlement, branch, settlement->switches->branch_count + branch);
+  double noise = settlement_noise(settlement, branch, branch_rate_place(settlement->switches, branch));
   return noise * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
 }
 
 /* Whether an event has left it a little beyond 0, and it comes back to the sign of its mode. */
 static bool comes_back(const struct Settlement *settlement, size_t branch, double mode, double noise) {
-  size_t rate = settlement->switches->branch_count + branch;
+  size_t rate = branch_rate_place(settlement->switches, branch);
   double value = settlement->value[branch];
   return mode * sign_with_noise(value, noise) < 0.0 && fabs(value) <= FLOOR_IN_NOISE * noise &&
          mode * settlement->value[rate] > settlement->noise[rate];
@@ -36,7 +36,7 @@ static bool passes(const struct Settlement *settlement, size_t branch) {
 
 /* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
 static double branch_mode(const struct Settlement *settlement, size_t branch) {
-  size_t rate = settlement->switches->branch_count + branch;
+  size_t rate = branch_rate_place(settlement->switches, branch);
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
   double noise = noise_of_branch(settlement, branch);
   if (comes_back(settlement, branch, mode, noise)) return mode;
@@ -82,7 +82,7 @@ bool branches_begin(struct Settlement *settlement) {
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (!settlement_evaluate(settlement)) return false;
     for (size_t i = 0; i < switches->branch_count; i++) {
-      double noise = settlement_noise(settlement, i, switches->branch_count + i);
+      double noise = settlement_noise(settlement, i, branch_rate_place(switches, i));
       settlement_set_mode(settlement, switches->branches[i].mode, sign_with_noise(settlement->value[i], noise));
     }
   }

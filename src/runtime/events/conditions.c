@@ -2,7 +2,7 @@
 
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
-  const double *value = settlement->value + condition_place(settlement) + switches->event_count;
+  const double *value = settlement->value + assignment_place(switches, 0);
   for (size_t i = event->first_assignment; i < event->first_assignment + event->assignment_count; i++) {
     const struct AssignmentFacts *facts = &switches->assignments[i];
     if (facts->kind == VARIABLE_MODE) {
@@ -24,7 +24,7 @@ static void note_conditions(struct Settlement *settlement, bool all) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
-    double condition = settlement->value[condition_place(settlement) + i];
+    double condition = settlement->value[condition_place(switches, i)];
     bool stays = event->passage != PASSAGE_HOLDS && condition == 0.0;
     if (!stays && (all || event->is_of_contacts)) settlement->condition[i] = condition;
   }
@@ -34,7 +34,7 @@ void conditions_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
-    double condition = settlement->value[condition_place(settlement) + i];
+    double condition = settlement->value[condition_place(switches, i)];
     bool was_at_side = event->passage != PASSAGE_HOLDS && mode_of(settlement, event->side) != 0.0;
     settlement->condition[i] = was_at_side ? mode_of(settlement, event->side) : condition;
   }
@@ -45,7 +45,7 @@ static void keep_sides(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
-    double sign = settlement->value[condition_place(settlement) + i];
+    double sign = settlement->value[condition_place(switches, i)];
     if (event->passage != PASSAGE_HOLDS && sign != 0.0) settlement->instance->parameter[event->side] = sign;
   }
 }
@@ -53,7 +53,8 @@ static void keep_sides(const struct Settlement *settlement) {
 /* An expression that has only been at 0 passes nothing. */
 static bool happens(const struct Settlement *settlement, size_t event) {
   const struct EventFacts *facts = &settlement->switches->events[event];
-  double condition = settlement->value[condition_place(settlement) + event], before = settlement->condition[event];
+  double condition = settlement->value[condition_place(settlement->switches, event)],
+         before = settlement->condition[event];
   if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(before > 0.0);
   bool rises = condition > 0.0 && before < 0.0, falls = condition < 0.0 && before > 0.0;
   return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);

@@ -23,14 +23,14 @@ const char *continuity_begin(struct Settlement *settlement) {
 void continuity_note(struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
   const struct BranchFacts *facts = &switches->branches[branch];
-  double rate = settlement->value[switches->branch_count + branch];
+  double rate = settlement->value[branch_rate_place(switches, branch)];
   if (settlement->switched == NULL) {
     settlement->switched = facts;
     settlement->overshoot = rate != 0.0 ? fabs(settlement->value[branch] / rate) : 0.0;
   }
   if (!facts->holds_energy || settlement->energetic != NULL) return;
   settlement->energetic = facts;
-  memcpy(settlement->energy, settlement->value + energy_place(settlement), switches->energy_count * sizeof(double));
+  memcpy(settlement->energy, settlement->value + energy_place(switches), switches->energy_count * sizeof(double));
 }
 
 double continuity_allowed_share(const struct Settlement *settlement) {
@@ -44,8 +44,9 @@ double continuity_allowed_share(const struct Settlement *settlement) {
 
 /* The largest jump among so many energies or momenta, of those from first on, as a share of their size. */
 static double share_of_jump(const struct Settlement *settlement, size_t first, size_t count) {
-  const double *before = settlement->energy + first, *behind = settlement->value + energy_place(settlement) + first;
-  const double *noise = settlement->noise + energy_place(settlement) + first;
+  size_t place = energy_place(settlement->switches) + first;
+  const double *before = settlement->energy + first, *behind = settlement->value + place;
+  const double *noise = settlement->noise + place;
   double size = 0.0, jump = 0.0;
   for (size_t i = 0; i < count; i++) size = fmax(size, fmax(fabs(before[i]), fabs(behind[i])));
   for (size_t i = 0; i < count; i++)

@@ -18,7 +18,8 @@ static double time_beyond(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double time = 0.0;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    double sign = mode_of(settlement, switches->branches[i].mode), rate = settlement->value[switches->branch_count + i];
+    double sign = mode_of(settlement, switches->branches[i].mode),
+           rate = settlement->value[branch_rate_place(switches, i)];
     if (!(sign * settlement->value[i] < 0.0)) continue;
     if (!(sign * rate < 0.0)) return NAN;
     time = fmax(time, settlement->value[i] / rate);

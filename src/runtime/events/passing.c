@@ -182,7 +182,7 @@ const char *switching_check(struct Instance *instance, double time) {
   if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
   bool pushes = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
-    pushes |= settlement.value[friction_place(&settlement, i, FRICTION_FORCE)] < 0.0;
+    pushes |= settlement.value[friction_place(settlement.switches, i, FRICTION_FORCE)] < 0.0;
   return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
 }
 

@@ -10,9 +10,7 @@
 #include "events/search.h"
 
 size_t settlement_value_count(const struct SwitchTable *switches) {
-  return 2 * switches->branch_count + CONTACT_VALUES * switches->contact_count +
-         FRICTION_VALUES * switches->friction_count + switches->event_count + switches->assignment_count +
-         switches->energy_count;
+  return energy_place(switches) + switches->energy_count;
 }
 
 static size_t rows_of_matrix(void) {
@@ -101,9 +99,9 @@ bool settlement_evaluate(struct Settlement *settlement) {
   }
   settlement->is_evaluated = true;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    measure_velocity(settlement, contact_place(settlement, i, CONTACT_RATE));
+    measure_velocity(settlement, contact_place(settlement->switches, i, CONTACT_RATE));
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
-    size_t velocity = friction_place(settlement, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
+    size_t velocity = friction_place(settlement->switches, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
     measure_velocity(settlement, velocity);
     settlement->largest[rate] = fmax(settlement->largest[rate], fabs(settlement->value[rate]));
   }

@@ -4,10 +4,6 @@
 
 #include "instance/switching.h"
 
-/* Parts of value[], see struct SwitchTable. */
-enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
-enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
-
 struct Settlement {
   struct Instance *instance;
   const struct SwitchTable *switches;
@@ -85,23 +81,6 @@ bool settlement_push(struct Settlement *settlement);
 
 /* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
 bool settlement_move(struct Settlement *settlement);
-
-static inline size_t contact_place(const struct Settlement *settlement, size_t contact, size_t part) {
-  return 2 * settlement->switches->branch_count + CONTACT_VALUES * contact + part;
-}
-
-static inline size_t friction_place(const struct Settlement *settlement, size_t friction, size_t part) {
-  return contact_place(settlement, settlement->switches->contact_count, 0) + FRICTION_VALUES * friction + part;
-}
-
-static inline size_t condition_place(const struct Settlement *settlement) {
-  return friction_place(settlement, settlement->switches->friction_count, 0);
-}
-
-/* Of the kinetic energy, before the potential one and the momenta. */
-static inline size_t energy_place(const struct Settlement *settlement) {
-  return condition_place(settlement) + settlement->switches->event_count + settlement->switches->assignment_count;
-}
 
 static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {
   return settlement->switches->branch_count + contact;
