@@ -180,15 +180,17 @@ static void append_values(const struct Model *model, const struct Equations *equ
                                      .friction_count = switches->friction_count,
                                      .event_count = switches->event_count,
                                      .assignment_count = switching->assignment_count};
-  Node *seeds = time_seeds(model, true);
-  while (list->count < energy_place(&counts)) append_node(list, ZERO);
-  for (size_t i = 0; i < counts.branch_count; i++) list->nodes[i] = switching->branches[i]->indicator;
+  size_t count = energy_place(&counts);
+  Node *seeds = time_seeds(model, true), *values = allocate(count, sizeof *values);
+  for (size_t i = 0; i < counts.branch_count; i++) values[i] = switching->branches[i]->indicator;
   for (size_t i = 0; i < counts.branch_count; i++)
-    list->nodes[branch_rate_place(&counts, i)] = rate_of(model, list->nodes[i], seeds);
-  fill_contacts(model, &counts, seeds, list->nodes);
-  fill_frictions(model, &counts, seeds, list->nodes);
-  fill_events(switches, &counts, list->nodes);
+    values[branch_rate_place(&counts, i)] = rate_of(model, values[i], seeds);
+  fill_contacts(model, &counts, seeds, values);
+  fill_frictions(model, &counts, seeds, values);
+  fill_events(switches, &counts, values);
+  append_nodes(list, values, count);
   append_energies(model, equations, switching, list);
+  free(values);
   free(seeds);
 }
 

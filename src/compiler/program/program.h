@@ -1,4 +1,4 @@
-/* The program of an FMU: one routine for each function of include/lagrangian.h that computes. */
+/* The program of an FMU: the routines that the functions of include/lagrangian.h consist of. */
 #ifndef PROGRAM_H
 #define PROGRAM_H
 

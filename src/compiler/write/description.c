@@ -142,9 +142,10 @@ static void write_fields(FILE *file, const struct Program *program, enum Functio
 }
 
 static void write_constraints(FILE *file, const struct Program *program) {
-  if (program->routines[FUNCTION_ACCELERATIONS] == NULL) return;
-  fprintf(file, "    .constraint_count = %zu,\n    .constraints = constraint_names,\n    .projection = &projection,\n",
-          program->model->constraints.count);
+  if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
+    fprintf(file,
+            "    .constraint_count = %zu,\n    .constraints = constraint_names,\n    .projection = &projection,\n",
+            program->model->constraints.count);
   write_fields(file, program, FUNCTION_ACCELERATIONS, FUNCTION_START_POSITIONS);
   if (has_guides(program->model))
     fputs("    .constraint_inputs = constraint_inputs,\n    .guides = guides,\n"
