@@ -284,7 +284,10 @@ def test_lagc_for_windows(tmp_path):
     systems |= {name: ROOT / "tests" / "systems" / name / "system.xml" for name in fmu.further_names()}
     lines = [f'"{folder / "lagc.exe"}" "{system}" -o "{tmp_path / "there" / name}"\nif errorlevel 1 exit 1' for name, system in systems.items()]
     (tmp_path / "all.bat").write_text("@echo off\n" + "\n".join(lines).replace("/", "\\"), newline="\r\n")  # starting wine takes seconds
-    result = subprocess.run(["wine", "cmd", "/c", "all.bat"], capture_output=True, text=True, env=ENVIRONMENT, cwd=tmp_path)
+    for _ in range(3):  # on a busy machine wine may fail to start one of them
+        result = subprocess.run(["wine", "cmd", "/c", "all.bat"], capture_output=True, text=True, env=ENVIRONMENT, cwd=tmp_path)
+        if "Can't recognize" not in result.stderr:
+            break
     assert result.returncode == 0, result.stdout + result.stderr
     for name, system in systems.items():
         assert fmu.lagc(system, "-o", tmp_path / "here" / name).returncode == 0
