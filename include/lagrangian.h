@@ -193,6 +193,11 @@ struct SwitchTable {
    */
   void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
   /*
+   * What the roundings of all operations may make of the indicators of branches, of the gaps and of the velocities of
+   * frictions, in units of DBL_EPSILON; the point itself is taken as exact.
+   */
+  void (*roundings)(const struct Point *point, const double *acceleration, double *uncertainty);
+  /*
    * Shortens limit->step to where the elementary functions in what the indicators look at hide nothing, as far before the
    * point as behind it. input and x hold Taylor coefficients about the point up to limit->order, and so does w[] in
    * watched_acceleration_count rows from watched_acceleration_row on, of the accelerations and forces; w[watched_rows] is

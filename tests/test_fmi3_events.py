@@ -20,12 +20,30 @@ ZENO = """
   <event when="h"><set velocity="v">-0.5*v</set></event>
 </system>
 """
+# The gap is a distance less a radius: near 0 it has no digits left that the state has.
+FAR_GROUND = """
+<system name="{name}">
+  <parameter name="e" start="0.5"/>
+  <parameter name="R" start="1"/>
+  <coordinate name="h" velocity="v" start="1"/>
+  <particle mass="1" y="h"/>
+  <potential>9.81*h</potential>
+  <contact name="ground" gap="sqrt((0.6*R)^2 + (h + 0.8*R)^2) - R" restitution="e"/>
+  <solver method="{method}" tolerance="1e-10"/>
+</system>
+"""
+FAR_METHODS = ["taylor", "radau", "erk"]
 EVENTS = dict(eventModeUsed=True, earlyReturnAllowed=True)
+
+
+def far_ground(method):
+    return f"FarGround{method.title()}"
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    fmu.build_systems("fmi3-events", {"Zeno": ZENO}, "-DFMI_VERSIONS=3")
+    far = {name: FAR_GROUND.format(name=name, method=name[9:].lower()) for name in map(far_ground, FAR_METHODS)}
+    fmu.build_systems("fmi3-events", {"Zeno": ZENO, **far}, "-DFMI_VERSIONS=3")
 
 
 def go_through(instance):
@@ -195,3 +213,20 @@ def test_no_event_mode_where_it_was_not_asked_for(opened):
     with pytest.raises(FMICallException):
         instance.fmu.enterEventMode()
     assert "eventModeUsed" in instance.messages[-1][2]
+
+
+@pytest.mark.parametrize("options", [EVENTS, {}], ids=["event mode", "alone"])
+@pytest.mark.parametrize("radius", [1.0, 1e3, 6.4e6])
+@pytest.mark.parametrize("method", FAR_METHODS)
+def test_a_ball_rests_on_a_gap_whose_terms_cancel(opened, method, radius, options):
+    e, at_impacts = 0.8, []
+    instance = opened(far_ground(method), **options).initialize({"e": e, "R": radius})
+    if options:
+        go_through(instance)
+    times, _ = bounces(1.0, e, 10)
+    rest = np.sqrt(2 / 9.81) * (1 + e) / (1 - e)
+    to(instance, 1.001 * rest, lambda: at_impacts.append(instance.time))
+    assert instance.get("h", "v") == pytest.approx([0, 0], abs=1e-9 + 1e-15 * radius)
+    assert instance.get("ground.force") == pytest.approx(9.81 / 0.8, rel=1e-9)
+    assert not options or at_impacts[:10] == pytest.approx(times, rel=1e-8)
+    assert len(at_impacts) < 100

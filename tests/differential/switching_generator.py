@@ -43,7 +43,18 @@ def generate(seed, number):
         system.families.add(family.__name__)
     if draw.chance(0.3):
         draw.choice(system.plan.actions).rewind = not system.plan.event_mode
+    # The smallest bounce that can be told is higher then, which decides at tighter tolerances.
+    if draw.chance(0.2) and system.plan.tolerance >= 1e-8:
+        look_from_afar(draw)
     return system
+
+
+def look_from_afar(draw):
+    """Gaps as distances from a point far away, so that their roundings are large beside the state's own."""
+    for contact in draw.system.switches.contacts:
+        far = node(draw.choice([30.0, 500.0]))
+        contact.gap = ((contact.gap + far) ** 2 + 1) ** 0.5 - far
+        draw.system.families.add("far gap")
 
 
 # --- Hills ---

@@ -7,8 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* The partial derivatives of an operation with respect to its operands; right stays ZERO for one operand. */
-static void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   const struct Function *row = &functions[graph->vertices[node].operation];
   *by_left = *by_right = ZERO;
   if (row->partial_derivatives != NULL) row->partial_derivatives(graph, node, by_left, by_right);

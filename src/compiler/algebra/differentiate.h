@@ -7,6 +7,9 @@
 
 #include "algebra/graph.h"
 
+/* The partial derivatives of an operation with respect to its operands; by_right becomes ZERO for one operand. */
+void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right);
+
 /*
  * The derivative of each target along a direction: sum over symbols s of d target / d s * seeds[s].
  * seeds: one node for each symbol of the graph, ZERO where the direction has no part.

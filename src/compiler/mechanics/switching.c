@@ -5,6 +5,7 @@
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/node_list.h"
+#include "algebra/roundings.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "lagrangian.h"
@@ -119,6 +120,17 @@ static void append_watched(const struct Model *model, const struct SwitchingExpr
   }
 }
 
+/* What rounding may make of the indicators of branches, of gaps, and of the velocities of frictions. */
+static Node *derive_roundings(const struct Model *model, const struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  struct NodeList list = {0};
+  for (size_t i = 0; i < switching->branch_count; i++) append_node(&list, switching->branches[i]->indicator);
+  for (size_t i = 0; i < switches->contact_count; i++) append_node(&list, switches->contacts[i].gap);
+  for (size_t i = 0; i < switches->friction_count; i++) append_node(&list, switches->frictions[i].velocity);
+  roundings_of(model->graph, list.nodes, list.count, list.nodes);
+  return list.nodes;
+}
+
 /* The energies and the momenta, where branches hold them. */
 static void append_energies(const struct Model *model, const struct Equations *equations,
                             struct SwitchingExpressions *switching, struct NodeList *list) {
@@ -210,6 +222,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->watched_count = watched.count;
   switching->values = values.nodes;
   switching->value_count = values.count;
+  switching->roundings = derive_roundings(model, switching);
   if (switching->indicator_count > 0) return switching;
   switching_free(switching);
   return NULL;
@@ -222,6 +235,7 @@ void switching_free(struct SwitchingExpressions *switching) {
   free(switching->indicators);
   free(switching->watched);
   free(switching->values);
+  free(switching->roundings);
   free(switching);
 }
 

@@ -16,6 +16,7 @@ struct SwitchingExpressions {
    */
   Node *indicators;
   size_t indicator_count;
+  Node *roundings; /* of the indicators, see include/lagrangian.h */
   /* What the indicators look at, whatever the modes: those of branches, gaps, velocities and stictions of frictions. */
   Node *watched;
   size_t watched_count;

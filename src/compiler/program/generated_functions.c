@@ -221,6 +221,11 @@ static struct Routine *indicators_routine(const struct Program *program, struct 
   return targets_routine(values, switching->indicators, switching->indicator_count);
 }
 
+static struct Routine *roundings_routine(const struct Program *program, struct Values *values) {
+  const struct SwitchingExpressions *switching = program->interface->switching;
+  return targets_routine(values, switching->roundings, switching->indicator_count);
+}
+
 static struct Routine *switching_values_routine(const struct Program *program, struct Values *values) {
   const struct SwitchingExpressions *switching = program->interface->switching;
   return targets_routine(values, switching->values, switching->value_count);
@@ -305,6 +310,9 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_INDICATORS] = {"What changes its sign at events", "indicators",
                              "const struct Point *point, const double *a, double *indicator", "indicator",
                              RETURNS_NOTHING, IN_ARGUMENT, switches, indicators_routine},
+    [FUNCTION_ROUNDINGS] = {"What rounding may make of them", "roundings",
+                            "const struct Point *point, const double *a, double *uncertainty", "uncertainty",
+                            RETURNS_NOTHING, IN_ARGUMENT, switches, roundings_routine},
     [FUNCTION_SWITCHING_VALUES] = {"What decides on the modes", "switching_values",
                                    "const struct Point *point, const double *a, double *value", "value",
                                    RETURNS_NOTHING, IN_ARGUMENT, switches, switching_values_routine},

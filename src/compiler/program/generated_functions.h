@@ -24,6 +24,7 @@ enum FunctionName {
   FUNCTION_START_VELOCITIES,
   LAGRANGIAN_ROUTINES, /* those of struct Lagrangian; those of struct SwitchTable are statements always */
   FUNCTION_INDICATORS = LAGRANGIAN_ROUTINES,
+  FUNCTION_ROUNDINGS,
   FUNCTION_SWITCHING_VALUES,
   ROUTINE_COUNT, /* the others have several routines, or are one of many */
   FUNCTION_START = ROUTINE_COUNT,

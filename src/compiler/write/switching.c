@@ -140,6 +140,7 @@ void switching_write(FILE *file, const struct Program *program) {
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
           "    .assignment_count = %zu,\n    .energy_count = %zu,\n    .indicators = indicators,\n"
+          "    .roundings = roundings,\n"
           "    .values = switching_values,\n",
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
           switches->event_count, switching->assignment_count, switching->energy_count);

@@ -120,11 +120,10 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   if (!(fall > settlement->noise[gap + CONTACT_ACCELERATION])) return false;
   double start = settlement->instance->situation->start_time;
   double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
-  /* An importer may come below the ground, and finds no further zero there. */
-  bool is_below = settlement->occasion == IN_EXCHANGE && value[CONTACT_GAP] < 0.0;
-  if (is_below && rate * rate / (2.0 * fall) <= -10.0 * value[CONTACT_GAP]) return true;
+  /* Roundings leave it a little below the ground, importers more, and no flight that ends there has a further zero. */
+  double height = rate * rate / (2.0 * fall), depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
-         rate * rate / (2.0 * fall) <= 4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE);
+         height <= fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * value[CONTACT_GAP]);
 }
 
 /* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */

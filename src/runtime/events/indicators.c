@@ -8,13 +8,27 @@
 /* A state is not told from others nearer than the last digit of this share of its nominal value. */
 static const double least_share = 0.1;
 
+/* Roundings make up to so many times what one of them makes. */
+#define NOISE_OF_DIFFERENCE 8.0
+/* A sum with larger terms may swallow a step of one last digit, and shows one of so many. */
+#define FURTHER 8.0
+
+/* The relative rounding of an operation, that of the library's functions included. */
+static const double rounding_of_operation = DBL_EPSILON;
+
+bool switching_is_force(const struct Instance *instance, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (indicator < switches->branch_count) return false;
+  size_t contact = indicator - switches->branch_count;
+  if (contact < switches->contact_count) return instance->parameter[switches->contacts[contact].mode] > 0.0;
+  return instance->parameter[switches->frictions[contact - switches->contact_count].mode] == 0.0;
+}
+
 /* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */
 static bool feels_forces(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool holds = switches->feels_forces;
-  for (size_t i = 0; i < switches->contact_count; i++) holds |= instance->parameter[switches->contacts[i].mode] > 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    holds |= instance->parameter[switches->frictions[i].mode] == 0.0;
+  for (size_t i = 0; i < indicator_count(switches) && !holds; i++) holds = switching_is_force(instance, i);
   return holds;
 }
 
@@ -28,15 +42,25 @@ bool switching_indicators(struct Instance *instance, double time, const double *
   return true;
 }
 
+void switching_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
+                         double *noise) {
+  struct Point point = solver_point(instance, time, state);
+  lagrangian.switches->roundings(&point, acceleration, noise);
+  for (size_t i = 0; i < indicator_count(lagrangian.switches); i++)
+    noise[i] = isfinite(noise[i]) ? rounding_of_operation * noise[i] : 0.0;
+}
+
 double switching_sign(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   return indicator < switches->branch_count ? instance->parameter[switches->branches[indicator].mode] : 1.0;
 }
 
-void switching_round(const double *state, bool otherwise, double *rounded) {
+double switching_round(const double *state, bool otherwise, double *rounded) {
+  double distance = otherwise ? FURTHER : 1.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
-    double change = (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
+    double change = distance * (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
     rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }
+  return NOISE_OF_DIFFERENCE / distance;
 }

@@ -7,8 +7,21 @@
 /* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
 bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator);
 
-/* A state that differs from another by what rounding may do to it, in one way or otherwise. */
-void switching_round(const double *state, bool otherwise, double *rounded);
+/* Whether an indicator is a force now: of a contact that is closed, or of a friction that sticks. */
+bool switching_is_force(const struct Instance *instance, size_t indicator);
+
+/*
+ * What the roundings of their own operations make of the indicators of branches, the gaps and the velocities of frictions,
+ * whatever the modes; acceleration as for indicators().
+ */
+void switching_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
+                         double *noise);
+
+/*
+ * A state that differs from another by what rounding may do to it, in one way or, several times as far, otherwise. Returns
+ * the noise of a value in units of what this changes it by.
+ */
+double switching_round(const double *state, bool otherwise, double *rounded);
 
 /* 1, -1 or 0: the sign that an indicator has while its mode stays; 0 of a branch that rests at 0. */
 double switching_sign(const struct Instance *instance, size_t indicator);

@@ -61,13 +61,15 @@ static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double later = time * (1.0 + 4.0 * DBL_EPSILON), *exact = search->exact;
   sample(search, time, search->values);
-  memset(search->noise, 0, count * sizeof *search->noise);
+  switching_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
+  for (size_t i = 0; i < count; i++)
+    if (switching_is_force(search->instance, i)) search->noise[i] = 0.0;
   memcpy(exact, search->values, count * sizeof *exact);
   for (int way = 0; way < 2; way++) {
-    switching_round(search->state, way == 1, search->rounded);
+    double factor = switching_round(search->state, way == 1, search->rounded);
     bool known = switching_indicators(search->instance, later, search->rounded, search->values);
     for (size_t i = 0; i < count && known; i++) {
-      double change = 8.0 * fabs(search->values[i] - exact[i]);
+      double change = factor * fabs(search->values[i] - exact[i]);
       if (isfinite(change)) search->noise[i] = fmax(search->noise[i], change);
     }
   }
@@ -101,7 +103,7 @@ static enum Verdict judge_signs(const double *f, double noise) {
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
   double reach = range_of_polynomial(c);
-  if (reach <= noise) return STAYS; /* it does not fall, whatever it is */
+  if (reach <= noise) return f[0] < -noise ? FALLS : STAYS; /* unless it has fallen, it does not, whatever it is */
   double tail = fabs(c[CHEBYSHEV_DEGREE]) + fabs(c[CHEBYSHEV_DEGREE - 1]);
   if (c[0] - reach > 2.0 * tail) return STAYS;
   if (tail > resolved * reach + noise) return UNKNOWN;

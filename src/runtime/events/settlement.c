@@ -21,8 +21,8 @@ size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
   return switching_search_count() + 4 * settlement_value_count(switches) + switches->event_count +
-         indicator_count(switches) + 2 * switches->contact_count + switches->friction_count + switches->energy_count +
-         rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
+         2 * indicator_count(switches) + 2 * switches->contact_count + switches->friction_count +
+         switches->energy_count + rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
@@ -42,7 +42,8 @@ struct Settlement settlement_of(struct Instance *instance) {
   settlement.kept_modes = settlement.acceleration + rows_of_matrix();
   settlement.rounded = settlement.kept_modes + switches->mode_count;
   settlement.derivative = settlement.rounded + lagrangian.state_count;
-  settlement.correction = settlement.derivative + lagrangian.state_count;
+  settlement.rounding = settlement.derivative + lagrangian.state_count;
+  settlement.correction = settlement.rounding + indicators;
   memset(settlement.largest, 0, values * sizeof(double));
   memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
   return settlement;
@@ -56,18 +57,24 @@ struct Settlement settlement_at(struct Instance *instance, double time, double *
   return settlement;
 }
 
+/* As the last evaluation left them. */
+static const double *accelerations_of(const struct Settlement *settlement) {
+  return lagrangian.accelerations != NULL ? settlement->acceleration
+                                          : settlement->derivative + lagrangian.coordinate_count;
+}
+
 bool settlement_values(struct Settlement *settlement, const double *state, double *value) {
   struct Instance *instance = settlement->instance;
   struct Point point = solver_point(instance, settlement->time, state);
-  const double *acceleration = settlement->acceleration;
   if (lagrangian.accelerations != NULL) instance->singular = lagrangian.accelerations(&point, settlement->acceleration);
-  else {
-    instance->singular = lagrangian.derivatives(&point, settlement->derivative);
-    acceleration = settlement->derivative + lagrangian.coordinate_count;
-  }
+  else instance->singular = lagrangian.derivatives(&point, settlement->derivative);
   if (instance->singular != 0) return false;
-  settlement->switches->values(&point, acceleration, value);
+  settlement->switches->values(&point, accelerations_of(settlement), value);
   return true;
+}
+
+static void add_noise(struct Settlement *settlement, size_t place, double noise) {
+  settlement->noise[place] = fmax(settlement->noise[place], noise);
 }
 
 /* What a jump leaves of a velocity is rounded as what it had before, in a system of equations that may be nearly singular. */
@@ -75,28 +82,44 @@ static const double rounding_of_jumps = 1e-11;
 
 static void measure_velocity(struct Settlement *settlement, size_t place) {
   settlement->largest[place] = fmax(settlement->largest[place], fabs(settlement->value[place]));
-  settlement->noise[place] = fmax(settlement->noise[place], rounding_of_jumps * settlement->largest[place]);
+  add_noise(settlement, place, rounding_of_jumps * settlement->largest[place]);
 }
 
-static bool values_rounded(struct Settlement *settlement, bool otherwise, double *value) {
-  switching_round(settlement->state, otherwise, settlement->rounded);
+static bool values_rounded(struct Settlement *settlement, bool otherwise, double *value, double *factor) {
+  *factor = switching_round(settlement->state, otherwise, settlement->rounded);
   return settlement_values(settlement, settlement->rounded, value);
+}
+
+/* Where large terms cancel, roundings of the state may be swallowed. */
+static void take_roundings(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  double *rounding = settlement->rounding;
+  switching_roundings(settlement->instance, settlement->time, settlement->state, accelerations_of(settlement),
+                      rounding);
+  for (size_t i = 0; i < switches->branch_count; i++) add_noise(settlement, i, rounding[i]);
+  rounding += switches->branch_count;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    add_noise(settlement, contact_place(switches, i, CONTACT_GAP), rounding[i]);
+  rounding += switches->contact_count;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    add_noise(settlement, friction_place(switches, i, FRICTION_VELOCITY), rounding[i]);
 }
 
 /* Rounding in one way may leave a difference as it is; what it does in another is measured at the begin of an event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
-  double *noise = settlement->noise, *other = settlement->other_noise;
+  double *noise = settlement->noise, *other = settlement->other_noise, factor, other_factor = 0.0;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
-  if (!values_rounded(settlement, false, noise)) return false;
+  if (!values_rounded(settlement, false, noise, &factor)) return false;
   bool is_first = !settlement->is_evaluated;
-  if (is_first && !values_rounded(settlement, true, other)) return false;
+  if (is_first && !values_rounded(settlement, true, other, &other_factor)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {
-    if (is_first) other[i] = 8.0 * fabs(other[i] - settlement->value[i]);
-    double change = fmax(8.0 * fabs(noise[i] - settlement->value[i]), other[i]);
+    if (is_first) other[i] = other_factor * fabs(other[i] - settlement->value[i]);
+    double change = fmax(factor * fabs(noise[i] - settlement->value[i]), other[i]);
     noise[i] = isfinite(change) ? change : 0.0;
   }
+  take_roundings(settlement);
   settlement->is_evaluated = true;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
     measure_velocity(settlement, contact_place(settlement->switches, i, CONTACT_RATE));

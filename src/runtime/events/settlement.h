@@ -19,7 +19,7 @@ struct Settlement {
   double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
   double *acceleration;       /* and forces of constraints */
   double *kept_modes;
-  double *rounded, *derivative, *correction;
+  double *rounded, *derivative, *rounding, *correction;
   const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
   double overshoot;                    /* in s: how long before its indicator was 0 */
   const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */

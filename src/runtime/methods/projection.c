@@ -16,9 +16,10 @@
 
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 
-static const double converged = 1e-9;      /* a change whose square is below rounding */
-static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
-static const double fulfilled = 1e-10;     /* what a constraint may lack, as a share of the scale of the state */
+static const double converged = 1e-9;    /* a change whose square is below rounding */
+static const double rounded_away = 1e-6; /* a change that gets no smaller: constraints whose terms cancel are rounded */
+static const double largest_move = 0.5;  /* of start values in one iteration, in units of their scales */
+static const double fulfilled = 1e-10;   /* what a constraint may lack, as a share of the scale of the state */
 static const double redundant_lack = 1e-8; /* the same of one that follows from others, before the last change */
 static const double largest_jump = 0.1;    /* of what an input moves, in units of the scale of the state */
 static const double noted_move = 1e-2;     /* the same where it moves as it should, from step to step */
@@ -114,13 +115,16 @@ static double project_velocities(struct Instance *instance, double time, double 
 
 static double project(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
+  double size = INFINITY, before;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
     if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;
-    double size = size_of(work.change, state, 0);
-    if (size <= converged && !others_hold(&work, state, 0)) return INFINITY;
+    before = size;
+    size = size_of(work.change, state, 0);
+    bool is_done = size <= converged || (size <= rounded_away && size >= before);
+    if (is_done && !others_hold(&work, state, 0)) return INFINITY;
     move_positions(&work, state, 1.0);
-    if (size > converged) continue;
+    if (!is_done) continue;
     double velocities = project_velocities(instance, time, state);
     return fmax(size_of(work.moved, state, 0), velocities);
   }

@@ -270,6 +270,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct SwitchingExpressions *switching = expressions->interface->switching;
   if (switching != NULL) {
     append_nodes(&targets, switching->indicators, switching->indicator_count);
+    append_nodes(&targets, switching->roundings, switching->indicator_count);
     append_nodes(&targets, switching->values, switching->value_count);
   }
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series,
