@@ -1,18 +1,12 @@
 """Finds what the build made; every test runs on the packed FMUs."""
 
-import sys
 from collections import Counter
 
 import pytest
 
 import fmi3
 import fmu
-
-sys.path.append(str(fmu.ROOT / "scripts"))
-
-
-def pytest_configure(config):
-    config.addinivalue_line("markers", "release: before a release, by scripts/test --all: what packages, platforms, reports and long searches need")
+from linked import sizes
 
 
 def pytest_generate_tests(metafunc):
@@ -35,8 +29,6 @@ def seconds_of_files(terminalreporter):
 
 
 def pytest_terminal_summary(terminalreporter):
-    from test_left_out import sizes
-
     terminalreporter.write_line(f"\n{'FMU':34}{'archive':>10}{'library':>10}{'SUNDIALS':>10}{'equations':>10}  bytes")
     for name, *numbers in sizes():
         terminalreporter.write_line(f"{name:34}" + "".join(f"{number:10}" for number in numbers))

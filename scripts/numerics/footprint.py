@@ -7,7 +7,7 @@ import time
 from fmpy.fmi2 import FMU2Slave
 
 import fmu
-from test_left_out import linked_members
+from linked import linked_members
 
 FEATURES = {
     "input": "inputs", "time": "time", "loops": "factorization of M at run time", "jacobian": "Jacobian",

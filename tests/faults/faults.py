@@ -19,7 +19,7 @@ def pytest(module, keyword, *systems):
 
 
 def broken(words):
-    """A case of tests/test_bad_systems.py, by words of its name."""
+    """A case of tests/language/test_bad_systems.py, by words of its name."""
     return pytest("test_bad_systems", " and ".join(words.split()))
 
 

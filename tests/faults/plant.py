@@ -58,7 +58,8 @@ def run(kind, test, keyword="", *_):
     if kind == "ctest":
         command = ["ctest", "--test-dir", "build", "--no-tests=error", "-R", f"^({test})$"]
     else:
-        command = ["build/venv/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", f"tests/{test}.py", "-k", keyword]
+        [path] = (TREE / "tests").glob(f"*/{test}.py")
+        command = ["build/venv/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", path, "-k", keyword]
     environment = {name: value for name, value in os.environ.items() if name != "FMU_BUILD"}
     code = subprocess.run(command, cwd=TREE, capture_output=True, env=environment).returncode
     return {0: PASSES, 1: FAILS, 8: FAILS}.get(code, ABSENT)

@@ -14,7 +14,7 @@
 #include "methods/radau.h"
 #include "methods/radau_tables.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+/* Local errors of the order of the tolerance add up to more than it; see tests/solvers/test_motion.py. */
 static const double radau_safety = 0.05;
 
 /* As a share of the time: in much less, rounding is all that changes. */

@@ -55,7 +55,7 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   return (first * s + second) * s;
 }
 
-/* The tolerance of a local error: errors of its order add up to more than it; see tests/test_motion.py. */
+/* The tolerance of a local error: errors of its order add up to more than it; see tests/solvers/test_motion.py. */
 static inline double taylor_tolerance(const struct Instance *instance) {
   double tolerance = 0.1 * instance->situation->tolerance;
   return tolerance > 1e-17 ? tolerance : 1e-17;

@@ -11,7 +11,7 @@
 
 #include "evaluation/services.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/test_motion.py. */
+/* Local errors of the order of the tolerance add up to more than it; see tests/solvers/test_motion.py. */
 static const double safety = 0.1;
 
 struct Erk {

@@ -11,7 +11,7 @@ import fmu
 from closed_forms import pendulum_angle
 from differential.build import runtime
 from fmu import DISCARD, ERROR, WARNING, build_systems
-from mechanics import time, velocity
+from mechanics import Constrained, time, velocity
 
 TWO_RODS = """
 <system name="{name}">
@@ -149,26 +149,6 @@ METHODS = ["taylor", "radau", "auto", "bdf", "erk"]
 def systems():
     others = {f"Slider{method}": SLIDER.replace("Slider", f"Slider{method}").replace("<experiment", f'<solver method="{method}" tolerance="1e-10"/><experiment') for method in METHODS}  # fmt: skip
     build_systems("constrained", SYSTEMS | WHOLE | others)
-
-
-class Constrained:
-    """M a + J^T F = right side, J a + (what is left of the second derivatives) = 0, by SymPy."""
-
-    def __init__(self, q, v, T, U, Q, constraints, parameters):
-        L = T - U
-        momenta = [sp.diff(L, vi) for vi in v]
-        mass = sp.Matrix(len(q), len(q), lambda i, j: sp.diff(momenta[i], v[j]))
-        right = [Qi + sp.diff(L, qi) - velocity(p, q, v) for Qi, qi, p in zip(Q, q, momenta)]
-        rates = [c if c.has(*v) else velocity(c, q, v) for c in constraints]
-        jacobian = sp.Matrix(len(constraints), len(q), lambda i, j: sp.diff(rates[i], v[j]))
-        rest = [-velocity(rate, q, v) for rate in rates]
-        self.arguments = [time, *q, *v, *parameters]
-        matrix = sp.Matrix(sp.BlockMatrix([[mass, jacobian.T], [jacobian, sp.zeros(len(rest))]]))
-        self.system = sp.lambdify(self.arguments, [matrix, sp.Matrix([*right, *rest])], modules="numpy", cse=True)
-
-    def solve(self, values):
-        matrix, right = self.system(*values)
-        return np.linalg.solve(np.array(matrix, float), np.array(right, float).ravel())
 
 
 def slider():

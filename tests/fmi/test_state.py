@@ -73,7 +73,7 @@ def test_bdf_goes_on_within_tolerance(open_fmu):
 
 GO_ON = """
 import json, sys
-sys.path.insert(0, {tests!r})
+sys.path[:0] = {folders!r}
 import fmu, test_state
 name, time, data = json.loads(sys.stdin.read())
 instance = fmu.Instance(name)
@@ -95,9 +95,8 @@ def test_going_on_in_another_process(name, open_fmu):
     data = instance.fmu.serializeFMUstate(state).hex()
     text = json.dumps([name, instance.time, data])
     here = drive(instance, name, 10)
-    there = subprocess.run(
-        [sys.executable, "-c", GO_ON.format(tests=str(ROOT / "tests"))], input=text, capture_output=True, text=True
-    )
+    program = GO_ON.format(folders=[str(ROOT / "tests" / room) for room in ("support", "fmi")])
+    there = subprocess.run([sys.executable, "-c", program], input=text, capture_output=True, text=True)
     assert there.returncode == 0, there.stderr
     assert json.loads(there.stdout) == here
     instance.free_state(state)
@@ -149,7 +148,7 @@ def test_restored_parameters_count(name, open_fmu):
 def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
     """What was prepared for the old value is not used: a new instance with the same values moves alike."""
     if fmu.is_constrained(name):
-        pytest.skip("lengths that are tuned move the state: tests/test_constraints.py")
+        pytest.skip("lengths that are tuned move the state: tests/mechanics/test_constraints.py")
     instance, fresh = open_fmu(name).initialize(tolerance=1e-9), open_fmu(name)
     instance.step(0.01)
     parameters, states = fmu.names_of(name, "parameter"), fmu.states_of(name)

@@ -22,6 +22,7 @@ SEED = os.environ.get("RANDOM_SEED", "1")
 def test_random_calls_under_sanitizers():
     library = subprocess.run(["gcc", "-print-file-name=libasan.so"], capture_output=True, text=True).stdout.strip()
     environment = os.environ | {
+        "PYTHONPATH": str(ROOT / "tests" / "support"),
         "FMU_BUILD": str(BUILD / "sanitized"),
         "LD_PRELOAD": library,
         # Python itself leaves memory at its end; a leak counts where an FMU is on the stack of its allocation.
@@ -30,7 +31,7 @@ def test_random_calls_under_sanitizers():
         "UBSAN_OPTIONS": "print_stacktrace=1",
     }
     calls = CALLS // 2  # each takes a hundred times as long as an attack's
-    words = [sys.executable, ROOT / "tests" / "random_calls.py", str(calls), SEED]
+    words = [sys.executable, ROOT / "tests" / "fmi" / "random_calls.py", str(calls), SEED]
     result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=1200 + CALLS // 20)
     text = result.stdout + result.stderr
     made = re.search(r"(\d+) calls", result.stdout)

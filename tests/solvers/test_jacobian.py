@@ -9,7 +9,7 @@ import scipy.linalg
 import fmu
 from differential.build import runtime
 from fmu import ROOT
-from test_left_out import linked_members
+from linked import linked_members
 
 MASSES = 30
 

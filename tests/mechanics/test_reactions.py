@@ -8,10 +8,10 @@ from fmpy.validation import validate_fmu
 
 import fmu
 import reactions_in_sympy
-import test_documentation
 from fmu import lagc
 from held_systems import ARM, BEARING, CHAIN, CRANE, HOIST, ROBOT, SEAT, TABLE, WIRE, at, random_values, rename
 from mechanics import time
+from typeset import check
 
 LINEAR = """<linearization of="../DisplacedBearing/system.xml" name="LinearBearing"/>
 """
@@ -137,6 +137,6 @@ def test_page_shows_the_force(tmp_path):
     (tmp_path / "system.xml").write_text(BEARING)
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
     page = (tmp_path / "out" / "documentation" / "index.html").read_text()
-    assert test_documentation.check(page) == page.count("<code>")
+    assert check(page) == page.count("<code>")
     section = page[page.index("Forces of reaction") :]
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")

@@ -13,12 +13,11 @@ import fmu
 from closed_forms import kepler, pendulum_angle, pericentre_velocity
 from fmu import archive, build_apart
 from mechanics import System, time
-from references import Motion
+from references import exact_series
 from systems_in_sympy import DEFINITIONS, system
 from test_motion import largest_error
 
 LENGTH = 24  # of a series in the saved state
-DIGITS = 50
 ORDER = 12
 
 SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu.all_names()
@@ -36,14 +35,6 @@ def series_of(instance):
     x = np.frombuffer(data[-block:]).reshape(count, LENGTH)
     origin, reach, order = struct.unpack_from("=ddq", data, len(data) - block - count * 8 - 24)
     return origin, reach, order, x
-
-
-def exact_series(definition, values, order):
-    """Coefficients of the states to 50 digits, in an array of doubles."""
-    motion = Motion(definition, {s.name: v for s, v in values.items()}, DIGITS)
-    start_time = next(v for s, v in values.items() if s.name == "time")
-    rows = motion.coefficients(start_time, motion.start, order)
-    return np.array([[float(c) for c in row] for row in rows])
 
 
 def compare(name, values, instance, bound=1e-12):

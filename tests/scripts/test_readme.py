@@ -2,9 +2,9 @@
 
 import re
 import subprocess
-import sys
 import zipfile
 
+import features
 import fmpy
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -52,9 +52,6 @@ def test_every_system_is_in_the_table():
 
 def test_table_of_features():
     """scripts/features brings it up to date."""
-    sys.path.insert(0, str(ROOT / "scripts"))
-    import features
-
     assert f"<!-- features -->\n{features.table()}\n<!-- end -->" in README
 
 

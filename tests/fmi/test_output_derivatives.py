@@ -7,9 +7,8 @@ from flint import arb_series
 
 import fmu
 from fmu import DISCARD, ERROR
-from references import precision
+from references import exact_series, precision
 from systems_in_sympy import DEFINITIONS, system
-from test_taylor import exact_series
 
 SERIES = [name for name in DEFINITIONS if fmu.description(name).coSimulation.maxOutputDerivativeOrder > 1]
 ORDERS = range(1, 9)

@@ -7,8 +7,8 @@ from fmpy.fmi1 import FMICallException
 
 import fmi3
 import fmu
+from fmi3 import Importer, observed
 from fmu import ERROR
-from test_fmi3 import Importer, observed
 from test_switching import SWITCHED, bounces
 
 # Bounces that an event makes, which come without end in a finite time.

@@ -18,6 +18,7 @@ from lxml import etree
 
 import fmi3
 import fmu
+from fmi3 import Importer, observed
 from fmu import DISCARD, ERROR, ROOT
 
 SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
@@ -347,30 +348,6 @@ def test_states(name, opened):
     for instance, held in ((first, state), (second, restored)):
         instance.fmu.freeFMUState(held)
     refused(ERROR, second.fmu.deserializeFMUState, b"x" * len(data))
-
-
-class Importer:
-    """Reads variables within steps, and may ask for an early return."""
-
-    def __init__(self, end_at=None):
-        self.calls, self.end_at, self.instance, self.names, self.problem = [], end_at, None, [], None
-
-    def __call__(self, environment, time, set_requested, get_allowed, finished, can_return, requested, return_time):
-        assert get_allowed and finished and not set_requested
-        try:
-            self.calls.append((time, can_return, self.instance.get(*self.names) if self.names else None))
-        except FMICallException as problem:
-            self.problem = problem
-        if self.end_at is not None and can_return:
-            requested[0] = True
-            return_time[0] = self.end_at
-
-
-def observed(opened, name, importer, variables, **options):
-    references = [v.valueReference for v in fmi3.description(name).modelVariables if v.name in variables]
-    importer.names = variables
-    importer.instance = opened(name, intermediateUpdate=importer, requiredIntermediateVariables=references, **options)
-    return importer.instance
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,7 @@ def test_fmu_manipulation_toolbox_finds_no_error_with_fmi3(name):
 
 COUPLED = """
 import sys
-sys.path.insert(0, {tests!r})
+sys.path.insert(0, {support!r})
 import fmu
 instance = fmu.Instance("ElasticPendulum").initialize(dict(theta=1.0, k=1e6))
 print(instance.run(1.0, 0.1, "theta", "r", "omega", "vr")[-1])
@@ -132,7 +132,7 @@ def test_two_sundials_in_one_process():
     )
     alone, together = (
         subprocess.run(
-            [sys.executable, "-c", before + COUPLED.format(tests=str(ROOT / "tests"))],
+            [sys.executable, "-c", before + COUPLED.format(support=str(ROOT / "tests" / "support"))],
             capture_output=True, text=True, check=True,
         ).stdout
         for before in ("", load)

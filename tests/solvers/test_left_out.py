@@ -7,6 +7,7 @@ import pytest
 
 import fmu
 from fmu import BUILD
+from linked import linked_members, sizes
 
 EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
@@ -19,17 +20,6 @@ FACTORED = ["ChainPendulum", "RobotArm"]  # by a loop: full mass matrices of man
 LONG = ["NFourBar", "Rope"]  # systems of many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems
 BDF = ["FurutaPendulum"]
-
-
-def linked_members(name):
-    """Bytes that each object file contributes after garbage collection, from the linker's map."""
-    text = (fmu.archive(name).parent.parent / "systems" / name / "link.map").read_text()
-    text = text[text.index("Linker script and memory map") :]
-    sizes = {}
-    for size, member in re.findall(r"^ \.\S+\s+0x0*[1-9a-f][0-9a-f]*\s+0x([0-9a-f]+) (\S+)$", text, re.M):
-        member = member.rsplit("/", 1)[-1]
-        sizes[member] = sizes.get(member, 0) + int(size, 16)
-    return {member: size for member, size in sizes.items() if size > 0}
 
 
 def output_of(*words):
@@ -125,17 +115,6 @@ def test_blocks_are_solved_separately():
     assert "ldlt_factor" not in code
     operations = int(re.search(r"d state / dt; (\d+) operations", code).group(1))
     assert operations < 60
-
-
-def sizes():
-    """A row (name, archive, library, SUNDIALS, equations) in bytes for each FMU."""
-    rows = []
-    for name in fmu.all_names():
-        members = linked_members(name)
-        sundials = sum(size for member, size in members.items() if "sundials" in member)
-        own = sum(size for member, size in members.items() if "system.c.o" in member)
-        rows.append((name, fmu.archive(name).stat().st_size, fmu.library(name).stat().st_size, sundials, own))
-    return rows
 
 
 def test_sizes():

@@ -15,7 +15,7 @@ from numerics import driver, stiff, stiff_peers, stiff_problems
 from numerics.collocation import trajectory
 from numerics.stiff import Sample
 from numerics.stiff_problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
-from test_rope import START, accelerations
+from rope import START, accelerations
 
 pytestmark = pytest.mark.release
 

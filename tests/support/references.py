@@ -144,3 +144,11 @@ class Motion:
                 total = total * s + c
             values.append(total.mid())
         return values
+
+
+def exact_series(definition, values, order):
+    """Coefficients of the states to 50 digits, in an array of doubles."""
+    motion = Motion(definition, {s.name: v for s, v in values.items()}, 50)
+    start_time = next(v for s, v in values.items() if s.name == "time")
+    rows = motion.coefficients(start_time, motion.start, order)
+    return np.array([[float(c) for c in row] for row in rows])

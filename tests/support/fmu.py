@@ -22,7 +22,7 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
 LAGC = ROOT / "build" / "bin" / "lagc"
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)

@@ -10,8 +10,7 @@ from scipy.spatial.transform import Rotation
 import fmu
 from closed_forms import free_body_velocity, pendulum_angle, top_cosine, top_nutation
 from fmu import DISCARD, ERROR, build_systems
-from mechanics import rotation, turning, velocity
-from test_constraints import Constrained
+from mechanics import Constrained, rotation, turning, velocity
 
 # One rigid body on a fixed point, written in three ways; the parameters are those of three particles without a rod to the point.
 MASSES = np.array([0.7, 1.1, 0.4])

@@ -16,10 +16,8 @@ import numpy as np
 import pytest
 
 import fmu
+from cross import PLATFORMS, Failure, compile_fmu, libraries_of
 from fmu import BUILD, ROOT, alone
-
-sys.path.append(str(ROOT / "scripts"))
-from cross import PLATFORMS, Failure, compile_fmu, libraries_of  # noqa: E402
 
 pytestmark = pytest.mark.release
 

@@ -136,3 +136,23 @@ def angular_velocity(turn, q, v):
 def turning(turn, moments, q, v):
     """Kinetic energy of a body that turns, by its moments of inertia about its own axes."""
     return sum(J / 2 * rate**2 for J, rate in zip(moments, angular_velocity(turn, q, v)))
+
+
+class Constrained:
+    """M a + J^T F = right side, J a + (what is left of the second derivatives) = 0, by SymPy."""
+
+    def __init__(self, q, v, T, U, Q, constraints, parameters):
+        L = T - U
+        momenta = [sp.diff(L, vi) for vi in v]
+        mass = sp.Matrix(len(q), len(q), lambda i, j: sp.diff(momenta[i], v[j]))
+        right = [Qi + sp.diff(L, qi) - velocity(p, q, v) for Qi, qi, p in zip(Q, q, momenta)]
+        rates = [c if c.has(*v) else velocity(c, q, v) for c in constraints]
+        jacobian = sp.Matrix(len(constraints), len(q), lambda i, j: sp.diff(rates[i], v[j]))
+        rest = [-velocity(rate, q, v) for rate in rates]
+        self.arguments = [time, *q, *v, *parameters]
+        matrix = sp.Matrix(sp.BlockMatrix([[mass, jacobian.T], [jacobian, sp.zeros(len(rest))]]))
+        self.system = sp.lambdify(self.arguments, [matrix, sp.Matrix([*right, *rest])], modules="numpy", cse=True)
+
+    def solve(self, values):
+        matrix, right = self.system(*values)
+        return np.linalg.solve(np.array(matrix, float), np.array(right, float).ravel())

@@ -1,0 +1,42 @@
+"""The documentation page is well-formed, and its typeset formulas say what their text says."""
+
+import html
+import re
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+import fmu
+from fmu import lagc
+from typeset import check
+
+
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_formulas_of_every_system(name):
+    page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
+    # Very long ones are there as text alone.
+    short = [text for text in re.findall("<code>(.*?)</code>", page, re.S) if len(html.unescape(text)) <= 3000]
+    assert check(page) == len(short) > 0
+
+
+def test_typeset_forms(tmp_path):
+    """Every form of an expression, and what is not typeset but shown as it is."""
+    (tmp_path / "system.xml").write_text(
+        """<system name="Forms"><input name="a"/><input name="b2"/><input name="theta[3]"/>
+  <output name="u">-(a + 1)^2/(b2*(a - b2)) - 3/theta[3]</output><output name="v">a^-b2 - (a - (b2 - 1))*2</output>
+  <output name="w">abs(a)*atan2(a, b2)/sqrt(1 + a^2)</output><output name="x">a^(b2^2)*max(a, -b2)*1e-7*(2.5e12 + a)</output>
+</system>"""
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    assert check(page) == 4 and "<msub><mi>θ</mi><mn>3</mn></msub>" in page and page.count("<details>") == 4
+
+
+def test_a_formula_that_is_cut_off_is_shown_as_text(tmp_path):
+    terms = " + ".join(f"sin({i}*a)*cos({i}*a)" for i in range(1500))
+    (tmp_path / "system.xml").write_text(f'<system name="Long"><input name="a"/><output name="y">{terms}</output></system>')
+    assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
+    page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    ElementTree.fromstring(page)
+    assert "...</code>" in page

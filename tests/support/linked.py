@@ -1,0 +1,27 @@
+"""What is linked into each FMU, by the linker's map."""
+
+import re
+
+import fmu
+
+
+def linked_members(name):
+    """Bytes that each object file contributes after garbage collection, from the linker's map."""
+    text = (fmu.archive(name).parent.parent / "systems" / name / "link.map").read_text()
+    text = text[text.index("Linker script and memory map") :]
+    sizes = {}
+    for size, member in re.findall(r"^ \.\S+\s+0x0*[1-9a-f][0-9a-f]*\s+0x([0-9a-f]+) (\S+)$", text, re.M):
+        member = member.rsplit("/", 1)[-1]
+        sizes[member] = sizes.get(member, 0) + int(size, 16)
+    return {member: size for member, size in sizes.items() if size > 0}
+
+
+def sizes():
+    """A row (name, archive, library, SUNDIALS, equations) in bytes for each FMU."""
+    rows = []
+    for name in fmu.all_names():
+        members = linked_members(name)
+        sundials = sum(size for member, size in members.items() if "sundials" in member)
+        own = sum(size for member, size in members.items() if "system.c.o" in member)
+        rows.append((name, fmu.archive(name).stat().st_size, fmu.library(name).stat().st_size, sundials, own))
+    return rows
