@@ -12,8 +12,8 @@ import fmpy
 
 from fmu import ROOT
 from numerics.driver import step, step_repeatedly
-from numerics.peers import heyoka_series
-from numerics.scenarios import SCENARIOS, error_at_end, states_of
+from numerics.work_precision.peers import heyoka_series
+from numerics.work_precision.scenarios import SCENARIOS, error_at_end, states_of
 
 ERROR = 1e-10
 NAMES = ["SimplePendulum", "InvertedPendulumCart", "ParticlePolar", "DoublePendulum"]

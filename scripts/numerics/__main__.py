@@ -10,12 +10,18 @@ from typing import NamedTuple
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, page, paragraphs, table, write_csv
-from numerics import accelerations, energy, footprint, mechanisms, stiff, switching, work_precision
+from numerics import footprint
 from numerics.failures import failure
-from numerics.peers import PEERS
+from numerics.mechanisms import comparison as mechanisms
 from numerics.plots import SWITCHING_STYLES, energy_plot, events_plot, legend, mechanism_legend, mechanism_plot
 from numerics.plots import stiff_legend, stiff_plot, work_precision_plot
-from numerics.scenarios import check_of_reference
+from numerics.space import accelerations
+from numerics.stiff import comparison as stiff
+from numerics.switching import comparison as switching
+from numerics.work_precision import comparison as work_precision
+from numerics.work_precision import energy
+from numerics.work_precision.peers import PEERS
+from numerics.work_precision.scenarios import check_of_reference
 from progress import Progress
 
 FOLDER = ROOT / "build" / "report"

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from html_page import svg
-from numerics.scenarios import SCENARIOS
+from numerics.work_precision.scenarios import SCENARIOS
 
 COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "#588157"}
 STIFF_COLOURS = {"auto": "#c1121f", "radau": "#8338ec", "taylor": "#f4a261", "bdf": "#588157"}
@@ -73,7 +73,7 @@ def legend():
 
 
 def stiff_plot(samples, problem):
-    """All methods and ways of communication on a problem of numerics.stiff_problems."""
+    """All methods and ways of communication on a problem of numerics.stiff.problems."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     methods = PEER_STYLES | {method: (colour, "o") for method, colour in STIFF_COLOURS.items()}
     for way, style in zip(problem.ways, STYLES):

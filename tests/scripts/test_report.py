@@ -11,10 +11,13 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from fmu import ROOT
-from numerics import driver, stiff, stiff_peers, stiff_problems
-from numerics.collocation import trajectory
-from numerics.stiff import Sample
-from numerics.stiff_problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
+from numerics import driver
+from numerics.stiff import comparison as stiff
+from numerics.stiff import peers as stiff_peers
+from numerics.stiff import problems as stiff_problems
+from numerics.stiff.collocation import trajectory
+from numerics.stiff.comparison import Sample
+from numerics.stiff.problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
 from rope import START, accelerations
 
 pytestmark = pytest.mark.release

@@ -5,11 +5,14 @@ import csv
 import pytest
 
 from numerics import __main__ as report
-from numerics import mechanisms, stiff, stiff_problems, work_precision
 from numerics.__main__ import Section
-from numerics.mechanism_problems import PROBLEMS as MECHANISMS
-from numerics.stiff import Sample
-from numerics.stiff_problems import Problem
+from numerics.mechanisms import comparison as mechanisms
+from numerics.mechanisms.problems import PROBLEMS as MECHANISMS
+from numerics.stiff import comparison as stiff
+from numerics.stiff import problems as stiff_problems
+from numerics.stiff.comparison import Sample
+from numerics.stiff.problems import Problem
+from numerics.work_precision import comparison as work_precision
 
 pytestmark = pytest.mark.release
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import fmu
-from numerics import accelerations, driver
-from numerics.accelerations import ROBOTS, Missing
-from numerics.mechanisms import METHODS, Fmu, Peer, first_run
-from numerics.spatial_problems import PROBLEMS
+from numerics import driver
+from numerics.mechanisms.comparison import METHODS, Fmu, Peer, first_run
+from numerics.space import accelerations
+from numerics.space.accelerations import ROBOTS, Missing
+from numerics.space.problems import PROBLEMS
 
 pytestmark = pytest.mark.release
 

@@ -9,9 +9,10 @@ import pytest
 
 import fmu
 from numerics import __main__ as report
-from numerics import driver, mechanisms
-from numerics.mechanism_problems import ANGLES, PROBLEMS, squeezer_angles
-from numerics.mechanisms import METHODS, Fmu, Sample, first_run
+from numerics import driver
+from numerics.mechanisms import comparison as mechanisms
+from numerics.mechanisms.comparison import METHODS, Fmu, Sample, first_run
+from numerics.mechanisms.problems import ANGLES, PROBLEMS, squeezer_angles
 
 pytestmark = pytest.mark.release
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from numerics import __main__ as report
-from numerics import switching
-from numerics.switching import Sample, first_run
-from numerics.switching_peers import METHODS
-from numerics.switching_problems import BALL, BLOCK, CRADLE, GROWING, LOSSLESS_PENDULUM, PENDULUM, PROBLEMS, RESTING_BALL, quarter
+from numerics.switching import comparison as switching
+from numerics.switching.comparison import Sample, first_run
+from numerics.switching.peers import METHODS
+from numerics.switching.problems import BALL, BLOCK, CRADLE, GROWING, LOSSLESS_PENDULUM, PENDULUM, PROBLEMS, RESTING_BALL, quarter
 
 pytestmark = pytest.mark.release
 

@@ -21,7 +21,7 @@ from closed_forms import (
     pericentre_velocity,
     turning_pendulum_angle,
 )
-from numerics.collocation import Collocation, extended_right_side
+from numerics.stiff.collocation import Collocation, extended_right_side
 from references import Motion
 from systems_in_sympy import system
 

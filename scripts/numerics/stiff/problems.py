@@ -11,8 +11,8 @@ from sympy import Rational, cos, diff, sin, sqrt, symbols
 import systems_in_sympy
 from fmu import ROOT
 from mechanics import System, kinetic, velocity
-from numerics.collocation import extended_right_side, trajectory
 from numerics.driver import POINTS, changing_input, description_of, step
+from numerics.stiff.collocation import extended_right_side, trajectory
 
 REFERENCES = ROOT / "build" / "report" / "references"
 STAGES = (12, 9)  # of the reference, and of the one that checks it

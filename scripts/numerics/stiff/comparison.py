@@ -7,10 +7,10 @@ import numpy as np
 
 from numerics.driver import POINTS, step
 from numerics.failures import failure
-from numerics.plots import front
-from numerics.stiff_peers import PATIENCE as PEERS_PATIENCE
-from numerics.stiff_peers import PEERS, can_express
-from numerics.stiff_problems import PROBLEMS, QUICK, relative, right_states
+from numerics.stiff.peers import PATIENCE as PEERS_PATIENCE
+from numerics.stiff.peers import PEERS, can_express
+from numerics.stiff.problems import PROBLEMS, QUICK, relative, right_states
+from numerics.times import ratio, time_to
 
 METHODS = ["auto", "radau", "taylor", "bdf"]  # each has a build of all systems
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
@@ -133,24 +133,8 @@ def collect(quick, progress):
     return samples, failures
 
 
-def time_to(points, level):
-    """The time to this error, between points of (seconds, error) by powers; infinite where they never get there."""
-    points = [(seconds, max(error, 1e-17)) for seconds, error in points]
-    if min((error for _, error in points), default=math.inf) > level:
-        return math.inf
-    seconds, errors = np.log(front(points))[::-1].T
-    return float(np.exp(np.interp(math.log(level), errors, seconds)))
-
-
 def seconds_to(samples, problem, way, method, level):
     return time_to([(s.seconds, s.error) for s in samples if (s.problem, s.way, s.method) == (problem, way, method)], level)
-
-
-def ratio(numerator, denominator):
-    """Not a number where neither method gets there."""
-    if math.isinf(denominator):
-        return math.nan if math.isinf(numerator) else 0.0
-    return numerator / denominator
 
 
 def ratios(samples, problem, way, level):

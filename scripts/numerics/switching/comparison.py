@@ -8,11 +8,10 @@ from statistics import median
 import numpy as np
 
 from numerics.failures import failure
-from numerics.mechanisms import take_turns
-from numerics.peers import silence
-from numerics.stiff import ratio, time_to
-from numerics.switching_peers import METHODS
-from numerics.switching_problems import GROWING, PROBLEMS
+from numerics.programs import silence
+from numerics.switching.peers import METHODS
+from numerics.switching.problems import GROWING, PROBLEMS
+from numerics.times import ratio, take_turns, time_to
 
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 STEPS = [1000, 3000, 10000, 30000, 100000]  # of MuJoCo, multiples of POINTS

@@ -1,47 +1,15 @@
 """The same problems by other programs; each function returns (seconds, states at times_of(name)), or None."""
 
-import contextlib
 import functools
-import os
-import time
-import weakref
 
 import numpy as np
 import sympy
-from fmpy import read_model_description, simulate_fmu
-from fmpy.fmi2 import FMU2Model
 from scipy.integrate import solve_ivp
 
-from fmu import archive, unpacked
 from numerics.driver import POINTS
-from numerics.scenarios import SCENARIOS, states_of, times_of, values_of
+from numerics.programs import FmpyCvode, fastest, impatient
+from numerics.work_precision.scenarios import SCENARIOS, states_of, times_of, values_of
 from systems_in_sympy import system
-
-
-def fastest(run, budget=2.0, repeats=10):
-    """The shortest time of several runs by the processor's time, within a budget of seconds, and the last result."""
-    best, spent, result = np.inf, 0.0, None
-    while repeats > 0 and (spent < budget or best == np.inf):
-        begin = time.process_time()
-        result = run()
-        taken = time.process_time() - begin
-        best, spent, repeats = min(best, taken), spent + taken, repeats - 1
-    return best, result
-
-
-PATIENCE = 20.0  # seconds, after which a run counts as never ending
-
-
-def impatient(function, patience=PATIENCE):
-    """The function, which raises TimeoutError from so many seconds on."""
-    deadline = time.perf_counter() + patience
-
-    def call(*arguments):
-        if time.perf_counter() > deadline:
-            raise TimeoutError
-        return function(*arguments)
-
-    return call
 
 
 def scipy_method(method):
@@ -66,41 +34,6 @@ def fmpy_cvode(name, tolerance):
     except RuntimeError:
         return None
     return (seconds, rows) if len(rows) == POINTS else None
-
-
-class FmpyCvode:
-    """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
-
-    def __init__(self, name, starts, end, outputs, tolerance):
-        description = read_model_description(archive(name))
-        self.folder, self.outputs = str(unpacked(name)), outputs
-        self.instance = FMU2Model(guid=description.guid, unzipDirectory=self.folder, instanceName="peer",
-                                  modelIdentifier=description.modelExchange.modelIdentifier)  # fmt: skip
-        self.instance.instantiate()
-        weakref.finalize(self, self.instance.freeInstance)
-        self.words = dict(model_description=description, fmu_instance=self.instance, fmi_type="ModelExchange", solver="CVode",
-                          stop_time=end, output_interval=end / POINTS, relative_tolerance=tolerance, start_values=starts,
-                          output=outputs, record_events=False)  # fmt: skip
-
-    def simulate(self):
-        """A row for each of the communication points, unless it gives up."""
-        with silence():
-            self.instance.reset()
-            result = simulate_fmu(self.folder, **self.words)
-        return np.array([result[output] for output in self.outputs]).T[1:]
-
-
-@contextlib.contextmanager
-def silence():
-    """What C libraries write to the standard error, too."""
-    saved, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null, 2)
-    try:
-        yield
-    finally:
-        os.dup2(saved, 2)
-        os.close(saved)
-        os.close(null)
 
 
 def heyoka_series(name, tolerance):

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from numerics.driver import POINTS, step
-from numerics.peers import FmpyCvode, impatient
+from numerics.programs import FmpyCvode, impatient
 
 
 class Timed:

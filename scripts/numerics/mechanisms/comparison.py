@@ -11,13 +11,14 @@ import numpy as np
 
 from numerics.driver import POINTS, step
 from numerics.failures import failure
-from numerics import mechanism_peers, spatial_peers
-from numerics.mechanism_peers import PEERS
-from numerics.mechanism_problems import PROBLEMS as PLANAR
-from numerics.mechanism_problems import Planar
-from numerics.peers import silence
-from numerics.spatial_problems import PROBLEMS as SPATIAL
-from numerics.stiff import ratio, time_to
+from numerics.mechanisms import peers as mechanism_peers
+from numerics.mechanisms.peers import PEERS
+from numerics.mechanisms.problems import PROBLEMS as PLANAR
+from numerics.mechanisms.problems import Planar
+from numerics.programs import silence
+from numerics.space import peers as spatial_peers
+from numerics.space.problems import PROBLEMS as SPATIAL
+from numerics.times import ratio, take_turns, time_to
 
 NOTES = [
     "All programs take turns in one run, and the fastest of five rounds (of two with --quick, or above half a second) counts; the medians and all samples are in "
@@ -40,7 +41,6 @@ SOLVERS = ["taylor", "radau"]  # each has a build of all systems
 METHODS = [*SOLVERS, *PEERS]
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12]
 PATIENCE = 10.0  # seconds of a run; longer ones are not tried
-LONG = 0.5  # seconds, from which on two rounds are enough
 
 
 @dataclass
@@ -143,14 +143,6 @@ def runners_of(problem, quick):
             if first is not None:
                 runners.append(first)
     return runners, missing
-
-
-def take_turns(runners, quick):
-    """Adds the seconds of each round to the samples of what runs."""
-    for turn in range(2 if quick else 5):
-        for runner, sample in runners:
-            if turn < 2 or min(sample.times) < LONG:
-                sample.times.append(runner.run())
 
 
 def sample_problem(problem, quick):

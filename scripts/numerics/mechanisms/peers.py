@@ -5,7 +5,7 @@ import sys
 import numpy as np
 
 from numerics.driver import POINTS
-from numerics.mechanism_problems import GROUND
+from numerics.mechanisms.problems import GROUND
 
 
 class Exudyn:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from numerics.mechanism_peers import Exudyn
-from numerics.mechanism_problems import GROUND, Body, Joint, Planar
-from numerics.peers import impatient, silence
+from numerics.mechanisms.peers import Exudyn
+from numerics.mechanisms.problems import GROUND, Body, Joint, Planar
+from numerics.programs import impatient, silence
 
 PATIENCE = 5.0  # seconds
 STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # of exudyn, which has no control of errors for implicit methods

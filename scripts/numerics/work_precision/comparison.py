@@ -9,8 +9,8 @@ import numpy as np
 
 from numerics.driver import SOLVERS, folder_of, step_repeatedly
 from numerics.failures import failure
-from numerics.peers import PEERS
-from numerics.scenarios import QUICK, SCENARIOS, error_at_end, errors, reference, states_of
+from numerics.work_precision.peers import PEERS
+from numerics.work_precision.scenarios import QUICK, SCENARIOS, error_at_end, errors, reference, states_of
 
 LEVELS = [1e-6, 1e-10]  # errors at which the summary compares
 

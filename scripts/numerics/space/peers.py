@@ -1,11 +1,11 @@
-"""Bodies in space in exudyn and MuJoCo, as mechanism_peers.py has planar ones."""
+"""Bodies in space in exudyn and MuJoCo, as those of mechanisms/ are in the plane."""
 
 import numpy as np
 
-from numerics import mechanism_peers
-from numerics.mechanism_peers import vector
-from numerics.mechanism_problems import GROUND
-from numerics.spatial_problems import Motion
+from numerics.mechanisms import peers as mechanism_peers
+from numerics.mechanisms.peers import vector
+from numerics.mechanisms.problems import GROUND
+from numerics.space.problems import Motion
 
 # Along and about three axes, of which the third is the joint's.
 CONSTRAINED = {"hinge": (1, 1, 1, 1, 1, 0), "slide": (1, 1, 0, 1, 1, 1), "ball": (1, 1, 1, 0, 0, 0)}

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from closed_forms import free_body_velocity, top_cosine
 from fmu import start_values
-from numerics.mechanism_problems import GRAVITY, GROUND, Mechanism
-from numerics.stiff_problems import Problem, right_states
+from numerics.mechanisms.problems import GRAVITY, GROUND, Mechanism
+from numerics.stiff.problems import Problem, right_states
 
 
 @dataclass
