@@ -1,5 +1,6 @@
 """Finds what the build made; every test runs on the packed FMUs."""
 
+import os
 from collections import Counter
 
 import pytest
@@ -18,13 +19,34 @@ def pytest_generate_tests(metafunc):
         metafunc.parametrize("name", fmu.all_names())
 
 
+def processor_seconds():
+    """Of this process and of all that it has waited for, however busy the machine is."""
+    return sum(os.times()[:4])
+
+
+known = 0.0  # when the last report was made
+
+
+def pytest_collection_finish():
+    global known
+    known = processor_seconds()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport():
+    global known
+    report, now = (yield), processor_seconds()
+    report.processor_seconds, known = now - known, now
+    return report
+
+
 def seconds_of_files(terminalreporter):
-    """What the tests of each file took, with all that they built, of two workers together; the longest first."""
+    """What the tests of each file took, with all that they built; the longest first."""
     seconds = Counter()
     for reports in terminalreporter.stats.values():
         for report in reports:
             if isinstance(report, pytest.TestReport):
-                seconds[report.nodeid.partition("::")[0]] += report.duration
+                seconds[report.nodeid.partition("::")[0]] += report.processor_seconds
     return seconds.most_common()
 
 
@@ -33,7 +55,7 @@ def pytest_terminal_summary(terminalreporter):
     for name, *numbers in sizes():
         terminalreporter.write_line(f"{name:34}" + "".join(f"{number:10}" for number in numbers))
     taken = seconds_of_files(terminalreporter)
-    terminalreporter.write_line(f"\n{sum(seconds for _, seconds in taken):.0f} s of all workers, of that by file:")
+    terminalreporter.write_line(f"\n{sum(seconds for _, seconds in taken):.0f} s of the processor for all tests, of that by file:")
     for name, seconds in taken[:30]:
         terminalreporter.write_line(f"{seconds:7.0f}  {name}")
 
