@@ -74,7 +74,7 @@ LEVERS = """
 
 @pytest.fixture(scope="module")
 def own_systems():
-    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND, "Levers": LEVERS}, "-DFMI_VERSIONS=2;3")
+    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND, "Levers": LEVERS}, versions=[2, 3])
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ GRAVITY = 9.81
 @pytest.fixture(scope="module", autouse=True)
 def built():
     fmu.build_systems("calculated", {"CalculatedRod": ROD.format(name="CalculatedRod"), "CalculatedLinear": LINEAR})
-    fmu.build_systems("calculated-tables", {"CalculatedTables": ROD.format(name="CalculatedTables")}, "-DFORM=tables")
+    fmu.build_systems("calculated-tables", {"CalculatedTables": ROD.format(name="CalculatedTables")}, "--form", "tables")
 
 
 def expected(m, l):

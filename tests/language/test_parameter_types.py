@@ -31,7 +31,7 @@ FALL = """<system name="{name}">
 @pytest.fixture(scope="module", autouse=True)
 def built():
     fmu.build_systems("types", {"TypesFall": FALL.format(name="TypesFall")})
-    fmu.build_systems("types-tables", {"TypesTables": FALL.format(name="TypesTables")}, "-DFORM=tables")
+    fmu.build_systems("types-tables", {"TypesTables": FALL.format(name="TypesTables")}, "--form", "tables")
 
 
 BOTH_FORMS = pytest.mark.parametrize("name", ["TypesFall", "TypesTables"])

@@ -45,7 +45,7 @@ GRAVITY = 9.81
 def built():
     texts = {"StartThrow": THROW.format(name="StartThrow"), "StartPendulum": PENDULUM, "StartLinear": LINEAR}
     fmu.build_systems("starts", texts)
-    fmu.build_systems("starts-tables", {"StartTables": THROW.format(name="StartTables")}, "-DFORM=tables")
+    fmu.build_systems("starts-tables", {"StartTables": THROW.format(name="StartTables")}, "--form", "tables")
 
 
 BOTH_FORMS = pytest.mark.parametrize("name", ["StartThrow", "StartTables"])

@@ -1,7 +1,6 @@
 """Tables, against SciPy's curves of the same points, and motions in them against the law of energy and closed forms."""
 
 import functools
-import subprocess
 
 import numpy as np
 import pytest
@@ -9,6 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 import fmu
+from building import build_by_cmake
 from fmu import lagc
 
 # Steep, flat and turning pieces of different widths; one point at 0.
@@ -74,6 +74,7 @@ def slope_outside(curve, u):
     return curve(np.clip(u, X[0], X[-1]), 1)
 
 
+FILE = "argument,force\n" + LINES
 MONOTONE, SPLINE = PchipInterpolator(X, Y), CubicSpline(X, Y)
 ARGUMENTS = sorted([*X, *np.linspace(-3, 5, 57)])
 
@@ -81,13 +82,9 @@ ARGUMENTS = sorted([*X, *np.linspace(-3, 5, 57)])
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {name: HILL.format(name=name, interpolation=kind, method=method, points=POINTS) for name, kind, method in HILLS}
-    for folder, name in (("curves", "TableCurves"), ("curves-tables", "TableTables")):
-        path = fmu.BUILD / folder / "systems" / name / "curve.csv"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("argument,force\n" + LINES)
     curves = lambda name: CURVES.format(name=name, points=POINTS, lines=LINES)
-    fmu.build_systems("curves", {**texts, "TableCurves": curves("TableCurves"), "TableAround": PART})
-    fmu.build_systems("curves-tables", {"TableTables": curves("TableTables")}, "-DFORM=tables")
+    fmu.build_systems("curves", {**texts, "TableCurves": curves("TableCurves"), "TableAround": PART}, files={"TableCurves/curve.csv": FILE})
+    fmu.build_systems("curves-tables", {"TableTables": curves("TableTables")}, "--form", "tables", files={"TableTables/curve.csv": FILE})
 
 
 @pytest.mark.parametrize("name", ["TableCurves", "TableTables"])
@@ -134,20 +131,14 @@ def test_in_a_part(open_fmu):
     assert instance.get("here") == pytest.approx(SPLINE(0.7), rel=1e-14)
 
 
-def build_again():
-    subprocess.run([fmu.ROOT / "scripts" / "build", fmu.BUILD / "curves"], check=True)
-
-
-def test_a_file_that_changes_is_built_anew():
-    path = fmu.BUILD / "curves" / "systems" / "TableCurves" / "curve.csv"
-    text, before = path.read_text(), fmu.archive("TableCurves").read_bytes()
-    try:
-        path.write_text(text.replace("4.0, -1.5", "4.0, -1.25"))
-        build_again()
-        assert fmu.archive("TableCurves").read_bytes() != before
-    finally:
-        path.write_text(text)
-        build_again()
+def test_a_file_that_changes_is_built_anew(tmp_path):
+    texts = {"TableCurves": CURVES.format(name="TableCurves", points=POINTS, lines=LINES)}
+    path = tmp_path / "systems" / "TableCurves" / "curve.csv"
+    path.parent.mkdir(parents=True)
+    path.write_text(FILE)
+    before = (build_by_cmake(tmp_path, texts) / "TableCurves.fmu").read_bytes()
+    path.write_text(FILE.replace("4.0, -1.5", "4.0, -1.25"))
+    assert (build_by_cmake(tmp_path, texts) / "TableCurves.fmu").read_bytes() != before
 
 
 @pytest.mark.parametrize("table, message", [

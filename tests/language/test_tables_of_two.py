@@ -55,22 +55,23 @@ HOLLOWS = {"HollowSpline": ("spline", "taylor"), "HollowMonotone": ("monotone", 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    for folder, name in (("surfaces", "Surfaces"), ("surfaces-tables", "SurfaceTables")):
-        path = fmu.BUILD / folder / "systems" / name / "grid.csv"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("# torque\n" + lines("17 "))
+    grid = "# torque\n" + lines("17 ")
     text = lambda name: SURFACES.format(name=name, plain=lines(), word=lines("b/a; "))
     hollows = {name: HOLLOW.format(name=name, kind=kind, method=method, plain=lines()) for name, (kind, method) in HOLLOWS.items()}
-    fmu.build_systems("surfaces", {"Surfaces": text("Surfaces"), **hollows})
-    fmu.build_systems("surfaces-tables", {"SurfaceTables": text("SurfaceTables")}, "-DFORM=tables")
+    fmu.build_systems("surfaces", {"Surfaces": text("Surfaces"), **hollows}, files={"Surfaces/grid.csv": grid})
+    fmu.build_systems("surfaces-tables", {"SurfaceTables": text("SurfaceTables")}, "--form", "tables", files={"SurfaceTables/grid.csv": grid})
+
+
+def slopes(knots, rows):
+    return np.array([PchipInterpolator(knots, row).derivative()(knots) for row in rows])
+
+
+ALONG_X, ALONG_Y = slopes(X, VALUES), slopes(Y, VALUES.T).T
+BOTH = (slopes(Y, ALONG_X.T).T + slopes(X, ALONG_Y)) / 2
 
 
 def monotone(x, y, dx=0, dy=0):
     """Hermite's bicubic of values and slopes that are PCHIP's along the lines of the grid."""
-    along_x = np.array([PchipInterpolator(X, row).derivative()(X) for row in VALUES])
-    along_y = np.array([PchipInterpolator(Y, column).derivative()(Y) for column in VALUES.T]).T
-    both = (np.array([PchipInterpolator(Y, column).derivative()(Y) for column in along_x.T]).T
-            + np.array([PchipInterpolator(X, row).derivative()(X) for row in along_y])) / 2  # fmt: skip
     i, j = (int(np.clip(np.searchsorted(k, v, "right") - 1, 0, len(k) - 2)) for k, v in ((X, x), (Y, y)))
     h, k = X[i + 1] - X[i], Y[j + 1] - Y[j]
     hermite = np.array([[1, 0, -3, 2], [0, 0, 3, -2], [0, 1, -2, 1], [0, 0, -1, 1]], float)
@@ -81,7 +82,7 @@ def monotone(x, y, dx=0, dy=0):
     a = basis((x - X[i]) / h, dx) / h**dx * [1, 1, h, h]
     b = basis((y - Y[j]) / k, dy) / k**dy * [1, 1, k, k]
     cell = np.s_[j : j + 2, i : i + 2]
-    return b @ np.block([[VALUES[cell], along_x[cell]], [along_y[cell], both[cell]]]) @ a
+    return b @ np.block([[VALUES[cell], ALONG_X[cell]], [ALONG_Y[cell], BOTH[cell]]]) @ a
 
 
 SPLINE = RectBivariateSpline(X, Y, VALUES.T)

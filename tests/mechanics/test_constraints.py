@@ -9,7 +9,7 @@ from fmpy.fmi2 import FMU2Model
 
 import fmu
 from closed_forms import pendulum_angle
-from differential.build import runtime
+from building import runtime
 from fmu import DISCARD, ERROR, WARNING, build_systems
 from mechanics import Constrained, time, velocity
 

@@ -38,7 +38,7 @@ NAMES = ["Hanging", "HangingT"]
 @pytest.fixture(scope="module", autouse=True)
 def built():
     fmu.build_systems("hanging", {"Hanging": HANGING.format(name="Hanging")})
-    fmu.build_systems("hanging-tables", {"HangingT": HANGING.format(name="HangingT")}, "-DFORM=tables")
+    fmu.build_systems("hanging-tables", {"HangingT": HANGING.format(name="HangingT")}, "--form", "tables")
 
 
 @pytest.fixture(scope="module")

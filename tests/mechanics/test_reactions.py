@@ -25,7 +25,7 @@ DISPLACED = [name for name in TEXTS if name.startswith("Displaced")]
 @pytest.fixture(scope="module", autouse=True)
 def built():
     fmu.build_systems("reactions", TEXTS | {"LinearBearing": LINEAR})
-    fmu.build_systems("reactions-tables", {name + "T": rename(text, name + "T") for name, text in TEXTS.items()}, "-DFORM=tables")
+    fmu.build_systems("reactions-tables", {name + "T": rename(text, name + "T") for name, text in TEXTS.items()}, "--form", "tables")
 
 
 @pytest.mark.parametrize("form", ["", "T"])

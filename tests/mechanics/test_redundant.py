@@ -62,7 +62,7 @@ ATTACHED = np.array([-0.5, -0.1, 0.3, 0.6])
 def systems():
     fmu.build_systems("redundant", SYSTEMS)
     fmu.build_systems(
-        "redundant-tables", {f"{name}T": text.replace(f'"{name}"', f'"{name}T"') for name, text in SYSTEMS.items()}, "-DFORM=tables"
+        "redundant-tables", {f"{name}T": text.replace(f'"{name}"', f'"{name}T"') for name, text in SYSTEMS.items()}, "--form", "tables"
     )
 
 

@@ -15,6 +15,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import fmu
+from building import bring_up_to_date
 from fmu import ROOT
 
 pytestmark = pytest.mark.release
@@ -26,7 +27,7 @@ PENDULUM = ROOT / "fmu" / "SimplePendulum" / "system.xml"
 @functools.cache
 def installed():
     """The prefix, moved after the installation: what is installed may lie anywhere."""
-    fmu.bring_up_to_date(ROOT / "build")
+    bring_up_to_date(ROOT / "build")
     folder = tempfile.TemporaryDirectory(prefix="installed here")
     fmu.temporary_folders.append(folder)
     subprocess.run([ROOT / "scripts" / "sundials-all"], check=True)

@@ -16,8 +16,9 @@ import numpy as np
 import pytest
 
 import fmu
+from building import alone, bring_up_to_date
 from cross import PLATFORMS, Failure, compile_fmu, libraries_of
-from fmu import BUILD, ROOT, alone
+from fmu import BUILD, ROOT
 
 pytestmark = pytest.mark.release
 
@@ -50,7 +51,7 @@ def source_of(name):
 @functools.cache
 def platforms():
     """Builds the archives and the programs that drive them, once for all processes that test; returns the folder."""
-    fmu.bring_up_to_date(ROOT / "build")
+    bring_up_to_date(ROOT / "build")
     FOLDER.mkdir(parents=True, exist_ok=True)
     with alone(FOLDER / "lock"):
         subprocess.run([ROOT / "scripts" / "sundials-all"], check=True)

@@ -1,7 +1,6 @@
 """The README's examples work when they are pasted."""
 
 import re
-import subprocess
 import zipfile
 
 import features
@@ -9,7 +8,8 @@ import fmpy
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from fmu import BUILD, ROOT, all_names, build_apart, lagc
+from building import build_by_cmake
+from fmu import BUILD, ROOT, all_names, lagc
 
 README = (ROOT / "README.md").read_text()
 
@@ -17,7 +17,7 @@ README = (ROOT / "README.md").read_text()
 def test_own_system(tmp_path):
     system = re.search(r"```xml\n(<system .*?</system>\n)```", README, re.S).group(1)
     assert len(system.splitlines()) <= 15
-    archive = build_apart(tmp_path, "BeadOnHoop", system)
+    archive = build_by_cmake(tmp_path, {"BeadOnHoop": system}) / "BeadOnHoop.fmu"
     documentation = zipfile.ZipFile(archive).read("documentation/index.html").decode()
     equation = re.search(r"equations, here `(.*?)`", README, re.S).group(1)
     assert equation in documentation

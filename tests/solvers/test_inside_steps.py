@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fmu
-from differential.build import runtime
+from building import runtime
 from fmu import ROOT
 
 TEXT = """<system name="Oscillator">

@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg
 
 import fmu
-from differential.build import runtime
+from building import runtime
 from fmu import ROOT
 from linked import linked_members
 

@@ -3,7 +3,6 @@
 import re
 import struct
 
-import fmpy
 import numpy as np
 import pytest
 import sympy as sp
@@ -11,7 +10,7 @@ from fmpy.fmi2 import FMU2Slave
 
 import fmu
 from closed_forms import kepler, pendulum_angle, pericentre_velocity
-from fmu import archive, build_apart
+from fmu import archive, build_systems
 from mechanics import System, time
 from references import exact_series
 from systems_in_sympy import DEFINITIONS, system
@@ -82,8 +81,8 @@ def test_every_operation(tmp_path):
         '<system name="Operations"><parameter name="p" start="1.7"/><input name="u" start="0.6"/>'
         + "".join(parts) + '<solver method="taylor" tolerance="1e-12"/></system>'
     )
-    unzipped = fmpy.extract(build_apart(tmp_path, "Operations", text), tmp_path / "unzipped")
-    description = fmpy.read_model_description(unzipped)
+    build_systems("operations", {"Operations": text})
+    description, unzipped = fmu.description("Operations"), str(fmu.unpacked("Operations"))
     slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier="Operations", instanceName="i")
     slave.instantiate()
     slave.setupExperiment(startTime=0.3)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import fmu
-from fmu import ROOT, bring_up_to_date, build_systems
+from building import bring_up_to_date
+from fmu import ROOT, build_systems
 from robots_by_energies import Robot
 
 TENSOR = '<inertia ixx="0.021" ixy="0.002" ixz="-0.003" iyy="0.026" iyz="0.004" izz="0.013"/>'

@@ -1,10 +1,7 @@
 """Instances of the built FMUs through FMPy, by variable names instead of value references."""
 
-import fcntl
 import functools
-import os
 import re
-import shutil
 import subprocess
 import tempfile
 from contextlib import contextmanager
@@ -22,9 +19,8 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
-LAGC = ROOT / "build" / "bin" / "lagc"
+from building import BUILD, LAGC, ROOT, build_systems, built_by_tests  # noqa: F401, for tests, which ask here for all that they open
+
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
 
@@ -61,64 +57,11 @@ def unpacked(name):
     return unpacked_archive(archive(name))
 
 
-built_by_tests = {}  # name of a system: its archive
-
-
 def archive(name):
     if name in built_by_tests:
         return built_by_tests[name]
     folder = BUILD if (ROOT / "fmu" / name).exists() else BUILD / "test-systems"
     return folder / "fmu" / f"{name}.fmu"
-
-
-@contextmanager
-def alone(lock):
-    """Other processes wait."""
-    with open(lock, "w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
-@functools.cache
-def bring_up_to_date(build):
-    """What build_systems() takes from another build; its lock is that of scripts/build."""
-    with alone(build / "build.lock"):
-        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers"]
-        subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
-
-
-def build_systems(folder, texts, *words):
-    """
-    Builds FMUs of systems that a test writes itself, by name, in a folder of the build, with the tools of the build around
-    it; other processes wait. Words are for CMake.
-    """
-    build = BUILD / folder
-    bring_up_to_date(build.parent)
-    build.mkdir(parents=True, exist_ok=True)
-    with alone(build / "lock"):
-        for name, text in texts.items():
-            system = build / "systems" / name / "system.xml"
-            system.parent.mkdir(parents=True, exist_ok=True)
-            if not system.exists() or system.read_text() != text:
-                system.write_text(text)
-        for path in (build / "systems").iterdir():
-            if path.name not in texts:
-                shutil.rmtree(path)
-        choices = [f"-DSYSTEMS={build / 'systems'}", f"-DTOOLS={build.parent}"]
-        subprocess.run([ROOT / "scripts" / "build", build, *choices, *words], check=True)
-    for name in texts:
-        built_by_tests[name] = build / "fmu" / f"{name}.fmu"
-
-
-def build_apart(folder, name, text):
-    """Builds the FMU of one system in a folder of the test, with the tools of the build, for this test alone; returns the archive."""
-    bring_up_to_date(ROOT / "build")
-    system = folder / "systems" / name / "system.xml"
-    system.parent.mkdir(parents=True)
-    system.write_text(text)
-    words = [f"-DSYSTEMS={folder / 'systems'}", f"-DTOOLS={ROOT / 'build'}"]
-    subprocess.run([ROOT / "scripts" / "build", folder / "build", *words], check=True)
-    return folder / "build" / "fmu" / f"{name}.fmu"
 
 
 read_description = functools.cache(fmpy.read_model_description)

@@ -43,7 +43,7 @@ def far_ground(method):
 @pytest.fixture(scope="module", autouse=True)
 def built():
     far = {name: FAR_GROUND.format(name=name, method=name[9:].lower()) for name in map(far_ground, FAR_METHODS)}
-    fmu.build_systems("fmi3-events", {"Zeno": ZENO, **far}, "-DFMI_VERSIONS=3")
+    fmu.build_systems("fmi3-events", {"Zeno": ZENO, **far}, versions=[3])
 
 
 def go_through(instance):

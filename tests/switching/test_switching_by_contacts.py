@@ -91,7 +91,7 @@ def built():
     counting = "".join(COUNTING.format(*words) for words in COUNTED)
     texts = {f"Yard_{method}": YARD.format(name=f"Yard_{method}", method=method, counting=counting) for method in ("taylor", "bdf")}
     texts |= {name: f'<system name="{name}">{text}</system>' for name, text in MISTAKES.items()}
-    build_systems("by-contacts", texts | {"Worked": WORKED}, "-DFMI_VERSIONS=2;3")
+    build_systems("by-contacts", texts | {"Worked": WORKED}, versions=[2, 3])
 
 
 # --- Closed forms ---

@@ -1,0 +1,152 @@
+"""
+Systems that tests write themselves become FMUs without CMake, which would take as long as the C compiler for each of them: lagc, one
+call of a compiler with the flags of scripts/fmu.cmake, icon and pack.cmake, by what the build has made.
+"""
+
+import fcntl
+import functools
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
+LAGC = ROOT / "build" / "bin" / "lagc"
+PLATFORMS = {2: "linux64", 3: "x86_64-linux"}
+WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-parameter".split()
+COMPILED = "-std=gnu11 -ffp-contract=off -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables".split()
+LINKED = "-shared -s -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--no-undefined".split()
+LINKED += [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]
+# Series that are not unrolled for each order: half the time of the compiler. The systems of fmu/ are built as users get them.
+SPEED = ["-O1", "-DSERIES_ROLLED"]
+
+built_by_tests = {}  # name of a system: its archive
+
+
+@contextmanager
+def alone(lock):
+    """Other processes wait."""
+    with open(lock, "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@functools.cache
+def bring_up_to_date(build):
+    """What systems take from another build; its lock is that of scripts/build."""
+    with alone(build / "build.lock"):
+        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers", "list_global_names"]
+        subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
+
+
+@functools.cache
+def runtime(version):
+    """Object files and libraries that every FMU is linked with."""
+    cache = (BUILD / "CMakeCache.txt").read_text()
+    sundials = re.search(r"^sundials_in_use:INTERNAL=(.+)$", cache, re.MULTILINE)
+    folders = [BUILD / "CMakeFiles" / f"{layer}.dir" for layer in ("core", f"fmi{version}")]
+    # Objects of sources that are gone stay in a build folder.
+    objects = sorted(
+        path for folder in folders for path in folder.rglob("*.o")
+        if (ROOT / path.relative_to(folder)).with_suffix("").exists()
+    )  # fmt: skip
+    assert objects and sundials, f"{BUILD} is not built"
+    return [*objects, BUILD / "libsolvers.a", "-Wl,--start-group", *sundials[1].split(";"), "-Wl,--end-group", "-lm"]
+
+
+@functools.cache
+def runtime_digest():
+    """Another one where the runtime is another."""
+    files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
+    files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts").glob("*.cmake"), Path(__file__)]
+    return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
+
+
+def library_in(folder, name, version):
+    return folder / "binaries" / PLATFORMS[version] / f"{name}.so"
+
+
+def library_words(source, library, version, compiler="gcc", speed=SPEED):
+    """What compiles a system.c and links the library of its FMU."""
+    return [compiler, *speed, *WARNINGS, *COMPILED, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", source, *runtime(version), *LINKED,
+            f"-Wl,-Map={source.parent}/link.map", f"-Wl,--version-script={ROOT}/src/runtime/fmi{version}/exports.map", "-o", library]  # fmt: skip
+
+
+def icon_words(folder, library):
+    return [BUILD / "bin" / "icon", library, folder / "modelDescription.xml", folder / "model.png"]
+
+
+def pack_words(folder, library, archive, version):
+    settings = {"FOLDER": folder, "LIBRARIES": library, "FMU": archive, "VERSION": version, "SYSTEM": "system.xml", "SOURCE": ROOT,
+                "NAMES": BUILD / "global_names", "ZIP": shutil.which("zip")}  # fmt: skip
+    return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
+
+
+def run(words):
+    result = subprocess.run(list(map(str, words)), capture_output=True, text=True)
+    assert result.returncode == 0, f"{words[0]} fails\n{result.stdout}{result.stderr}"
+
+
+def archive_of(build, name, version=2):
+    return build / ("fmu" if version == 2 else "fmi3") / f"{name}.fmu"
+
+
+def build_system(build, name, versions, words):
+    """Derives always, and goes on where the result, or the runtime, is another than that of the FMU that is there."""
+    folder = build / "systems" / name
+    run([LAGC, folder / "system.xml", "-o", folder, *words])
+    written = [folder / "system.c", folder / "modelDescription.xml", folder / "documentation" / "index.html", *sorted((folder / "fmi3").glob("*"))]
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in written) + f"{versions} {runtime_digest()}".encode()).hexdigest()
+    stamp = folder / "built"
+    if stamp.exists() and stamp.read_text() == digest:
+        return
+    stamp.unlink(missing_ok=True)
+    # The library of FMI 2.0 also draws model.png.
+    for version in sorted({2, *versions}):
+        library = library_in(folder, name, version)
+        library.parent.mkdir(parents=True, exist_ok=True)
+        run(library_words(folder / "system.c", library, version))
+        if version == 2:
+            run(icon_words(folder, library))
+        if version in versions:
+            run(pack_words(folder, library, archive_of(build, name, version), version))
+    stamp.write_text(digest)
+
+
+def write_systems(folder, texts, files={}):
+    """Files system.xml and what they name, which keep their times where nothing has changed, and no other systems."""
+    for path, text in ({f"{name}/system.xml": text for name, text in texts.items()} | files).items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        if not (folder / path).exists() or (folder / path).read_text() != text:
+            (folder / path).write_text(text)
+    for path in folder.iterdir():
+        if path.name not in texts:
+            shutil.rmtree(path)
+
+
+def build_systems(folder, texts, *words, versions=(2,), files={}):
+    """
+    Builds FMUs of systems that a test writes itself, by name, in a folder of the build, with the tools of the build around it, of these
+    versions of FMI; other processes wait. Words are for lagc; files are what systems name, as NAME/FILE.
+    """
+    build = BUILD / folder
+    bring_up_to_date(BUILD)
+    build.mkdir(parents=True, exist_ok=True)
+    with alone(build / "lock"), ThreadPoolExecutor(os.cpu_count()) as pool:
+        write_systems(build / "systems", texts, files)
+        list(pool.map(lambda name: build_system(build, name, versions, words), texts))
+    for name in texts:
+        built_by_tests[name] = archive_of(build, name)
+
+
+def build_by_cmake(folder, texts, *words, tools=ROOT / "build"):
+    """The same as users do it, in any folder, whose FMUs no other test finds by name; returns the folder of the archives."""
+    bring_up_to_date(tools)
+    write_systems(folder / "systems", texts)
+    subprocess.run([ROOT / "scripts" / "build", folder, f"-DSYSTEMS={folder / 'systems'}", f"-DTOOLS={tools}", *words], check=True)
+    return folder / "fmu"
