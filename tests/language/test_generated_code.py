@@ -1,5 +1,6 @@
 """Whatever lagc accepts compiles without a warning, by gcc and by clang."""
 
+import re
 import subprocess
 
 import pytest
@@ -39,16 +40,31 @@ def compile_all(*folders):
         assert result.returncode == 0, result.stderr
 
 
-@pytest.mark.parametrize("expression", EXPRESSIONS)
-@pytest.mark.parametrize("place", PLACES)
-def test_powers(place, expression, tmp_path):
+def check_all_methods(elements, folder):
     """With a series, without, with a Jacobian, which bdf gets as radau does, and with both."""
     methods = ("taylor", "erk", "radau", "auto")
     for method in methods:
-        (tmp_path / "system.xml").write_text(SYSTEM.format(PLACES[place].format(expression), method))
-        result = lagc("system.xml", "-o", method, cwd=tmp_path)
+        (folder / "system.xml").write_text(SYSTEM.format(elements, method))
+        result = lagc("system.xml", "-o", method, "--form", "statements", cwd=folder)
         assert (result.returncode, result.stderr) == (0, "")
-    compile_all(*(tmp_path / method for method in methods))
+    compile_all(*(folder / method for method in methods))
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_powers(place, tmp_path):
+    """Each of a coordinate of its own."""
+    elements = []
+    for i, expression in enumerate(EXPRESSIONS):
+        elements.append(f'<coordinate name="x{i}" velocity="v{i}" start="0.7"/><particle name="p{i}" mass="a" x="x{i}"/>')
+        elements.append(re.sub(r'\b([xvy])\b(?!=)', rf"\g<1>{i}", PLACES[place].format(expression)).replace("<work/>", ""))
+    check_all_methods("".join(elements), tmp_path)
+
+
+@pytest.mark.parametrize("expression", ["3", "x - x"])
+@pytest.mark.parametrize("place", PLACES)
+def test_constants(place, expression, tmp_path):
+    """Where nothing else is, little is needed of what is written before."""
+    check_all_methods(PLACES[place].format(expression), tmp_path)
 
 
 def test_inertia_of_many_long_names(tmp_path):

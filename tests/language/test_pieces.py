@@ -14,6 +14,13 @@ import fmu
 from fmu import DISCARD, ERROR, build_systems, lagc
 
 METHODS = ["taylor", "erk", "radau", "bdf", "auto"]
+
+
+def by_turns(cases):
+    """Each case with two of the methods, each method with its share of the cases."""
+    return [(case, METHODS[(2 * i + k) % len(METHODS)]) for i, case in enumerate(cases) for k in (0, 1)]
+
+
 G = 9.81
 
 # A bead on a curve y = f(x) that begins to curve at x = 0, at a speed of 2 from x = -1 on.
@@ -100,16 +107,16 @@ def bead(name, constraint, method="taylor", y=0, speed=2, before=""):
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {"Stretched": STRETCHED, "Cam": bead("Cam", "y - cam(x)", y=0, before=CAM)}
-    for method, (curve, text) in itertools.product(METHODS, CURVES.items()):
+    for curve, method in by_turns(CURVES):
         name = f"Bead{curve}{method.title()}"
-        texts[name] = bead(name, text, method)
-    for name, (text, y, _) in KINKS.items():
-        for method in METHODS:
-            texts[f"{name}{method.title()}"] = bead(f"{name}{method.title()}", text, method, y, before=RAIL)
-    for method, (push, text) in itertools.product(METHODS, PUSHES.items()):
+        texts[name] = bead(name, CURVES[curve], method)
+    for kink, method in by_turns(KINKS):
+        name, (text, y, _) = f"{kink}{method.title()}", KINKS[kink]
+        texts[name] = bead(name, text, method, y, before=RAIL)
+    for push, method in by_turns(PUSHES):
         name = f"Pushed{push}{method.title()}"
         table = "<table name='steps'>\n-9 1\n-1e-9 1\n1e-9 -1\n9 -1</table>" if push == "Curve" else ""
-        texts[name] = PUSHED.format(name=name, push=text, method=method).replace("<particle", table + "<particle")
+        texts[name] = PUSHED.format(name=name, push=PUSHES[push], method=method).replace("<particle", table + "<particle")
     for method in METHODS:
         texts[f"Pressed{method}"] = PRESSED.format(method=method)
         texts[f"Late{method}"] = LATE.format(method=method, tolerance=1e-10)
@@ -133,8 +140,7 @@ def bead_at_the_end():
     return along_curve(*cubic, -1, 2, 1.5)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("curve", CURVES)
+@pytest.mark.parametrize("curve, method", by_turns(CURVES))
 def test_a_constraint_has_pieces(open_fmu, bead_at_the_end, curve, method):
     instance = open_fmu(f"Bead{curve}{method.title()}").initialize()
     while instance.time < 1.5:
@@ -145,9 +151,9 @@ def test_a_constraint_has_pieces(open_fmu, bead_at_the_end, curve, method):
     assert instance.get("totalEnergy") == pytest.approx(2, abs=1e-7)
 
 
-@pytest.mark.parametrize("curve", CURVES)
-def test_a_constraint_has_pieces_in_model_exchange(bead_at_the_end, curve):
-    archive = str(fmu.archive(f"Bead{curve}Taylor"))
+@pytest.mark.parametrize("curve, method", by_turns(CURVES)[::2])
+def test_a_constraint_has_pieces_in_model_exchange(bead_at_the_end, curve, method):
+    archive = str(fmu.archive(f"Bead{curve}{method.title()}"))
     result = fmpy.simulate_fmu(archive, fmi_type="ModelExchange", stop_time=1.5, relative_tolerance=1e-10, output=["x", "v"])
     assert list(result[-1])[1:] == pytest.approx(bead_at_the_end, abs=1e-5)
 
@@ -165,8 +171,7 @@ def test_a_follower_runs_over_a_cam(open_fmu):
     assert instance.get("y") == pytest.approx(spline(instance.get("x")), abs=1e-12)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("kink", KINKS)
+@pytest.mark.parametrize("kink, method", by_turns(KINKS))
 def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
     """Velocities would have to jump, and by no law that the system tells."""
     instance = open_fmu(f"{kink}{method.title()}").initialize()
@@ -176,18 +181,17 @@ def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
     assert instance.get("x") == pytest.approx(0, abs=1e-9)
 
 
-@pytest.mark.parametrize("kink", KINKS)
-def test_a_kink_in_a_constraint_is_refused_in_model_exchange(kink):
+@pytest.mark.parametrize("kink, method", by_turns(KINKS)[::2])
+def test_a_kink_in_a_constraint_is_refused_in_model_exchange(kink, method):
     messages = []
     logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])
     with pytest.raises(FMICallException) as raised:
-        fmpy.simulate_fmu(str(fmu.archive(f"{kink}Taylor")), fmi_type="ModelExchange", stop_time=1.5, logger=logger)
+        fmpy.simulate_fmu(str(fmu.archive(f"{kink}{method.title()}")), fmi_type="ModelExchange", stop_time=1.5, logger=logger)
     assert raised.value.status == ERROR
     assert any("turns or jumps there in a constraint" in message for message in messages)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("push", PUSHES)
+@pytest.mark.parametrize("push, method", by_turns(PUSHES))
 def test_a_force_by_way_of_an_output(open_fmu, push, method):
     instance = open_fmu(f"Pushed{push}{method.title()}").initialize(tolerance=1e-9)
     quarter = np.sqrt(2 * 0.7)
@@ -294,11 +298,16 @@ PLACED = """
 """
 
 
+THIRDS = [0, pytest.param(1, marks=pytest.mark.release), pytest.param(2, marks=pytest.mark.release)]
+
+
+@pytest.mark.parametrize("third", THIRDS)
 @pytest.mark.parametrize("place", PLACES)
-def test_what_is_taken_compiles(tmp_path, place):
-    """lagc refuses or writes C that a compiler takes, for all combinations."""
+def test_what_is_taken_compiles(tmp_path, place, third):
+    """lagc refuses or writes C that a compiler takes, for all combinations; a third of them for each place on every day, other ones for the next place."""
     taken = 0
-    for i, (function, operand) in enumerate(itertools.product(FUNCTIONS, OPERANDS)):
+    combinations = list(itertools.product(FUNCTIONS, OPERANDS))
+    for i, (function, operand) in list(enumerate(combinations))[(third + list(PLACES).index(place)) % 3 :: 3]:
         element = PLACES[place].format(function.format(operand))
         element += '<constraint name="C">y - 2*x</constraint>' if operand == "C.force" else ""
         (tmp_path / "system.xml").write_text(PLACED.format(element=element))
@@ -306,7 +315,7 @@ def test_what_is_taken_compiles(tmp_path, place):
         assert result.returncode in (0, 1), (element, result.stderr)
         assert (result.returncode == 0) == (result.stderr == ""), (element, result.stderr)
         taken += result.returncode == 0
-    assert taken >= 3
+    assert taken >= 1
     sources = sorted(tmp_path.glob("*/system.c"))
     assert len(sources) == taken
     words = ["gcc", "-std=c11", "-fsyntax-only", "-Wall", f"-I{fmu.ROOT / 'include'}", f"-I{fmu.ROOT / 'src' / 'runtime'}"]

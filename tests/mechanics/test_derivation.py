@@ -8,7 +8,7 @@ import fmu
 from systems_in_sympy import DEFINITIONS, system
 from mechanics import time
 
-CASES = 200
+CASES = 60
 TOLERANCE = 1e-11
 
 
