@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 from faults import FAULTS
@@ -18,19 +19,12 @@ TREE = ROOT / "build" / "faults"
 PASSES, FAILS, ABSENT = range(3)
 
 
-def place_in_copy(file):
-    """Where a file of the project goes. Systems of tests/systems that a test of the list needs stand beside those of fmu/."""
-    parts = Path(file).parts
-    is_needed = parts[:2] == ("tests", "systems") and any(parts[2] in fault.test[3:] for fault in FAULTS)
-    return TREE / "fmu" / Path(*parts[2:]) if is_needed else TREE / file
-
-
 def copy_project():
     words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     for file in subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n"):
         if not (ROOT / file).is_file():
             continue
-        target = place_in_copy(file)
+        target = TREE / file
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_bytes() != (ROOT / file).read_bytes():
             shutil.copyfile(ROOT / file, target)
@@ -44,13 +38,14 @@ def succeeds(*words):
     return subprocess.run(words, cwd=TREE, capture_output=True).returncode == 0
 
 
-def build(targets):
-    return succeeds("cmake", "--build", "build", "--parallel", str(os.cpu_count()), "--target", *targets)
+def build_all():
+    return succeeds("scripts/build", "build", "-DBUILD_TESTS=ON", "-DFMI_VERSIONS=2;3")
 
 
-def targets_of(kind, test, keyword="", *systems):
+def build_for(kind, test, keyword="", *systems):
     """What a test needs: itself, or the compiler, and FMUs. The others stay as they were without a fault."""
-    return [test] if kind == "ctest" else ["lagc", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
+    targets = [test] if kind == "ctest" else ["lagc", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
+    return succeeds("cmake", "--build", "build", "--parallel", str(os.cpu_count()), "--target", *targets)
 
 
 def run(kind, test, keyword="", *_):
@@ -65,25 +60,33 @@ def run(kind, test, keyword="", *_):
     return {0: PASSES, 1: FAILS, 8: FAILS}.get(code, ABSENT)
 
 
-def outcome(fault):
-    place, test = find(fault), fault.test
+@contextmanager
+def planted(fault):
+    """In the copy."""
+    place = find(fault)
     path = TREE / place.file
     text = path.read_text()
     path.write_text(text[: place.start] + fault.wrong + text[place.end :])
     try:
-        is_built = build(targets_of(*test))
-        result = run(*test) if is_built else None
+        yield
     finally:
         path.write_text(text)
+
+
+def outcome(fault):
+    test = fault.test
+    with planted(fault):
+        is_built = build_for(*test)
+        result = run(*test) if is_built else None
     if not is_built:
-        build(targets_of(*test))  # else what could not be made is missing from now on
+        build_for(*test)  # else what could not be made is missing from now on
         return "DOES NOT COMPILE"
     return {PASSES: "NOT SEEN", FAILS: "seen", ABSENT: "HAS NO TEST"}[result]
 
 
 def check_without_faults(tests):
     """Builds everything once, and runs the tests, those of one kind or module together."""
-    if not succeeds("scripts/build", "build", "-DBUILD_TESTS=ON", "-DFMI_VERSIONS=2;3"):
+    if not build_all():
         sys.exit("the project does not build")
     together = [("ctest", "|".join({test for kind, test, *_ in tests if kind == "ctest"}))]
     for module in sorted({test for kind, test, *_ in tests if kind == "pytest"}):

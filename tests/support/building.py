@@ -62,7 +62,7 @@ def runtime(version):
 @functools.cache
 def runtime_digest():
     """Another one where the runtime is another."""
-    files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
+    files = [BUILD / "bin" / "icon", BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
     files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts").glob("*.cmake"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
 
