@@ -10,7 +10,8 @@ import numpy as np
 
 AXES = "xyz"
 TURN = [f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]  # of a frame, row by row
-FUNCTIONS = {name: getattr(math, name) for name in "sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh".split()}
+# The language's own have these names too.
+FUNCTIONS = {name: function for name, function in vars(math).items() if callable(function)}
 FUNCTIONS |= {"abs": abs, "min": min, "max": max, "sign": lambda x: math.copysign(bool(x), x)}
 NAME = re.compile(r"(?<![\w.])[A-Za-z_][\w.]*(?:\[[^]]*\])*(?!\()")
 

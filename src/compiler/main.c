@@ -12,12 +12,14 @@
 #include "mechanics/motion.h"
 #include "output.h"
 #include "program/program.h"
+#include "read/names/words.h"
 #include "read/reader.h"
+#include "read/xml/schema.h"
 
 static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
-    "       lagc --version\n"
+    "       lagc --words | --version\n"
     "\n"
     "Writes system.c, modelDescription.xml, what FMI 3.0 has in its place (fmi3/), and\n"
     "documentation/index.html into DIR, or prints the matrices A and B of x' = A x + B u\n"
@@ -27,7 +29,8 @@ static const char usage[] =
     "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
     "  --form FORM      statements or tables, in which the code is written; else by the system's size\n"
-    "  --at NAME=VALUE  part of the point; several can be joined by commas\n";
+    "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
+    "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
 struct Arguments {
   const char *system, *directory, *solver;
@@ -36,7 +39,7 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, help, version;
+  bool linearize, words, help, version;
 };
 
 /* Up to the next comma that does not stand between the arguments of a function. */
@@ -71,12 +74,13 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
+    else if (strcmp(word, "--words") == 0) arguments->words = true;
     else if (strcmp(word, "--version") == 0) arguments->version = true;
     else if (strcmp(word, "-D") == 0) arguments->definitions[arguments->definition_count++] = next;
     else if (word[0] == '-' || arguments->system != NULL) return false;
     else arguments->system = word;
   }
-  if (arguments->help || arguments->version) return true;
+  if (arguments->help || arguments->words || arguments->version) return true;
   bool consistent = arguments->linearize ? arguments->directory == NULL && arguments->solver == NULL
                                          : arguments->directory != NULL && arguments->point_count == 0;
   return arguments->system != NULL && consistent;
@@ -120,6 +124,13 @@ static int run(const struct Arguments *arguments) {
   return diagnostics.errors > 0 ? 1 : 0;
 }
 
+/* False where they cannot be written. */
+static bool print_words(void) {
+  words_print(stdout);
+  schema_print_elements(stdout);
+  return fflush(stdout) == 0 && ferror(stdout) == 0;
+}
+
 /* Bytes that systems within the other limits hardly need. */
 enum { MEMORY_LIMIT = 512 << 20 };
 
@@ -142,6 +153,7 @@ int main(int count, char **words) {
   char *methods = method_names();
   if (!parse_arguments(count, words, &arguments)) fprintf(stderr, usage, methods);
   else if (arguments.help) status = fprintf(stdout, usage, methods) < 0;
+  else if (arguments.words) status = !print_words();
   else if (arguments.version) status = puts("lagc " LAGC_VERSION) < 0;
   else status = run(&arguments);
   for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);

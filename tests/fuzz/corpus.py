@@ -5,12 +5,14 @@ examples of fmu/README.md, each also with mistakes, and a dictionary of the lang
 
 import random
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 EXPRESSIONS = "0 1 -1 1e308 1e-308 NaN INF 0.5 q v sin(q) sqrt(q-1) q^0.5 1/q q^-3 abs(q) der(v) der(der(q)) time sum(i,1,3,i) 2**3 9,81 )( q^ [1] x[1][2]".split()
-FUNCTIONS = "sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log sqrt pow abs sign min max sum der".split()
+WORDS = subprocess.run([ROOT / "build" / "fuzz" / "bin" / "lagc", "--words"], capture_output=True, text=True, check=True).stdout
+FUNCTIONS, NAMES, ELEMENTS = (re.findall(rf"^{kind} (\w+)$", WORDS, re.M) for kind in ("function", "name", "element"))
 
 
 def systems():
@@ -67,7 +69,7 @@ def mistaken(text, noise, most=3):
 
 def dictionary():
     schema = (ROOT / "fmu" / "system.xsd").read_text()
-    words = [f"<{name}" for name in re.findall(r'<xs:element name="(\w+)"', schema)]
+    words = [*NAMES, *(f"<{name}" for name in ELEMENTS)]
     words += [f" {name}=" for name in re.findall(r'<xs:attribute name="(\w+)"', schema)]
     words += [f"{name}(" for name in FUNCTIONS] + ["&lt;", "&#0;", "kg.m2", "N.m/rad", *EXPRESSIONS]
     return "".join('"%s"\n' % word.replace("\\", "\\\\").replace('"', '\\"') for word in dict.fromkeys(words))

@@ -160,6 +160,15 @@ def test_names_become_valid(tmp_path):
     assert wheel.package().check(path).startswith("Names: 4 states, 0 inputs, 4 outputs, 3 parameters")
 
 
+def test_no_name_is_a_word_of_the_language(tmp_path):
+    words = [line.split()[1] for line in fmu.lagc("--words").stdout.splitlines() if not line.startswith("element")]
+    x = dynamicsymbols("x")
+    springs = [sm.Symbol(word) for word in words]
+    method = LagrangesMethod(x.diff() ** 2 - sum(springs) * x**2, [x])
+    path = wheel.package().from_sympy(method, tmp_path / "Words.xml", dict.fromkeys(springs, 1))
+    assert wheel.package().check(path).startswith(f"Words: 2 states, 0 inputs, 2 outputs, {len(words)} parameters")
+
+
 def test_speeds_have_names_of_their_own(tmp_path):
     x, F, zb = dynamicsymbols("x F zb")
     u = dynamicsymbols("u")

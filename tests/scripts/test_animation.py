@@ -225,6 +225,12 @@ def test_formulas(formula, expected):
     assert value_of(formula, {"rho": 2.5, "a": -0.5, "motor.J[1]": 0.01}) == pytest.approx(expected, nan_ok=True)
 
 
+def test_functions_of_formulas():
+    functions = [line.split()[1] for line in fmu.lagc("--words").stdout.splitlines() if line.startswith("function")]
+    values = {name: value_of(f"{name}(1)", {}) for name in functions} | {name: value_of(f"{name}(1, 2)", {}) for name in ("pow", "atan2", "min", "max")}
+    assert {name for name, value in values.items() if math.isnan(value)} == {"der", "sum", "if", "and", "or", "not", "atanh"}
+
+
 def test_the_compiler_tells_what_there_is():
     bodies = [(element.tag, element.get("name"), element.get("mass"), element.get("inertia")) for element in read_scene(fmu.archive("FourBar"))]
     values = {"rho": 2.0, "a": 0.3, "b": 0.8, "c": 0.6}

@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 from xml.etree import ElementTree
 
+from .language import LAGC
 from .packing import pack, write_sources
 from .problem import Problem
 from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
@@ -29,7 +30,7 @@ def system_file(system):
 
 def derive(system, folder, solver):
     """Lets lagc write into the folder; returns modelDescription.xml as a tree."""
-    words = [HERE / "bin" / "lagc", system_file(system), "-o", folder]
+    words = [LAGC, system_file(system), "-o", folder]
     if solver is not None:
         words += ["--solver", solver]
     lagc = subprocess.run(words, capture_output=True, text=True)

@@ -6,10 +6,11 @@ import unicodedata
 import sympy
 from sympy.printing.str import StrPrinter
 
+from .language import words
 from .problem import Problem
 
 # Functions of the language by their names in SymPy.
-FUNCTIONS = {name: name for name in "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log sign atan2".split()}
+FUNCTIONS = {name: name for name in words()["function"] if isinstance(getattr(sympy, name, None), type)}
 FUNCTIONS |= {"Abs": "abs", "Min": "min", "Max": "max"}
 # What follows from those.
 REWRITTEN = {
@@ -20,16 +21,13 @@ REWRITTEN = {
     sympy.csch: lambda x: 1 / sympy.sinh(x),
     sympy.coth: lambda x: sympy.cosh(x) / sympy.sinh(x),
 }
-# Names of the language, which nothing else can have.
-TAKEN = {*FUNCTIONS.values(), "sqrt", "pow", "pi", "time", "der", "sum", "if", "kineticEnergy", "potentialEnergy", "totalEnergy", "nonConservativeWork",
-         "solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers"}  # fmt: skip
 
 
 class Names:
     """Valid names, each once."""
 
     def __init__(self):
-        self.taken = set(TAKEN)
+        self.taken = {*words()["function"], *words()["name"]}
 
     def add(self, text):
         """What is nearest to it of letters, digits and _, and not taken yet: theta_1 for \\theta_{1}."""

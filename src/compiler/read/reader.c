@@ -87,7 +87,6 @@ static struct Model *model_create(void) {
 static struct Scope *language_of(struct Model *model, struct Diagnostics *diagnostics) {
   struct Scope *scope = scope_create(model->graph, diagnostics);
   define_language(scope);
-  reserve_result_names(scope);
   /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */
   model->time = scope_symbol(scope, TIME, 0, "time", dimension_unknown, 0);
   return scope;

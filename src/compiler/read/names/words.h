@@ -2,6 +2,8 @@
 #ifndef WORDS_H
 #define WORDS_H
 
+#include <stdio.h>
+
 #include "read/names/scope.h"
 
 /* The functions of the language that are no operations of the graph, up to NULL. */
@@ -13,10 +15,13 @@ enum Operation find_function(const char *name);
 /* Whether it is one of either. */
 bool is_function_name(const char *name);
 
-/* Makes the names of the language itself known: pi and the functions. */
+/* Whether nothing in a system can have this name: a function, pi, time, or a result that systems have. */
+bool is_word(const char *name);
+
+/* Makes all of them but time known. */
 void define_language(struct Scope *scope);
 
-/* Keeps the names of the results that every system has. */
-void reserve_result_names(struct Scope *scope);
+/* A line for each of them: "function NAME" or "name NAME". */
+void words_print(FILE *file);
 
 #endif

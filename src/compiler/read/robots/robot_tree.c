@@ -54,8 +54,8 @@ char *robot_symbol(const char *name) {
 
 /* The same for what is in a system, in which there are other names for each robot. */
 static char *symbol_in_system(const char *name) {
-  static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity", "pi", "time"};
-  bool is_taken = is_function_name(name);
+  static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity"};
+  bool is_taken = is_word(name);
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) is_taken |= strcmp(name, taken[i]) == 0;
   return is_taken ? format_text("%s_", name) : robot_symbol(name);
 }

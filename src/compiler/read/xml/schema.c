@@ -258,9 +258,12 @@ static void report_schema_error(void *context, xmlErrorPtr error) {
   if (check->diagnostics->errors > ERROR_LIMIT && element->type == XML_ELEMENT_NODE) hide_rest(check, element);
 }
 
+static xmlDocPtr schema_document(void) {
+  return xmlReadMemory(system_schema, (int)strlen(system_schema), NULL, NULL, 0);
+}
+
 void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
-  struct Check check = {.schema = xmlReadMemory(system_schema, (int)strlen(system_schema), NULL, NULL, 0),
-                        .diagnostics = diagnostics};
+  struct Check check = {.schema = schema_document(), .diagnostics = diagnostics};
   xmlSchemaParserCtxtPtr parser = check.schema != NULL ? xmlSchemaNewDocParserCtxt(check.schema) : NULL;
   xmlSchemaPtr schema = parser != NULL ? xmlSchemaParse(parser) : NULL;
   xmlSchemaValidCtxtPtr validation = schema != NULL ? xmlSchemaNewValidCtxt(schema) : NULL;
@@ -278,4 +281,21 @@ void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
   xmlSchemaFree(schema);
   xmlSchemaFreeParserCtxt(parser);
   xmlFreeDoc(check.schema);
+}
+
+/* Below a node of the schema; one that is declared in several places is told at the first. */
+static void print_elements(FILE *file, xmlNodePtr schema, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    char *name = is_element(node, "element") ? attribute(node, "name") : NULL;
+    if (name != NULL && find_declared(schema, "element", name) == node) fprintf(file, "element %s\n", name);
+    free(name);
+    print_elements(file, schema, node);
+  }
+}
+
+void schema_print_elements(FILE *file) {
+  xmlDocPtr document = schema_document();
+  xmlNodePtr schema = xmlDocGetRootElement(document);
+  if (schema != NULL) print_elements(file, schema, schema);
+  xmlFreeDoc(document);
 }

@@ -2,6 +2,8 @@
 #ifndef SCHEMA_H
 #define SCHEMA_H
 
+#include <stdio.h>
+
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
@@ -11,5 +13,8 @@ extern const char system_schema[];
 
 /* Reports each place where the document does not follow the schema. */
 void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics);
+
+/* A line "element NAME" for each element of the schema. */
+void schema_print_elements(FILE *file);
 
 #endif
