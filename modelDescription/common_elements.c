@@ -1,7 +1,6 @@
 #include "common_elements.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -39,7 +38,6 @@ void write_units(xmlTextWriterPtr writer, const struct Interface *interface, siz
     write_unit(writer, unit);
   }
   if (count > 0) xmlTextWriterEndElement(writer);
-  free(written);
 }
 
 void write_log_categories(xmlTextWriterPtr writer) {

@@ -1,7 +1,6 @@
 #include "documentation.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/xmlwriter.h>
@@ -46,17 +45,12 @@ static void write_equation(const struct Page *page, const char *left, Node right
   }
   element(page->writer, "code", text);
   if (math != NULL) xmlTextWriterEndElement(page->writer);
-  free(math);
-  free(text);
-  free(expression);
 }
 
 /* Says how many of the things of a kind the page leaves out. */
 static void write_rest(xmlTextWriterPtr writer, size_t count, size_t shown, const char *things) {
   if (count == shown) return;
-  char *text = format_text("%zu further %s are not shown.", count - shown, things);
-  element(writer, "p", text);
-  free(text);
+  element(writer, "p", format_text("%zu further %s are not shown.", count - shown, things));
 }
 
 /* Which law totalEnergy obeys (see energies.h). */
@@ -175,7 +169,6 @@ static void write_mechanics(const struct Page *page) {
   for (size_t i = 0; i < summary->motion_count; i++) {
     char *left = expression_text_with_names(page->model->graph, summary->inertial[i], &summary->names);
     write_equation(page, left, summary->right_side[i]);
-    free(left);
   }
   write_rest(writer, page->equations->count, summary->motion_count, "equations");
   write_reactions(page);
@@ -241,9 +234,7 @@ static void write_solver(const struct Page *page) {
   element(writer, "h2", "Solver");
   element(writer, "p", method->sentence);
   if (!isnan(page->model->max_step)) {
-    char *text = format_text("No step of the method is longer than %g s.", page->model->max_step);
-    element(writer, "p", text);
-    free(text);
+    element(writer, "p", format_text("No step of the method is longer than %g s.", page->model->max_step));
   } else if (method->series == FIRST_TERMS)
     element(writer, "p",
             "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
@@ -260,7 +251,6 @@ static void write_form(xmlTextWriterPtr writer, const struct Program *program) {
   char *text = format_text("The equations are %zu instructions, %s.", instruction_count(program), form);
   element(writer, "h2", "Code");
   element(writer, "p", text);
-  free(text);
 }
 
 /* model.png, which src/icon draws: of a system with frames, a sketch of its start. */

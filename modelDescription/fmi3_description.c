@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include <libxml/xmlwriter.h>
 
@@ -62,7 +61,6 @@ static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable 
   }
   close_text(file, &text, &length);
   write_attribute(writer, "start", text);
-  free(text);
 }
 
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,
@@ -100,8 +98,6 @@ static void write_variable(xmlTextWriterPtr writer, const struct Interface *inte
     xmlTextWriterEndElement(writer);
   }
   xmlTextWriterEndElement(writer);
-  free(name);
-  free(description);
 }
 
 static void write_variables(xmlTextWriterPtr writer, const struct Interface *interface) {

@@ -1,4 +1,3 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/xmlwriter.h>
@@ -38,12 +37,10 @@ static int *find_forces(const struct Model *model) {
       int *coordinate = &coordinate_of[graph_symbol_of(model->graph, gradient.symbols[j])->index];
       *coordinate = *coordinate == NONE && gradient.values[j] == ONE ? (int)i : SEVERAL;
     }
-    gradient_free(&gradient);
     force[i] = NONE;
   }
   for (size_t i = 0; i < inputs; i++)
     if (coordinate_of[i] >= 0) force[coordinate_of[i]] = force[coordinate_of[i]] == NONE ? (int)i : SEVERAL;
-  free(coordinate_of);
   return force;
 }
 
@@ -55,7 +52,6 @@ static void write_member(xmlTextWriterPtr writer, const struct InterfaceVariable
   write_attribute(writer, "memberName", member);
   write_attribute(writer, "variableKind", kind);
   xmlTextWriterEndElement(writer);
-  free(name);
 }
 
 /* The variables of a terminal: scalars, or arrays of as many elements, which are as many flanges. */
@@ -98,8 +94,6 @@ static bool write_terminal(xmlTextWriterPtr writer, const struct Program *progra
   write_member(writer, members.velocity, flange->velocity, "signal");
   write_member(writer, members.force, flange->force, "inflow");
   xmlTextWriterEndElement(writer);
-  free(name);
-  free(description);
   return true;
 }
 
@@ -127,6 +121,5 @@ bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program) {
   for (size_t i = 0; i < program->model->coordinates.count; i++)
     is_open = write_terminal(writer, program, force, i, is_open);
   if (is_open) xmlTextWriterEndElement(writer);
-  free(force);
   return close_document(writer);
 }

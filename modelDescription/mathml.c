@@ -38,10 +38,7 @@ static bool take(struct Text *text, const char *word) {
 
 /* Writes strings into a format, and frees them. */
 static char *around(const char *format, char *first, char *second) {
-  char *math = second != NULL ? format_text(format, first, second) : format_text(format, first);
-  free(first);
-  free(second);
-  return math;
+  return second != NULL ? format_text(format, first, second) : format_text(format, first);
 }
 
 static char *fence(struct Piece piece) {
@@ -69,10 +66,8 @@ static char *variable(const char *name) {
   if (!plain || base == length) return format_text("<mi>%s</mi>", symbol_of(name));
   char *letter = format_text("%.*s", (int)base, name);
   bool bracket = name[base] == '[' && name[length - 1] == ']';
-  char *math = format_text("<msub><mi>%s</mi><mn>%.*s</mn></msub>", symbol_of(letter),
-                           (int)(length - base) - (bracket ? 2 : 0), name + base + (bracket ? 1 : 0));
-  free(letter);
-  return math;
+  return format_text("<msub><mi>%s</mi><mn>%.*s</mn></msub>", symbol_of(letter),
+                     (int)(length - base) - (bracket ? 2 : 0), name + base + (bracket ? 1 : 0));
 }
 
 static char *application(const char *function, char *arguments) {
@@ -97,7 +92,6 @@ static char *name_or_function(struct Text *text) {
     text->wrong |= !take(text, ")");
     math = application(name, arguments);
   } else math = variable(name);
-  free(name);
   return math;
 }
 
@@ -169,7 +163,5 @@ char *mathml_of_equation(const char *equation) {
   right = text.wrong ? copy_text("") : fence(sum(&text, between_terms));
   skip_spaces(&text);
   if (!text.wrong && *text.at == '\0') return around(MATH "%s</math> " MATH "<mo>=</mo>%s</math>", left, right);
-  free(left);
-  free(right);
   return NULL;
 }

@@ -1,7 +1,6 @@
 #include "model_structure.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "base/sorting.h"
@@ -94,8 +93,6 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
   close_text(kinds_file, &kinds, &kinds_length);
   write_attribute(structure->writer, "dependencies", places);
   write_attribute(structure->writer, "dependenciesKind", kinds);
-  free(places);
-  free(kinds);
 }
 
 /*
@@ -169,8 +166,4 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Program *progra
   write_unknowns(&structure, 2, is_computed_initially, true);
   write_unknowns(&structure, 3, is_indicator, false);
   xmlTextWriterEndElement(writer);
-  dependencies_free(structure.dependencies);
-  free(structure.place_of);
-  free(structure.places);
-  free(structure.of_place);
 }

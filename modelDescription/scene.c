@@ -1,7 +1,5 @@
 #include "scene.h"
 
-#include <stdlib.h>
-
 #include "algebra/formula.h"
 #include "xml_output.h"
 
@@ -9,9 +7,7 @@ enum { BASE = 0 }; /* among the model's frames */
 
 static void write_formula(xmlTextWriterPtr writer, const struct Graph *graph, const char *name, Node node) {
   if (node == ZERO) return;
-  char *text = expression_text(graph, node);
-  write_attribute(writer, name, text);
-  free(text);
+  write_attribute(writer, name, expression_text(graph, node));
 }
 
 static void write_frame_of(xmlTextWriterPtr writer, const struct Model *model, size_t frame) {

@@ -93,17 +93,12 @@ static void compile(struct Model *model, const struct Equations *equations, cons
   struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, arguments->form) : NULL;
   if (program != NULL) output_write(program, summary, arguments->directory, diagnostics);
-  program_free(program);
-  expressions_free(expressions);
-  summary_free(summary);
-  interface_free(interface);
 }
 
 static void print_linearization(const struct Model *model, const struct Equations *equations,
                                 struct Diagnostics *diagnostics) {
   struct LinearSystem *system = linear_system_of(model, equations, diagnostics);
   if (system != NULL) linear_system_print(model, system);
-  linear_system_free(system);
 }
 
 static int run(const struct Arguments *arguments) {
@@ -118,8 +113,6 @@ static int run(const struct Arguments *arguments) {
   struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
   else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
-  equations_free(equations);
-  model_free(model);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);
   return diagnostics.errors > 0 ? 1 : 0;
 }
@@ -156,10 +149,6 @@ int main(int count, char **words) {
   else if (arguments.words) status = !print_words();
   else if (arguments.version) status = puts("lagc " LAGC_VERSION) < 0;
   else status = run(&arguments);
-  for (size_t i = 0; i < arguments.point_count; i++) free(arguments.point[i]);
-  free(arguments.point);
-  free(methods);
-  free(arguments.definitions);
   xmlCleanupParser();
   return status;
 }

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/guid.h"
@@ -36,7 +35,6 @@ static bool create_directory(const char *path) {
     make_directory(partial);
     *end = separator;
   }
-  free(partial);
   return make_directory(path);
 }
 
@@ -62,7 +60,6 @@ static void remove_all(const char *directory, const char *suffix) {
   for (int i = FILE_COUNT - 1; i >= 0; i--) {
     char *path = path_of(directory, i, suffix);
     remove(path);
-    free(path);
   }
 }
 
@@ -73,7 +70,6 @@ static bool write_beside(const char *directory, const char *const *texts) {
     if (texts[i] == NULL) continue;
     char *path = path_of(directory, i, unfinished);
     written = write_file(path, texts[i]);
-    free(path);
   }
   return written;
 }
@@ -83,13 +79,10 @@ static bool move_in(const char *directory, const char *const *texts) {
   bool moved = true;
   char *mark = path_of(directory, FILE_COUNT - 1, "");
   remove(mark);
-  free(mark);
   for (int i = 0; i < FILE_COUNT && moved; i++) {
     char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
     remove(to); /* not everywhere does rename do that */
     if (texts[i] != NULL) moved = rename(from, to) == 0;
-    free(from);
-    free(to);
   }
   return moved;
 }
@@ -102,11 +95,8 @@ void output_remove(const char *directory) {
 static bool create_directories(const char *directory) {
   static const char *const inner[] = {"documentation", "fmi3"};
   bool created = create_directory(directory);
-  for (size_t i = 0; i < sizeof inner / sizeof *inner && created; i++) {
-    char *path = format_text("%s/%s", directory, inner[i]);
-    created = create_directory(path);
-    free(path);
-  }
+  for (size_t i = 0; i < sizeof inner / sizeof *inner && created; i++)
+    created = create_directory(format_text("%s/%s", directory, inner[i]));
   return created;
 }
 
@@ -151,8 +141,6 @@ void output_write(const struct Program *program, const struct Summary *summary, 
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
   else if (written) write_all(directory, texts, diagnostics);
   else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
-  free(code);
-  free(file);
   xmlBufferFree(anonymous);
   for (int i = 0; i < FILE_COUNT; i++) xmlBufferFree(buffers[i]);
 }

@@ -7,7 +7,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -34,11 +33,6 @@ static inline struct Expressions expressions_create(void) {
   return e;
 }
 
-static inline void expressions_free(struct Expressions *e) {
-  scope_free(e->scope);
-  graph_free(e->graph);
-}
-
 /* Parses; errors are counted in e->diagnostics. */
 static inline Node parse(struct Expressions *e, const char *text) {
   e->scope->diagnostics = &e->diagnostics;
@@ -49,7 +43,6 @@ static inline Node parse(struct Expressions *e, const char *text) {
 static inline double value_at(const struct Expressions *e, Node node, double x, double y, double z) {
   const double symbols[] = {x, y, z};
   double *values = graph_evaluate(e->graph, symbols), value = values[node];
-  free(values);
   return value;
 }
 
@@ -57,7 +50,6 @@ static inline double value_at(const struct Expressions *e, Node node, double x, 
 static inline void assert_prints(struct Expressions *e, const char *text, const char *expected) {
   char *printed = expression_text(e->graph, parse(e, text));
   assert_string_equal(printed, expected);
-  free(printed);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* Forward and reverse differentiation of every operation, against each other and against difference quotients. */
 #include "algebra/differentiate.h"
+#include "base/memory.h"
 #include "expressions.h"
 
 static const char *const functions[] = {
@@ -38,7 +39,6 @@ static void test_every_operation(void **state) {
         fail_msg("d/d%c of %s is %g, expected %g", "xyz"[k], functions[i], reverse, expected);
       assert_true(fabs(forward - reverse) <= 1e-12 * (1 + fabs(reverse)));
     }
-    expressions_free(&e);
   }
 }
 
@@ -53,7 +53,6 @@ static void test_directions_and_weights(void **state) {
   weighted_gradient_of(e.graph, targets, weights, 2, COORDINATE, 3, gradient);
   assert_true(fabs(value_at(&e, gradient[0], 0.8, 1.1, 0.6) - (1.1 * 1.1 + 2 * sin(0.6))) < 1e-14);
   assert_true(fabs(value_at(&e, gradient[2], 0.8, 1.1, 0.6) - 2 * 0.8 * cos(0.6)) < 1e-14);
-  expressions_free(&e);
 }
 
 /* A gradient holds just the symbols of its kinds that the target depends on, whatever else the graph has. */
@@ -71,9 +70,6 @@ static void test_sparse_gradient(void **state) {
   assert_int_equal(all.values[2], parse(&e, "x*z"));
   struct Gradient none = gradient_by_kinds(e.graph, node, 1u << INPUT);
   assert_int_equal(none.count, 0);
-  gradient_free(&none);
-  gradient_free(&all);
-  expressions_free(&e);
 }
 
 /* The gradient of sum x_i x_(i+1) has two terms an element: its nodes grow as the sum does. */
@@ -81,7 +77,7 @@ static void test_long_sums(void **state) {
   (void)state;
   enum { LENGTH = 20000 };
   struct Expressions e = expressions_create();
-  Node *x = malloc(LENGTH * sizeof *x), sum = ZERO;
+  Node *x = allocate(LENGTH, sizeof *x), sum = ZERO;
   for (int i = 0; i < LENGTH; i++) x[i] = graph_symbol(e.graph, VELOCITY, i, "v");
   for (int i = 1; i < LENGTH; i++) sum = add(e.graph, sum, multiply(e.graph, x[i - 1], x[i]));
   size_t before = e.graph->count;
@@ -90,9 +86,6 @@ static void test_long_sums(void **state) {
   assert_int_equal(gradient.values[0], x[1]);
   for (int i = 1; i < LENGTH - 1; i++) assert_int_equal(gradient.values[i], add(e.graph, x[i - 1], x[i + 1]));
   assert_true(e.graph->count - before < 2 * LENGTH);
-  gradient_free(&gradient);
-  free(x);
-  expressions_free(&e);
 }
 
 /* x (x+1) (x+2) ... nested: the derivative must not grow faster than the function. */
@@ -104,7 +97,6 @@ static void test_no_expression_swell(void **state) {
   size_t before = e.graph->count;
   derivative_by(e.graph, node, e.x);
   assert_true(e.graph->count - before < 4 * before);
-  expressions_free(&e);
 }
 
 /* x^p along x and p: a base that is not positive has a derivative where p is not varied, and log(x) counts where it is. */
@@ -124,9 +116,7 @@ static void test_varied_exponents(void **state) {
     const double symbols[] = {cases[i].x, 0, 0, cases[i].p, cases[i].seed};
     double *values = graph_evaluate(e.graph, symbols);
     assert_true(fabs(values[along] - cases[i].value) < 1e-14);
-    free(values);
   }
-  expressions_free(&e);
 }
 
 static void test_substitution(void **state) {
@@ -135,7 +125,6 @@ static void test_substitution(void **state) {
   Node node = parse(&e, "x*sin(y) + z"), replacements[] = {parse(&e, "2"), ZERO, e.z}, result;
   substitute(e.graph, &node, 1, replacements, &result);
   assert_int_equal(result, e.z);
-  expressions_free(&e);
 }
 
 int main(void) {

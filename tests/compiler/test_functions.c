@@ -116,7 +116,6 @@ static void at_places(void (*test)(struct Expressions *e, Node node, double x, d
       }
     }
     assert_true(tested > PLACES);
-    expressions_free(&e);
   }
 }
 
@@ -181,7 +180,6 @@ static void test_the_language_follows(void **state) {
     Node second = parse(&e, two);
     assert_int_equal(e.diagnostics.errors, is_internal || !has_two ? 1 : 0);
     if (e.diagnostics.errors == 0) assert_int_equal(e.graph->vertices[second].operation, operation);
-    expressions_free(&e);
   }
 }
 
@@ -264,7 +262,6 @@ static void test_auxiliaries_of_powers(void **state) {
     else
       assert_near(value_at(&e, auxiliary, 1.7, 2.3, 0), value_at(&e, parse(&e, cases[i].auxiliary), 1.7, 2.3, 0),
                   cases[i].power, POWER, 1.7, 2.3);
-    expressions_free(&e);
   }
 }
 

@@ -1,4 +1,5 @@
 /* Hash-consing, order and dependencies of the expression graph. */
+#include "base/memory.h"
 #include "expressions.h"
 
 static void test_equal_expressions_are_one_node(void **state) {
@@ -6,7 +7,6 @@ static void test_equal_expressions_are_one_node(void **state) {
   struct Expressions e = expressions_create();
   assert_int_equal(parse(&e, "sin(x)*y + z"), parse(&e, "z + y*sin(x)"));
   assert_int_not_equal(parse(&e, "atan2(x, y)"), parse(&e, "atan2(y, x)"));
-  expressions_free(&e);
 }
 
 static void test_operands_come_first(void **state) {
@@ -18,7 +18,6 @@ static void test_operands_come_first(void **state) {
     if (operation_arity(vertex->operation) > 0) assert_true(vertex->left < node);
     if (operation_arity(vertex->operation) > 1) assert_true(vertex->right < node);
   }
-  expressions_free(&e);
 }
 
 static void test_constants_are_told_apart_by_their_bits(void **state) {
@@ -29,21 +28,18 @@ static void test_constants_are_told_apart_by_their_bits(void **state) {
   assert_int_equal(graph_constant(graph, NAN), graph_constant(graph, NAN));
   assert_int_equal(graph_constant(graph, 0.1 + 0.2), graph_constant(graph, 0.30000000000000004));
   assert_int_not_equal(graph_constant(graph, 0.1 + 0.2), graph_constant(graph, 0.3));
-  graph_free(graph);
 }
 
 static void test_marking_finds_what_is_needed(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
   Node target = parse(&e, "sin(x) + 2"), other = parse(&e, "cos(y)");
-  bool *needed = malloc(e.graph->count * sizeof *needed);
+  bool *needed = allocate(e.graph->count, sizeof *needed);
   graph_mark(e.graph, &target, 1, needed);
   assert_true(needed[target] && needed[e.x]);
   assert_false(needed[other] || needed[e.y]);
-  free(needed);
   assert_true(graph_depends_on(e.graph, target, COORDINATE));
   assert_false(graph_depends_on(e.graph, target, VELOCITY));
-  expressions_free(&e);
 }
 
 static void test_growth(void **state) {
@@ -54,7 +50,6 @@ static void test_growth(void **state) {
   double expected = 0.0;
   for (int i = 1; i <= 100000; i++) expected += sin(i * 0.01);
   assert_true(fabs(value_at(&e, sum, 0.01, 0, 0) - expected) < 1e-6);
-  expressions_free(&e);
 }
 
 /* Nothing may recurse as deep as a product is long: the stack would not hold it. */
@@ -70,8 +65,6 @@ static void test_long_products(void **state) {
   assert_true(fabs(value_at(&e, product, 0.5, 0, 0) - expected) < 1e-9);
   char *text = expression_text(e.graph, product);
   assert_true(strlen(text) < 100000);
-  free(text);
-  expressions_free(&e);
 }
 
 int main(void) {

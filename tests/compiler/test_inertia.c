@@ -1,4 +1,5 @@
 /* The mass matrix as expressions: which coordinates it couples, and its symbolic factors. */
+#include "base/memory.h"
 #include "expressions.h"
 #include "mechanics/mass_matrix/mass_elements.h"
 #include "mechanics/mass_matrix/pivots.h"
@@ -16,8 +17,8 @@ static void close_pattern(bool coupled[COORDINATES][COORDINATES]) {
 static void check_components(struct Position *positions, size_t count) {
   struct Elements elements = {.count = count};
   bool coupled[COORDINATES][COORDINATES] = {{false}};
-  elements.positions = malloc(count * sizeof *elements.positions);
-  elements.nodes = malloc(count * sizeof *elements.nodes);
+  elements.positions = allocate(count, sizeof *elements.positions);
+  elements.nodes = allocate(count, sizeof *elements.nodes);
   for (size_t k = 0; k < count; k++) {
     elements.positions[k] = positions[k];
     elements.nodes[k] = (Node)(positions[k].row * COORDINATES + positions[k].column);
@@ -40,9 +41,6 @@ static void check_components(struct Position *positions, size_t count) {
       assert_int_equal(components.of[elements.positions[k].row], b);
       assert_int_equal(elements.nodes[k], elements.positions[k].row * COORDINATES + elements.positions[k].column);
     }
-  free(start);
-  free(components.of);
-  elements_free(&elements);
 }
 
 static void shuffle(struct Position *positions, size_t count, unsigned *seed) {
@@ -132,9 +130,6 @@ static void test_symbolic_factors(void **state) {
     assert_int_equal(pivot->diagonal, block.mass[block.start[i + 1] - 1]);
   }
   assert_int_equal(inertia.pivot_count, SIZE);
-  free(inertia.pivots);
-  free(block.factor);
-  expressions_free(&e);
 }
 
 /* The size of the terms of a diagonal element with |sin| and |cos| taken as 1, at x = 3, y = 0.5, z = 2. */
@@ -158,9 +153,6 @@ static void test_scales_of_pivots(void **state) {
     struct Inertia inertia = factor(&e, &block, (const char *const[]){cases[i].mass, "0", "1", "0", "0", "1"});
     double scale = value_at(&e, inertia.pivots[0].scale, 3, 0.5, 2);
     if (!(fabs(scale - cases[i].scale) < 1e-12)) fail_msg("the scale of %s is %.17g", cases[i].mass, scale);
-    free(inertia.pivots);
-    free(block.factor);
-    expressions_free(&e);
   }
 }
 

@@ -21,10 +21,6 @@ static void set_pattern(const struct Position *positions, size_t count) {
   for (size_t i = 0; i < SIZE; i++) place[elimination.order[i]] = (int)i;
   for (size_t i = 0; i <= SIZE; i++) start[i] = (int)elimination.start[i];
   for (size_t k = 0; k < elimination.start[SIZE]; k++) column[k] = (int)elimination.column[k];
-  graph_free(graph);
-  free(elimination.order);
-  free(elimination.start);
-  free(elimination.column);
 }
 
 /* Sets an element of a matrix, and adds its product with x to the right side. */

@@ -1,11 +1,12 @@
 /* The table of names, against a plain list of what should be in it. */
+#include "base/memory.h"
 #include "expressions.h"
 #include "read/names/names.h"
 
 enum { NAMES = 3000 };
 
 static int *number(int value) {
-  int *copy = malloc(sizeof *copy);
+  int *copy = allocate(1, sizeof *copy);
   *copy = value;
   return copy;
 }
@@ -41,7 +42,6 @@ static void test_names_come_and_go(void **state) {
   }
   assert_null(names_find(names, "x"));
   assert_null(names_find(names, ""));
-  names_free(names);
 }
 
 int main(void) {

@@ -30,7 +30,6 @@ static void write_texts(const struct Program *program, const struct Summary *sum
   xmlBufferPtr buffer = xmlBufferCreate();
   if (!model_description_write(buffer, program, "") || !documentation_write(buffer, program, summary)) abort();
   xmlBufferFree(buffer);
-  free(code);
 }
 
 static void compile(const struct Model *model, const struct Equations *equations, struct Diagnostics *diagnostics) {
@@ -39,10 +38,6 @@ static void compile(const struct Model *model, const struct Equations *equations
   struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, (enum CodeForm){0}) : NULL;
   if (program != NULL) write_texts(program, summary);
-  program_free(program);
-  expressions_free(expressions);
-  summary_free(summary);
-  interface_free(interface);
 }
 
 static void compile_file(const char *path) {
@@ -52,8 +47,6 @@ static void compile_file(const char *path) {
   if ((model == NULL) != (diagnostics.errors > 0)) abort();
   struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors == 0) compile(model, equations, &diagnostics);
-  equations_free(equations);
-  model_free(model);
 }
 
 int LLVMFuzzerInitialize(int *count, char ***words) {
@@ -69,6 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (file < 0 || write(file, data, size) != (ssize_t)size) abort();
   snprintf(path, sizeof path, "/proc/self/fd/%d", file);
   compile_file(path);
+  release_all();
   close(file);
   return 0;
 }

@@ -1,19 +1,10 @@
 #include "algebra/cone.h"
 
-#include <stdlib.h>
-
 #include "algebra/node_list.h"
 #include "base/memory.h"
 
 struct Cone *cone_create(void) {
   return allocate(1, sizeof(struct Cone));
-}
-
-void cone_free(struct Cone *cone) {
-  if (cone == NULL) return;
-  free(cone->nodes);
-  free(cone->place);
-  free(cone);
 }
 
 bool cone_has(const struct Cone *cone, Node node) {

@@ -16,7 +16,6 @@ struct Cone {
 };
 
 struct Cone *cone_create(void);
-void cone_free(struct Cone *cone);
 
 /*
  * Collects the targets and all that they need; below nodes for which stops() is true it does not look, and they are

@@ -1,7 +1,5 @@
 #include "algebra/differentiate.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
@@ -68,7 +66,6 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
     along[place] = add(graph, along[place], along_right);
   }
   for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_place(cone, targets[i])];
-  free(along);
 }
 
 Node derivative_by(struct Graph *graph, Node target, Node symbol) {
@@ -76,7 +73,6 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   seeds[graph->vertices[symbol].left] = ONE;
   Node derivative = ZERO;
   derivative_along(graph, &target, 1, seeds, &derivative);
-  free(seeds);
   return derivative;
 }
 
@@ -121,19 +117,12 @@ struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, cons
     add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[place], by_left);
     if (arity == 2) add_adjoint(graph, kinds, adjoint, vertex.right, adjoint[place], by_right);
   }
-  struct Gradient gradient = take_symbols(graph, kinds, adjoint);
-  free(adjoint);
-  return gradient;
+  return take_symbols(graph, kinds, adjoint);
 }
 
 struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds) {
   const Node weight = ONE;
   return weighted_gradient(graph, &target, &weight, 1, kinds);
-}
-
-void gradient_free(struct Gradient *gradient) {
-  free(gradient->symbols);
-  free(gradient->values);
 }
 
 void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
@@ -142,7 +131,6 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
   for (size_t i = 0; i < count; i++) gradient[i] = ZERO;
   for (size_t i = 0; i < sparse.count; i++)
     gradient[graph_symbol_of(graph, sparse.symbols[i])->index] = sparse.values[i];
-  gradient_free(&sparse);
 }
 
 void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t count, Node *gradient) {
@@ -170,5 +158,4 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
     }
   }
   for (size_t i = 0; i < count; i++) results[i] = mapped[cone_place(cone, targets[i])];
-  free(mapped);
 }

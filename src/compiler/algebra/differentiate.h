@@ -26,13 +26,12 @@ struct Gradient {
   size_t count;
 };
 
-/* With respect to all symbols of the kinds (bit k: SymbolKind k). Free with gradient_free(). */
+/* With respect to all symbols of the kinds (bit k: SymbolKind k). */
 struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds);
 
 /* The same for sum over k of weights[k] * targets[k], with the weights held constant. */
 struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
                                   unsigned kinds);
-void gradient_free(struct Gradient *gradient);
 
 /* The gradient of target with respect to all symbols of one kind: element i belongs to the symbol with index i. */
 void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t count, Node *gradient);

@@ -9,7 +9,7 @@
 /* Writes the expression; very long ones are cut off with "...". */
 void print_expression(FILE *file, const struct Graph *graph, Node node);
 
-/* The same as a string, to be freed with free(). */
+/* The same as a string. */
 char *expression_text(const struct Graph *graph, Node node);
 
 /* Names that stand for expressions: of[node] is that of a node below count, or NULL. */

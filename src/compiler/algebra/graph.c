@@ -1,7 +1,6 @@
 #include "algebra/graph.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/cone.h"
@@ -29,17 +28,6 @@ struct Graph *graph_create(void) {
   graph_constant(graph, 0.0);
   graph_constant(graph, 1.0);
   return graph;
-}
-
-void graph_free(struct Graph *graph) {
-  if (graph == NULL) return;
-  for (size_t i = 0; i < graph->symbol_count; i++) free(graph->symbols[i].name);
-  free(graph->symbols);
-  free(graph->vertices);
-  free(graph->buckets);
-  cone_free(graph->cone);
-  free(graph->is_large);
-  free(graph);
 }
 
 /* Constants are told apart by their bits: -0 is not 0, and NaN is itself. */
@@ -74,7 +62,6 @@ static void grow(struct Graph *graph) {
   graph->vertices = make_room(graph->vertices, graph->count, sizeof *graph->vertices);
   if (2 * graph->count < graph->bucket_count) return;
   graph->bucket_count *= 2;
-  free(graph->buckets);
   graph->buckets = allocate(graph->bucket_count, sizeof *graph->buckets);
   for (Node node = 0; node < graph->count; node++) insert(graph, node);
 }

@@ -96,7 +96,6 @@ struct Graph {
 enum { NODE_LIMIT = 4000000, WORK_LIMIT = 100000000, ZERO = 0, ONE = 1 };
 
 struct Graph *graph_create(void);
-void graph_free(struct Graph *graph);
 
 /*
  * Counts steps of work, each about as long as a visit to a node: the sweeps of algebra/ count themselves, and so does
@@ -141,7 +140,7 @@ bool graph_is_constant_in_time(const struct Graph *graph, Node node);
 /* Marks every node that the targets need, themselves included; flags has one element a node, zeroed here. */
 void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bool *flags);
 
-/* Evaluates all nodes; symbol_values in the order of graph->symbols; result is to be freed with free(). */
+/* Evaluates all nodes; symbol_values in the order of graph->symbols; one value for each. */
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
 
 #endif

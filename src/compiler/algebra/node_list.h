@@ -4,7 +4,7 @@
 
 #include "algebra/graph.h"
 
-/* A growing list. Free nodes with free(). */
+/* A growing list. */
 struct NodeList {
   Node *nodes;
   size_t count;

@@ -1,7 +1,5 @@
 #include "algebra/roundings.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/functions.h"
@@ -37,5 +35,4 @@ void roundings_of(struct Graph *graph, const Node *targets, size_t count, Node *
     rounding[place] = rounding_of(graph, cone->nodes[place], left, right);
   }
   for (size_t i = 0; i < count; i++) roundings[i] = rounding[cone_place(cone, targets[i])];
-  free(rounding);
 }

@@ -3,7 +3,6 @@
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -35,7 +34,6 @@ static void print_message(const struct Diagnostics *diagnostics, long line, cons
   fprintf(stderr, " %s", kind);
   print_text(text);
   fprintf(stderr, "%s\n", diagnostics->origin != NULL ? diagnostics->origin : "");
-  free(text);
 }
 
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {

@@ -1,12 +1,21 @@
 #include "base/memory.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/platform.h"
+
+/* All blocks, in a ring that begins and ends here. */
+struct Block {
+  struct Block *previous, *next;
+  max_align_t content[];
+};
+
+static struct Block ring = {&ring, &ring};
 
 static void (*handler)(void) = abort;
 
@@ -19,17 +28,43 @@ static _Noreturn void out_of_memory(void) {
   abort();
 }
 
-void *allocate(size_t count, size_t size) {
-  void *block = calloc(count > 0 ? count : 1, size);
+static struct Block *block_of(void *content) {
+  return (struct Block *)((char *)content - offsetof(struct Block, content));
+}
+
+static size_t bytes_of(size_t count, size_t size) {
+  if (size > 0 && count > (SIZE_MAX - sizeof(struct Block)) / size) out_of_memory();
+  return sizeof(struct Block) + count * size;
+}
+
+static void *insert(struct Block *block) {
   if (block == NULL) out_of_memory();
+  *block = (struct Block){.previous = ring.previous, .next = &ring};
+  ring.previous->next = block;
+  ring.previous = block;
+  return block->content;
+}
+
+static void *take_out(struct Block *block) {
+  block->previous->next = block->next;
+  block->next->previous = block->previous;
   return block;
 }
 
-void *reallocate(void *block, size_t count, size_t size) {
-  if (size > 0 && count > SIZE_MAX / size) out_of_memory();
-  void *resized = realloc(block, count * size > 0 ? count * size : 1);
-  if (resized == NULL) out_of_memory();
-  return resized;
+void *allocate(size_t count, size_t size) {
+  return insert(calloc(1, bytes_of(count, size)));
+}
+
+void *reallocate(void *content, size_t count, size_t size) {
+  return insert(realloc(content != NULL ? take_out(block_of(content)) : NULL, bytes_of(count, size)));
+}
+
+void release(void *content) {
+  if (content != NULL) free(take_out(block_of(content)));
+}
+
+void release_all(void) {
+  while (ring.next != &ring) free(take_out(ring.next));
 }
 
 void *make_room(void *items, size_t count, size_t size) {
@@ -45,6 +80,9 @@ FILE *open_text(char **text, size_t *length) {
 
 void close_text(FILE *file, char **text, size_t *length) {
   if (!close_text_stream(file, text, length)) out_of_memory();
+  char *content = memcpy(allocate(*length + 1, 1), *text, *length);
+  free(*text);
+  *text = content;
 }
 
 char *copy_text(const char *text) {

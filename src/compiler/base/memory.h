@@ -1,4 +1,7 @@
-/* Memory for a compiler that runs once: after an allocation that fails nothing goes on, but for what main says. */
+/*
+ * Memory for a compiler that runs once: it lasts until the end of the program, and only large scratch space is given back before.
+ * After an allocation that fails nothing goes on, but for what main says.
+ */
 #ifndef MEMORY_H
 #define MEMORY_H
 
@@ -9,11 +12,17 @@
 /* What is called when an allocation fails; it must not return. Without it the program aborts. */
 void on_memory_failure(void (*function)(void));
 
-/* count zeroed elements of size bytes; never NULL. Free with free(). */
+/* count zeroed elements of size bytes; never NULL. */
 void *allocate(size_t count, size_t size);
 
 /* Resizes a block to count elements of size bytes; new bytes are not initialised; never NULL. */
-void *reallocate(void *block, size_t count, size_t size);
+void *reallocate(void *content, size_t count, size_t size);
+
+/* Gives a block back; nothing for NULL. */
+void release(void *content);
+
+/* Gives all blocks back, so that a program may compile another system. */
+void release_all(void);
 
 /*
  * The items of a list, each of size bytes, with room for one behind the count that are there. It begins as NULL and grows by
@@ -21,14 +30,13 @@ void *reallocate(void *block, size_t count, size_t size);
  */
 void *make_room(void *items, size_t count, size_t size);
 
-/* A stream that writes a string, complete after close_text() of the same and to be freed with free(); never NULL. */
+/* A stream that writes a string, complete after close_text() of the same; never NULL. */
 FILE *open_text(char **text, size_t *length);
 void close_text(FILE *file, char **text, size_t *length);
 
-/* A copy of text, to be freed with free(). */
 char *copy_text(const char *text);
 
-/* printf into a new string, to be freed with free(). */
+/* printf into a new string. */
 char *format_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* The same with the arguments that a caller was given. */

@@ -5,8 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/memory.h"
-
 #ifdef _WIN32
 
 #include <ctype.h>
@@ -38,7 +36,7 @@ static int create(const char *path) {
   return _mkdir(path);
 }
 
-char *canonical_path(const char *path) {
+char *resolve_path(const char *path) {
   return _access(path, 0) == 0 ? _fullpath(NULL, path, 0) : NULL;
 }
 
@@ -46,12 +44,12 @@ char *first_separator(char *path) {
   return strpbrk(path, "/\\");
 }
 
-static const char *last_separator(const char *path) {
+const char *last_separator(const char *path) {
   const char *slash = strrchr(path, '/'), *backslash = strrchr(path, '\\');
   return slash == NULL || (backslash != NULL && backslash > slash) ? backslash : slash;
 }
 
-static bool is_absolute(const char *path) {
+bool is_absolute(const char *path) {
   return *path == '/' || *path == '\\' || (isalpha((unsigned char)*path) && path[1] == ':');
 }
 
@@ -90,7 +88,7 @@ static int create(const char *path) {
   return mkdir(path, 0777);
 }
 
-char *canonical_path(const char *path) {
+char *resolve_path(const char *path) {
   return realpath(path, NULL);
 }
 
@@ -98,11 +96,11 @@ char *first_separator(char *path) {
   return strchr(path, '/');
 }
 
-static const char *last_separator(const char *path) {
+const char *last_separator(const char *path) {
   return strrchr(path, '/');
 }
 
-static bool is_absolute(const char *path) {
+bool is_absolute(const char *path) {
   return *path == '/';
 }
 
@@ -117,12 +115,6 @@ void write_plain_lines(void) {
 }
 
 #endif
-
-char *path_beside_file(const char *present, const char *named) {
-  const char *end = last_separator(present);
-  if (is_absolute(named) || end == NULL) return copy_text(named);
-  return format_text("%.*s/%s", (int)(end - present), present, named);
-}
 
 bool make_directory(const char *path) {
   struct stat status;

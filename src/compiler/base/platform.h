@@ -16,13 +16,14 @@ bool close_text_stream(FILE *file, char **text, size_t *length);
 bool make_directory(const char *path);
 
 /* The one absolute path of a file, to be freed with free(); NULL where there is no such file, and errno tells why. */
-char *canonical_path(const char *path);
+char *resolve_path(const char *path);
 
-/* The first / of a path, or on Windows \; NULL without one. */
+/* The first and the last / of a path, or on Windows \; NULL without one. */
 char *first_separator(char *path);
+const char *last_separator(const char *path);
 
-/* A path that a file names, relative to that file; to be freed with free(). */
-char *path_beside_file(const char *present, const char *named);
+/* Whether the path does not begin in the present directory. */
+bool is_absolute(const char *path);
 
 /* From so many bytes on allocations fail, where the system can do that and no sanitizer needs more. */
 void limit_memory(size_t bytes);

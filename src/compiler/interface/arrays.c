@@ -1,17 +1,15 @@
 #include "interface/arrays.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 
-/* The text without [index], wherever it stands. Free with free(). */
+/* The text without [index], wherever it stands. */
 static char *without_index(const char *text, size_t index) {
   char *subscript = format_text("[%zu]", index), *copy = copy_text(text), *place = copy;
   size_t length = strlen(subscript);
   while ((place = strstr(place, subscript)) != NULL) memmove(place, place + length, strlen(place + length) + 1);
-  free(subscript);
   return copy;
 }
 
@@ -19,19 +17,14 @@ static char *without_index(const char *text, size_t index) {
 static bool is_element(const char *name, size_t index) {
   char *end = format_text(strncmp(name, "der(", 4) == 0 ? "[%zu])" : "[%zu]", index);
   size_t length = strlen(name), end_length = strlen(end);
-  bool is = length > end_length && strcmp(name + length - end_length, end) == 0;
-  free(end);
-  return is;
+  return length > end_length && strcmp(name + length - end_length, end) == 0;
 }
 
 /* Whether the texts are the same, each but for its own index. */
 static bool are_same_text(const char *a, size_t index_of_a, const char *b, size_t index_of_b) {
   if (a == NULL || b == NULL) return a == b;
   char *first = without_index(a, index_of_a), *second = without_index(b, index_of_b);
-  bool same = strcmp(first, second) == 0;
-  free(first);
-  free(second);
-  return same;
+  return strcmp(first, second) == 0;
 }
 
 static bool are_same_number(double a, double b) {
@@ -92,9 +85,7 @@ void arrays_find(struct Interface *interface) {
         !begins_array(interface, VARIABLE_STATE, variable->entry.index, count))
       continue;
     variable->array_count = count;
-    char *name = array_name(variable);
-    if (count > 0 && has_variable(interface, name)) variable->array_count = 0;
-    free(name);
+    if (count > 0 && has_variable(interface, array_name(variable))) variable->array_count = 0;
     for (size_t j = 1; j < variable->array_count; j++) variable[j].is_further_element = true;
   }
 }

@@ -11,10 +11,10 @@
  */
 void arrays_find(struct Interface *interface);
 
-/* The name of the variable, or of the array that begins with it. Free with free(). */
+/* The name of the variable, or of the array that begins with it. */
 char *array_name(const struct InterfaceVariable *variable);
 
-/* Its description; NULL for none. Free with free(). */
+/* Its description; NULL for none. */
 char *array_description(const struct InterfaceVariable *variable);
 
 #endif

@@ -1,7 +1,5 @@
 #include "interface/dependencies.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "base/memory.h"
 
@@ -21,15 +19,6 @@ struct Dependencies *dependencies_create(const struct Model *model, const struct
   dependencies->symbols = allocate(graph->symbol_count, sizeof *dependencies->symbols);
   dependencies->symbols_of_block = allocate(equations->inertia->block_count, sizeof *dependencies->symbols_of_block);
   return dependencies;
-}
-
-void dependencies_free(struct Dependencies *dependencies) {
-  for (size_t b = 0; b < dependencies->equations->inertia->block_count; b++)
-    free(dependencies->symbols_of_block[b].numbers);
-  free(dependencies->symbols_of_block);
-  free(dependencies->symbols);
-  free(dependencies->of);
-  free(dependencies);
 }
 
 static enum Dependency larger(enum Dependency a, enum Dependency b) {
@@ -72,7 +61,6 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
       *below = larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
     }
   }
-  free(on);
 }
 
 /* The symbols of all residuals of a block, in a list that is made once. */
@@ -90,7 +78,6 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
     if (vertex->operation == SYMBOL && (vertex->kinds & 1u << ACCELERATION) == 0)
       list->numbers[list->count++] = vertex->left;
   }
-  free(residuals);
   return list;
 }
 

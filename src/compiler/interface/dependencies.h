@@ -19,7 +19,6 @@ struct Dependencies {
 };
 
 struct Dependencies *dependencies_create(const struct Model *model, const struct Equations *equations);
-void dependencies_free(struct Dependencies *dependencies);
 
 /*
  * Finds the dependencies of node. An acceleration that is solved for at run time depends on all that its block of

@@ -1,7 +1,6 @@
 #include "interface/interface.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/kinks.h"
@@ -23,13 +22,11 @@ static struct InterfaceVariable *append(struct Interface *interface, enum Variab
   return variable;
 }
 
-/* The names of what the node depends on. Free with free(). */
+/* The names of what the node depends on. */
 static char *names_below(const struct Model *model, Node node) {
   struct SymbolNames names = {0};
   symbol_names_add(&names, model->graph, &node, 1);
-  char *text = symbol_names_text(&names, model->graph);
-  free(names.symbols);
-  return text;
+  return symbol_names_text(&names, model->graph);
 }
 
 static void append_list(struct Interface *interface, const struct Model *model, const struct VariableList *list,
@@ -72,8 +69,6 @@ static void append_derivative(struct Interface *interface, const struct Variable
   unit_parse("s", &second, &problem);
   struct Dimension dimension = dimension_multiply(state->dimension, second, -1.0);
   variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
-  free(name);
-  free(text);
 }
 
 static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
@@ -130,14 +125,11 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->constraint_forces[i];
     append_result(interface, name, "", whole_force(model, i, force), text);
     struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
-    free(variable->unit);
     struct Dimension energy;
     const char *problem;
     unit_parse("J", &energy, &problem);
     struct Dimension dimension = dimension_multiply(energy, constraint->dimension, -1.0);
     variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
-    free(name);
-    free(text);
   }
 }
 
@@ -160,13 +152,11 @@ static void append_modes(struct Interface *interface, const struct Model *model)
   for (size_t i = 0; i < switches->contact_count; i++) {
     char *name = format_text("%s.closed", model->constraints.items[switches->contacts[i].constraint].name);
     append_mode(interface, model, VARIABLE_CONTACT, switches->contacts[i].mode, name, "1 while it is closed, else 0");
-    free(name);
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
     append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
                 "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
-    free(name);
   }
 }
 
@@ -279,7 +269,6 @@ static void append_indicators(struct Interface *interface) {
     char *name = format_text("eventIndicator[%zu]", i + 1);
     append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
         interface->switching->indicators[i];
-    free(name);
   }
 }
 
@@ -347,19 +336,6 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   if (!interface->depends_on_time) append_time(interface, model);
   arrays_find(interface);
   return interface;
-}
-
-void interface_free(struct Interface *interface) {
-  if (interface == NULL) return;
-  for (size_t i = 0; i < interface->count; i++) {
-    free((char *)interface->variables[i].entry.name);
-    free((char *)interface->variables[i].entry.follows_from);
-    free(interface->variables[i].unit);
-    free(interface->variables[i].description);
-  }
-  switching_free(interface->switching);
-  free(interface->variables);
-  free(interface);
 }
 
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index) {

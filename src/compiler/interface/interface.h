@@ -40,7 +40,6 @@ static inline bool starts_nearby(const struct InterfaceVariable *variable) {
 }
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations);
-void interface_free(struct Interface *interface);
 
 /* The place in the table of the variable of this kind and index, which there is. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);

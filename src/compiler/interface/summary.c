@@ -1,6 +1,5 @@
 #include "interface/summary.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/differentiate.h"
@@ -40,8 +39,6 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
   char *text = expression_text_with_names(graph, node, names);
   char *expanded_text = expression_text_with_names(graph, expanded, names);
   bool shorter = strlen(expanded_text) < strlen(text);
-  free(text);
-  free(expanded_text);
   return shorter ? expanded : node;
 }
 
@@ -91,15 +88,4 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   for (size_t i = 0; i < summary->output_count; i++)
     summary->outputs[i] = readable(model, &names, equations->outputs[i]);
   return summary;
-}
-
-void summary_free(struct Summary *summary) {
-  if (summary == NULL) return;
-  free(summary->names.of);
-  free(summary->names.named);
-  free(summary->inertial);
-  free(summary->right_side);
-  free(summary->reactions);
-  free(summary->outputs);
-  free(summary);
 }

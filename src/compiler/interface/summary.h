@@ -19,6 +19,5 @@ struct Summary {
 };
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations);
-void summary_free(struct Summary *summary);
 
 #endif

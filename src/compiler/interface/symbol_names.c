@@ -1,6 +1,5 @@
 #include "interface/symbol_names.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/cone.h"

@@ -13,7 +13,7 @@ struct SymbolNames {
 /* Adds those of count expressions. */
 void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
 
-/* "m, l"; a long list ends with "...". Free with free(). */
+/* "m, l"; a long list ends with "...". */
 char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph);
 
 #endif

@@ -1,7 +1,5 @@
 #include "mechanics/constraints.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
@@ -17,7 +15,6 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
     bool is_driven = model->drives[coordinate].given;
     elements_append(is_driven ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
   }
-  gradient_free(&gradient);
 }
 
 static bool has_element(const struct Elements *elements, size_t row, size_t column) {
@@ -38,7 +35,6 @@ static void append_oblique(struct Constraints *constraints, const struct Model *
       elements_append(&constraints->oblique, row, i, negate(graph, gradient.values[k]));
       if (!has_element(&constraints->jacobian, row, i)) elements_append(&constraints->jacobian, row, i, ZERO);
     }
-    gradient_free(&gradient);
   }
 }
 
@@ -62,22 +58,8 @@ struct Constraints *constraints_derive(const struct Model *model) {
     derivative_along(graph, &constraints->velocity[j], 1, seeds, &constraints->acceleration[j]);
     derivative_along(graph, &constraints->velocity[j], 1, seeds_of_rest, &constraints->acceleration_rest[j]);
   }
-  free(seeds);
-  free(seeds_of_rest);
   append_oblique(constraints, model);
   return constraints;
-}
-
-void constraints_free(struct Constraints *constraints) {
-  if (constraints == NULL) return;
-  elements_free(&constraints->jacobian);
-  elements_free(&constraints->driven);
-  elements_free(&constraints->oblique);
-  free(constraints->position);
-  free(constraints->velocity);
-  free(constraints->acceleration);
-  free(constraints->acceleration_rest);
-  free(constraints);
 }
 
 Node constraint_force_along(struct Graph *graph, const struct Elements *elements, size_t element, const Node *forces) {

@@ -27,12 +27,11 @@ struct Constraints {
 };
 
 struct Constraints *constraints_derive(const struct Model *model);
-void constraints_free(struct Constraints *constraints);
 
 /* What one of the elements contributes to J^T forces. */
 Node constraint_force_along(struct Graph *graph, const struct Elements *elements, size_t element, const Node *forces);
 
-/* For each constraint the length of its row of J. Free with free(). */
+/* For each constraint the length of its row of J. */
 Node *constraint_slopes(struct Graph *graph, const struct Constraints *constraints);
 
 /* Whether a constraint force is among the symbols of one of the nodes. */

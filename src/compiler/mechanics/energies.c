@@ -1,7 +1,6 @@
 #include "mechanics/energies.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
@@ -22,7 +21,6 @@ Node stored_energy(const struct Model *model, Node potential) {
   for (size_t i = 0; i < slopes.count; i++)
     if (is_velocity(model, slopes.symbols[i]))
       energy = subtract(graph, energy, multiply(graph, slopes.values[i], slopes.symbols[i]));
-  gradient_free(&slopes);
   return energy;
 }
 
@@ -59,9 +57,7 @@ static struct Degrees degrees_of(const struct Model *model, Node target) {
   cone_collect(cone, graph, &target, 1, NULL);
   struct Degrees *of = allocate(cone->count, sizeof *of);
   for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(model, cone->nodes[place], of);
-  struct Degrees result = of[cone_place(cone, target)];
-  free(of);
-  return result;
+  return of[cone_place(cone, target)];
 }
 
 Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {

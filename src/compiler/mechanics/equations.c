@@ -1,7 +1,6 @@
 #include "mechanics/equations.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/cone.h"
 #include "base/memory.h"
@@ -52,19 +51,6 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
                "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
                "point at a pole",
                model->velocities.items[wrong].name);
-}
-
-void equations_free(struct Equations *equations) {
-  if (equations == NULL) return;
-  inertia_free(equations->inertia);
-  constraints_free(equations->constraints);
-  free(equations->right_side);
-  free(equations->residual);
-  free(equations->acceleration);
-  free(equations->outputs);
-  free(equations->reactions);
-  free(equations->places);
-  free(equations);
 }
 
 bool is_looped(const struct Equations *equations, size_t row) {

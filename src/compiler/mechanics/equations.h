@@ -29,7 +29,6 @@ struct Equations {
 
 /* Equations of a model without anything derived yet. */
 struct Equations *equations_create(const struct Model *model);
-void equations_free(struct Equations *equations);
 
 /* Reports coefficients that are not finite: of sums and products too large for numbers, and of a point at a pole. */
 void equations_check_finite(const struct Model *model, const struct Equations *equations,

@@ -1,7 +1,5 @@
 #include "mechanics/inertial_forces.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -21,11 +19,6 @@ static void append(struct Motions *motions, Node moved, Node force) {
   if (moved == ZERO || force == ZERO) return;
   motions->moved[motions->count] = moved;
   motions->force[motions->count++] = force;
-}
-
-static void motions_free(struct Motions *motions) {
-  free(motions->moved);
-  free(motions->force);
 }
 
 /* Whether what rests is a velocity, of a nonholonomic constraint. */
@@ -59,7 +52,6 @@ static struct Motions motions_of_positions(const struct Model *model, const Node
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
   }
-  free(rate);
   return motions;
 }
 
@@ -110,9 +102,6 @@ Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolK
     for (size_t i = 0; i < count; i++) force[i] = add(graph, force[i], along[i]);
   else
     for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
-  motions_free(&positions);
-  motions_free(&velocities);
-  free(along);
   return force;
 }
 
@@ -125,6 +114,5 @@ Node energy_of_stillness(const struct Model *model) {
     Node term = multiply(graph, model->stillnesses[i].inertia, power_number(graph, rate, 2.0));
     energy = add(graph, energy, scale(graph, 0.5, term));
   }
-  free(seeds);
   return energy;
 }

@@ -14,7 +14,7 @@
 
 /*
  * Of the symbols of the kind with these time derivatives (seeds): COORDINATE, or DISPLACEMENT or INPUT, where the symbol of a
- * rate follows its own, and its element means nothing. Free with free().
+ * rate follows its own, and its element means nothing.
  */
 Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count);
 

@@ -1,7 +1,5 @@
 #include "mechanics/lagrange.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
@@ -61,10 +59,6 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
     take_shorter(graph, inertia->blocks[b].count, whole, part);
     move_block(&inertia->blocks[b], left[1], whole, true);
   }
-  free(rows);
-  free(other);
-  free(part);
-  free(whole);
 }
 
 /* The equation of a driven coordinate tells the force of its drive; what moves it is another one. */
@@ -86,7 +80,6 @@ static Node without_forces(const struct Model *model, Node node) {
   for (size_t j = 0; j < model->constraints.count; j++)
     symbols[graph->vertices[model->constraint_forces[j]].left] = ZERO;
   substitute(graph, &node, 1, symbols, &node);
-  free(symbols);
   return node;
 }
 
@@ -105,8 +98,6 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     Node *inertial = inertial_forces(model, seeds, COORDINATE, n);
     derivative_along(graph, momentum, n, seeds, rate);
     for (size_t i = 0; i < n; i++) left[with_accelerations][i] = add(graph, inertial[i], rate[i]);
-    free(seeds);
-    free(inertial);
   }
   shorten_inertial_forces(model, equations->inertia, left);
   for (size_t i = 0; i < n; i++) {
@@ -115,11 +106,6 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     equations->residual[i] = subtract(graph, left[1][i], right);
     if (model->drives[i].given) give_motion(model, equations, i);
   }
-  free(momentum);
-  free(gradient);
-  free(rate);
-  free(left[0]);
-  free(left[1]);
 }
 
 /* The rows of the constraints, and their forces in those of the coordinates. */
@@ -158,7 +144,6 @@ static Node with_accelerations(const struct Model *model, const struct Equations
     symbols[graph->vertices[model->accelerations[i]].left] = equations->acceleration[i];
   substitute(graph, &node, 1, symbols, &node);
   shorten(graph, 1, &node);
-  free(symbols);
   return node;
 }
 
@@ -214,9 +199,6 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   }
   if (graph_limit(graph) != NULL)
     report_error(diagnostics, 0, "the equations of motion need %s; expected a smaller system", graph_limit(graph));
-  free(momentum);
-  free(force);
   if (diagnostics->errors == errors) return equations;
-  equations_free(equations);
   return NULL;
 }

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "algebra/differentiate.h"
 #include "algebra/formula.h"
@@ -56,11 +55,6 @@ static struct Expansion expansion_create(const struct Model *model) {
   return expansion;
 }
 
-static void expansion_free(struct Expansion *expansion) {
-  free(expansion->values);
-  free(expansion->deviations);
-}
-
 /* factor * sum of d node / d s, at the point, times the deviation of s */
 static Node change_of(const struct Expansion *expansion, Node node, double factor) {
   struct Graph *graph = expansion->graph;
@@ -70,7 +64,6 @@ static Node change_of(const struct Expansion *expansion, Node node, double facto
     Node slope = scale(graph, factor, at_point(expansion, slopes.values[i]));
     change = add(graph, change, multiply(graph, slope, deviation_of(expansion, slopes.symbols[i])));
   }
-  gradient_free(&slopes);
   return change;
 }
 
@@ -90,7 +83,6 @@ static Node expand_twice(const struct Expansion *expansion, Node node) {
     Node mean = add(graph, at_point(expansion, slopes.values[i]), change);
     result = add(graph, result, multiply(graph, mean, deviation_of(expansion, slopes.symbols[i])));
   }
-  gradient_free(&slopes);
   return result;
 }
 
@@ -104,8 +96,6 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
       report_warning(diagnostics, 0, "the point is no equilibrium: %s = %g, der(%s) = %g there",
                      model->velocities.items[i].name, velocity, model->velocities.items[i].name, acceleration);
   }
-  free(values);
-  free(symbols);
 }
 
 /*
@@ -125,8 +115,6 @@ static void solve_block(struct Graph *graph, const struct InertiaBlock *block, s
     block_solve(graph, block, column);
     for (size_t i = 0; i < n; i++) solution[i * columns + j] = column[i];
   }
-  free(mass);
-  free(column);
 }
 
 /* The accelerations at the point. */
@@ -141,7 +129,6 @@ static void find_values(struct Expansion *expansion, const struct Model *model, 
     for (size_t i = 0; i < block->count; i++) value[block->coordinates[i]] = right[i];
   }
   for (size_t i = 0; i < inertia->count; i++) set_value(expansion, unknown_of_row(model, i), value[i]);
-  free(right);
 }
 
 /* The symbols of the gradients, ascending, each once; returns their number. */
@@ -178,11 +165,7 @@ static void linearize_block(const struct Expansion *expansion, const struct Equa
     Node *sum = &acceleration[block->coordinates[i]];
     for (size_t j = 0; j < columns; j++)
       *sum = add(graph, *sum, multiply(graph, slopes[i * columns + j], deviation_of(expansion, symbols[j])));
-    gradient_free(&gradients[i]);
   }
-  free(gradients);
-  free(symbols);
-  free(slopes);
 }
 
 static bool can_be_linearized(const struct Model *model, const struct Equations *equations,
@@ -217,7 +200,6 @@ static Node without_forces(const struct Model *model, const struct Equations *li
   for (size_t j = 0; j < model->constraints.count; j++)
     replacements[graph->vertices[model->constraint_forces[j]].left] = linear->acceleration[linear->count + j];
   substitute(graph, &node, 1, replacements, &result);
-  free(replacements);
   return result;
 }
 
@@ -239,9 +221,6 @@ static bool fulfils_constraints(const struct Expansion *expansion, const struct 
         "the point does not fulfil the constraint '%s': %s is %g there at the parameters' start values; expected "
         "a point where it is 0",
         model->constraints.items[wrong / 2].name, wrong % 2 == 0 ? "it" : "its time derivative", values[levels[wrong]]);
-  free(values);
-  free(symbols);
-  free(levels);
   return wrong == 2 * constraints->count;
 }
 
@@ -282,9 +261,7 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
     expand_all(&expansion, model, equations, linear);
     linear->constraints->count = 0; /* the linear equations obey them by themselves */
   }
-  expansion_free(&expansion);
   if (!singular) return linear;
-  equations_free(linear);
   return NULL;
 }
 
@@ -305,7 +282,6 @@ static void fill_row(const struct Model *model, const struct Equations *equation
                    "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
                    model->velocities.items[row].name, symbol->name);
   }
-  gradient_free(&slopes);
 }
 
 static void fill_accelerations(const struct Model *model, const struct Equations *equations,
@@ -325,7 +301,6 @@ static void fill_accelerations(const struct Model *model, const struct Equations
                    "method than 'exact'",
                    model->velocities.items[i].name);
   }
-  free(zero);
 }
 
 struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
@@ -341,16 +316,7 @@ struct LinearSystem *linear_system_of(const struct Model *model, const struct Eq
   int errors = diagnostics->errors;
   fill_accelerations(model, equations, system, diagnostics);
   if (diagnostics->errors == errors) return system;
-  linear_system_free(system);
   return NULL;
-}
-
-void linear_system_free(struct LinearSystem *system) {
-  if (system == NULL) return;
-  free(system->a);
-  free(system->b);
-  free(system->c);
-  free(system);
 }
 
 static void print_matrix(const struct Model *model, const char *name, const Node *matrix, size_t rows, size_t columns,
@@ -363,9 +329,7 @@ static void print_matrix(const struct Model *model, const char *name, const Node
       if (j > 0) printf(", ");
       if (values != NULL) printf("%.15g", values[node]); /* without the digits that only show rounding */
       else {
-        char *text = expression_text(model->graph, node);
-        printf("%s", text);
-        free(text);
+        printf("%s", expression_text(model->graph, node));
       }
     }
     printf("]\n");
@@ -393,6 +357,4 @@ void linear_system_print(const struct Model *model, const struct LinearSystem *s
   printf("%s\n", model->parameters.count > 0 ? ":" : "as numbers:");
   print_matrix(model, "A", system->a, system->states, system->states, values);
   if (system->inputs > 0) print_matrix(model, "B", system->b, system->states, system->inputs, values);
-  free(values);
-  free(symbols);
 }

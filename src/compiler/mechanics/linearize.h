@@ -19,13 +19,9 @@ struct LinearSystem {
 struct Equations *linearize(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
 
-/*
- * The matrices of equations that are linear in states and inputs; NULL after reporting which acceleration is not.
- * Free with linear_system_free().
- */
+/* The matrices of equations that are linear in states and inputs; NULL after reporting which acceleration is not. */
 struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics);
-void linear_system_free(struct LinearSystem *system);
 
 /* Prints A and B as formulas, then as numbers at the start values of the parameters. */
 void linear_system_print(const struct Model *model, const struct LinearSystem *system);

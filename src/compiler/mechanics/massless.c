@@ -1,7 +1,6 @@
 #include "mechanics/massless.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
@@ -36,9 +35,7 @@ static struct Elements mass_elements(const struct Model *model) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
       if (!model->drives[i].given && !model->drives[j].given) elements_append(&elements, i, j, row.values[k]);
     }
-    gradient_free(&row);
   }
-  free(momentum);
   return elements;
 }
 
@@ -55,10 +52,7 @@ static struct Components couplings(const struct Matrices *matrices) {
     if (first[constraint] > 0) elements_append(&all, coordinate, first[constraint] - 1, ZERO);
     first[constraint] = coordinate + 1;
   }
-  struct Components components = find_components(matrices->count, &all);
-  elements_free(&all);
-  free(first);
-  return components;
+  return find_components(matrices->count, &all);
 }
 
 /* The places of the coordinates in their components, and the number of coordinates of each. */
@@ -144,14 +138,7 @@ static bool hold_motions(struct Matrices *matrices) {
       has_changed |= hold_motion(matrices, all);
       for (size_t i = 0; i < sizes[c]; i++) z[i] = 0.0;
     }
-    free(dense[c]);
   }
-  free(components.of);
-  free(sizes);
-  free(places);
-  free(dense);
-  free(z);
-  free(all);
   return has_changed;
 }
 
@@ -212,9 +199,6 @@ static void append_stillnesses(const struct Matrices *matrices, struct Model *mo
     model->stillnesses[model->stillness_count++] = (struct Stillness){
         model->constraints.items[j].node, scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)};
   }
-  free(symbols);
-  free(at_start);
-  free(inertias);
 }
 
 /* Values at which M and J are finite, if eight trials find some. */
@@ -224,14 +208,12 @@ static double *values_somewhere(const struct Matrices *matrices, const struct Gr
   bool is_finite = false;
   for (int trial = 0; trial < 8 && !is_finite; trial++) {
     for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
-    free(values);
     values = graph_evaluate(graph, symbols);
     is_finite = true;
     for (size_t k = 0; k < matrices->mass.count; k++) is_finite &= isfinite(values[matrices->mass.nodes[k]]) != 0;
     for (size_t k = 0; k < matrices->constraints->jacobian.count; k++)
       is_finite &= isfinite(values[matrices->constraints->jacobian.nodes[k]]) != 0;
   }
-  free(symbols);
   return values;
 }
 
@@ -246,8 +228,4 @@ void hold_massless_coordinates(struct Model *model) {
   bool any = false;
   while (hold_motions(&matrices)) any = true;
   if (any) append_stillnesses(&matrices, model);
-  elements_free(&matrices.mass);
-  constraints_free(matrices.constraints);
-  free(matrices.values);
-  free(matrices.is_held);
 }

@@ -9,7 +9,6 @@ struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics
   struct Equations *equations = equations_derive(model, diagnostics);
   if (equations != NULL && model->linearized) {
     struct Equations *linear = linearize(model, equations, diagnostics);
-    equations_free(equations);
     equations = linear;
   }
   if (equations != NULL) equations_check_finite(model, equations, diagnostics);

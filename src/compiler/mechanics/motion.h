@@ -6,7 +6,7 @@
 
 /*
  * The equations of motion, linearised where the model asks for it. Coordinates without inertia get one in the model, see
- * massless.h. NULL after reporting errors; else free with equations_free().
+ * massless.h. NULL after reporting errors.
  */
 struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics);
 

@@ -1,7 +1,5 @@
 #include "mechanics/reactions.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
@@ -27,8 +25,6 @@ static void append_work(struct Work *work, Node position, Node weight) {
 static Node *work_along(struct Graph *graph, struct Work *work, enum SymbolKind kind, size_t count) {
   Node *force = allocate(count, sizeof *force);
   weighted_gradient_of(graph, work->positions, work->weights, work->count, kind, count, force);
-  free(work->positions);
-  free(work->weights);
   return force;
 }
 
@@ -44,7 +40,6 @@ static void add_torques(const struct Model *model, enum SymbolKind kind, size_t 
     }
   Node *along = work_along(graph, &work, kind, count);
   for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
-  free(along);
 }
 
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
@@ -66,9 +61,6 @@ static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_
   gradient_of(graph, lagrangian, kind, count, slope);
   derivative_along(graph, slope, count, seeds, rate);
   for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], subtract(graph, rate[i + 1], slope[i]));
-  free(seeds);
-  free(slope);
-  free(rate);
   return force;
 }
 
@@ -90,10 +82,6 @@ void reactions_derive(const struct Model *model, Node *reactions) {
     reactions[i] = subtract(graph, subtract(graph, push[2 * i], damping[2 * i + 1]), force[2 * i]);
   substitute(graph, reactions, count, undisplaced, reactions);
   for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
-  free(force);
-  free(push);
-  free(damping);
-  free(undisplaced);
 }
 
 /* Forces at what an input moves act on the system through it, so that what moves it delivers R, and they Q. */
@@ -105,8 +93,6 @@ Node moving_power(const struct Model *model) {
   for (size_t i = 0; i + 1 < count; i++)
     if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
   substitute(graph, &power, 1, undisplaced, &power);
-  free(force);
-  free(undisplaced);
   return power;
 }
 
@@ -124,6 +110,5 @@ Node with_reactions(const struct Model *model, const Node *reactions, Node node)
   for (size_t i = 0; i < model->reactions.count; i++)
     symbols[graph->vertices[model->reactions.items[i].node].left] = reactions[i];
   substitute(graph, &node, 1, symbols, &node);
-  free(symbols);
   return node;
 }

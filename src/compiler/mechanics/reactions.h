@@ -20,7 +20,7 @@ void reactions_derive(const struct Model *model, Node *reactions);
 /* The power of what moves the inputs on which positions and energies depend, with the acceleration symbols. */
 Node moving_power(const struct Model *model);
 
-/* What replaces each symbol where nothing is displaced: itself, or 0 for a displacement. Free with free(). */
+/* What replaces each symbol where nothing is displaced: itself, or 0 for a displacement. */
 Node *undisplaced_symbols(const struct Graph *graph);
 
 /* The node with the symbols of reactions replaced by these. */

@@ -1,7 +1,5 @@
 #include "mechanics/switching.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/node_list.h"
@@ -75,7 +73,6 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
     switching->holds_energy[switching->branch_count] = switching->holds_energy[i];
     switching->branches[switching->branch_count++] = &switches->items[i];
   }
-  free(is_used);
 }
 
 /* Forces have no rate that is known here. */
@@ -144,7 +141,6 @@ static void append_energies(const struct Model *model, const struct Equations *e
   gradient_of(model->graph, model->kinetic.node, VELOCITY, n, momentum);
   for (size_t i = 0; i < n && graph_depends_on(model->graph, model->kinetic.node, MODE); i++)
     append_node(list, momentum[i]);
-  free(momentum);
   switching->energy_count = list->count - first;
 }
 
@@ -202,8 +198,6 @@ static void append_values(const struct Model *model, const struct Equations *equ
   fill_events(switches, &counts, values);
   append_nodes(list, values, count);
   append_energies(model, equations, switching, list);
-  free(values);
-  free(seeds);
 }
 
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
@@ -215,7 +209,6 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   append_indicators(model, switching, &indicators);
   append_watched(model, switching, &watched);
   append_values(model, equations, switching, &values);
-  free(roots.nodes);
   switching->indicators = indicators.nodes;
   switching->indicator_count = indicators.count;
   switching->watched = watched.nodes;
@@ -224,19 +217,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->value_count = values.count;
   switching->roundings = derive_roundings(model, switching);
   if (switching->indicator_count > 0) return switching;
-  switching_free(switching);
   return NULL;
-}
-
-void switching_free(struct SwitchingExpressions *switching) {
-  if (switching == NULL) return;
-  free(switching->branches);
-  free(switching->holds_energy);
-  free(switching->indicators);
-  free(switching->watched);
-  free(switching->values);
-  free(switching->roundings);
-  free(switching);
 }
 
 Node without_branches(const struct Model *model, Node node) {
@@ -254,6 +235,5 @@ Node without_branches(const struct Model *model, Node node) {
     substitute(graph, &node, 1, replacements, &node);
     if (node == before) break;
   }
-  free(replacements);
   return node;
 }

@@ -24,9 +24,8 @@ struct SwitchingExpressions {
   size_t value_count;
 };
 
-/* NULL for a system that does not switch. Both hold the acceleration symbols. Free with switching_free(). */
+/* NULL for a system that does not switch. Both hold the acceleration symbols. */
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations);
-void switching_free(struct SwitchingExpressions *switching);
 
 /* The node with the modes of branches replaced by the signs that they stand for, as results that no event waits for. */
 Node without_branches(const struct Model *model, Node node);

@@ -36,7 +36,7 @@ struct Method {
 /* NULL where there is no method of this name. */
 const struct Method *method_named(const char *name);
 
-/* "a, b or c". Free with free(). */
+/* "a, b or c". */
 char *method_names(void);
 
 /* The solver for a Jacobian with so many rows and elements other than 0. */

@@ -1,7 +1,6 @@
 #include "model/model.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -19,52 +18,6 @@ struct Variable variable_create(char *name, char *description, long line) {
                            .maximum = NAN,
                            .nominal = NAN,
                            .line = line};
-}
-
-void variable_free(struct Variable *variable) {
-  free(variable->name);
-  free(variable->description);
-  free(variable->unit);
-}
-
-static void free_variables(struct VariableList *list) {
-  for (size_t i = 0; i < list->count; i++) variable_free(&list->items[i]);
-  free(list->items);
-}
-
-void model_free(struct Model *model) {
-  if (model == NULL) return;
-  free_variables(&model->parameters);
-  free_variables(&model->inputs);
-  free_variables(&model->coordinates);
-  free_variables(&model->velocities);
-  free_variables(&model->outputs);
-  free_variables(&model->calculated);
-  free_variables(&model->definitions);
-  free_variables(&model->displacements);
-  free_variables(&model->modes);
-  switches_clear(&model->switches);
-  free_variables(&model->reactions);
-  free_variables(&model->constraints);
-  free_variables(&model->places);
-  for (size_t i = 0; i < model->body_count; i++) free(model->bodies[i].name);
-  for (size_t i = 0; i < model->frame_count; i++) free(model->frames[i].name);
-  free(model->frames);
-  free(model->stillnesses);
-  free(model->torques);
-  free(model->bodies);
-  free(model->accelerations);
-  free(model->constraint_forces);
-  free(model->forces);
-  free(model->drives);
-  free(model->input_rates);
-  free(model->point_forces);
-  free(model->point.values);
-  free(model->point.given);
-  graph_free(model->graph);
-  free(model->name);
-  free(model->description);
-  free(model);
 }
 
 bool is_input_rate(const struct Model *model, size_t input) {

@@ -133,25 +133,19 @@ struct Model {
   long solver_line;
 };
 
-void model_free(struct Model *model);
-
 /* Whether the input is the time derivative of the one before it. */
 bool is_input_rate(const struct Model *model, size_t input);
 
 /* Adds a term to one of the sums. */
 void add_term(struct Model *model, struct Quantity *sum, Node term);
 
-/*
- * Without dimension, start value, range and nominal value. Takes the texts over; variable_free() frees what a variable that is in
- * no list owns.
- */
+/* Without dimension, start value, range and nominal value. */
 struct Variable variable_create(char *name, char *description, long line);
-void variable_free(struct Variable *variable);
 
 /* Whether the start value is an expression of parameters. */
 bool start_follows(const struct Model *model, const struct Variable *variable);
 
-/* The start values of all symbols, in the order of the graph's; accelerations are 0. Free with free(). */
+/* The start values of all symbols, in the order of the graph's; accelerations are 0. */
 double *start_values(const struct Model *model);
 
 /* Whether some coordinate is. */
@@ -160,7 +154,7 @@ bool has_fixed_coordinates(const struct Model *model);
 /* The symbol of what a row of inertia.h is solved for: an acceleration, or the force of a constraint. */
 Node unknown_of_row(const struct Model *model, size_t row);
 
-/* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. Free with free(). */
+/* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. */
 char *variable_unit(const struct Variable *variable);
 
 #endif

@@ -1,7 +1,5 @@
 #include "model/switches.h"
 
-#include <stdlib.h>
-
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
@@ -17,15 +15,4 @@ bool has_switches(const struct Switches *switches) {
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
   Node sliding = multiply(graph, friction->mode, friction->sliding);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), sliding, force);
-}
-
-void switches_clear(struct Switches *switches) {
-  for (size_t i = 0; i < switches->event_count; i++) {
-    free(switches->events[i].assignments);
-    free(switches->events[i].text);
-  }
-  free(switches->items);
-  free(switches->contacts);
-  free(switches->frictions);
-  free(switches->events);
 }

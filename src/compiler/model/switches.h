@@ -71,7 +71,4 @@ bool has_switches(const struct Switches *switches);
 /* The force of a friction, from that of its constraint: while it slides it belongs to none. */
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);
 
-/* Frees what the switches own. */
-void switches_clear(struct Switches *switches);
-
 #endif

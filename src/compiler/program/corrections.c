@@ -1,7 +1,5 @@
 #include "program/corrections.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "saddle.h"
 
@@ -44,7 +42,6 @@ static void append_solved(const struct Program *program, struct Values *values, 
   if (starting) weigh_fixed(program, values, looped);
   append_factor(values, &program->blocks, number);
   append_solution(values, &program->blocks, number, right_side);
-  free(right_side);
 }
 
 /* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */
@@ -74,7 +71,6 @@ static void compute_blocks(const struct Program *program, struct Values *values,
     for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
   }
   values_compute(values, targets.nodes, targets.count, false);
-  free(targets.nodes);
 }
 
 /* side: a right side for each row; starting: fixed coordinates stay where they are. */

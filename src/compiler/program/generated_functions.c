@@ -1,7 +1,5 @@
 #include "program/generated_functions.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "program/corrections.h"
 #include "program/least_forces.h"
@@ -29,7 +27,6 @@ static struct Routine *prepare_routine(const struct Program *program, struct Val
   for (size_t i = 0; i < inertia->pivot_count; i++)
     if (pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
   for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target(i), values->prepared->nodes[i]);
-  free(targets.nodes);
   return routine;
 }
 
@@ -72,12 +69,6 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
   return rows;
 }
 
-static void block_rows_free(struct BlockRows *rows) {
-  free(rows->number);
-  free(rows->side);
-  free(rows->solved);
-}
-
 /*
  * The accelerations along the direction of the seed, and of the forces of constraints as many as count reaches, to the
  * targets from first on.
@@ -94,11 +85,9 @@ static void append_along(const struct Program *program, struct Values *values, s
     Node *right_side = allocate(block->count, sizeof *right_side);
     for (size_t i = 0; i < block->count; i++) right_side[i] = along[block->coordinates[i]];
     append_solution(values, &program->blocks, b, right_side);
-    free(right_side);
   }
   for (size_t i = 0; i < count; i++)
     copy_place(values, target(first + i), rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
-  block_rows_free(&rows);
 }
 
 static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
@@ -151,12 +140,10 @@ static struct Routine *jacobian_routine(const struct Program *program, struct Va
   for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
   append_needed_accelerations(program, values, targets.nodes, targets.count);
   values_compute(values, targets.nodes, targets.count, false);
-  free(targets.nodes);
   for (size_t column = 0; column < program->interface->state_count; column++) {
     append_constraint_sides(program, values, column, &rows, &next_side);
     append_jacobian_column(program, values, column, &rows);
   }
-  block_rows_free(&rows);
   return routine;
 }
 

@@ -4,8 +4,6 @@
  */
 #include "program/least_forces.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 
 /* A constraint that is solved for at run time. */
@@ -95,5 +93,4 @@ void append_least_forces_along(const struct Program *program, struct Values *val
     if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].side, rows[j].turn, 0);
     else routine_append(values->routine, COPY, rows[j].target, rows[j].side, 0, 0);
   }
-  free(rows);
 }

@@ -1,7 +1,5 @@
 #include "program/program.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 
 /*
@@ -33,10 +31,8 @@ static void create_results(struct Program *program, struct Values *values) {
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
   if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
-  if (program->series != NULL && program->interface->method->series != ALL_TERMS && program->series->limit.count == 0) {
-    series_program_free(program->series);
+  if (program->series != NULL && program->interface->method->series != ALL_TERMS && program->series->limit.count == 0)
     program->series = NULL;
-  }
   if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, values);
   if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, values);
 }
@@ -75,7 +71,6 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
                               .expressions = expressions};
   struct NodeList targets = expressions_targets(expressions);
   program->prepared = prepared_create(expressions->model->graph, targets);
-  free(targets.nodes);
   program->blocks = looped_blocks_of(expressions->equations);
   struct Values *values = values_create(expressions->model->graph, program->prepared, expressions->equations->count);
   for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
@@ -83,25 +78,6 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
       program->routines[i] = generated_functions[i].build(program, values);
   create_results(program, values);
   create_series(program, values);
-  values_free(values);
   choose_form(program, form);
   return program;
-}
-
-void program_free(struct Program *program) {
-  if (program == NULL) return;
-  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++) routine_free(program->routines[i]);
-  for (size_t i = 0; i < program->interface->result_count; i++) {
-    routine_free(program->result[i]);
-    routine_free(program->result_along[i]);
-  }
-  free(program->result);
-  free(program->leader);
-  free(program->result_along);
-  series_program_free(program->series);
-  series_program_free(program->output_series);
-  series_program_free(program->watched_series);
-  prepared_free(program->prepared);
-  free(program->blocks.items);
-  free(program);
 }

@@ -33,6 +33,4 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
 /* How many instructions all routines have together, but those of linear(), which copies alone. */
 size_t instruction_count(const struct Program *program);
 
-void program_free(struct Program *program);
-
 #endif

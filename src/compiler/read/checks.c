@@ -1,7 +1,6 @@
 #include "read/checks.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -46,7 +45,7 @@ static void warn_without_unit(const struct Reader *reader) {
                        lists[list]->items[i].name);
 }
 
-/* All that may hold displacements, with those that each holds marked. Free with free(). */
+/* All that may hold displacements, with those that each holds marked. */
 static bool *mark_displaced(const struct Model *model) {
   Node *targets = allocate(4 * model->body_count + 3, sizeof *targets);
   size_t count = 0;
@@ -57,7 +56,6 @@ static bool *mark_displaced(const struct Model *model) {
   targets[count++] = model->displaced_dissipation.node;
   bool *marks = allocate(model->graph->count, sizeof *marks);
   graph_mark(model->graph, targets, count, marks);
-  free(targets);
   return marks;
 }
 
@@ -70,7 +68,6 @@ static void warn_of_displacements(const struct Reader *reader) {
                      "the displacement '%s' moves nothing, so that its force is 0; expected it in a position, an angle "
                      "or a potential",
                      displacements->items[i].name);
-  free(marks);
 }
 
 static void warn_of_inertia(const struct Reader *reader, const struct Body *body, const char *what, Node inertia,
@@ -123,8 +120,6 @@ static void warn_at_start(const struct Reader *reader) {
   }
   check_quaternions(reader, values);
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
-  free(values);
-  free(symbols);
 }
 
 /* The values of all nodes at the start, but with these velocities: the even ones, and the odd ones. */
@@ -132,9 +127,7 @@ static double *values_at_velocities(const struct Model *model, double even, doub
   double *symbols = start_values(model);
   for (size_t i = 0; i < model->velocities.count; i++)
     symbols[model->graph->vertices[model->velocities.items[i].node].left] = i % 2 == 0 ? even : odd;
-  double *values = graph_evaluate(model->graph, symbols);
-  free(symbols);
-  return values;
+  return graph_evaluate(model->graph, symbols);
 }
 
 /*
@@ -160,9 +153,6 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
     told = dissipation->line;
     dissipation->node = ZERO; /* is not told again */
   }
-  free(rest);
-  free(forth);
-  free(back);
 }
 
 void check_system(struct Reader *reader) {

@@ -1,7 +1,6 @@
 #include "read/expansion.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "read/context/includes.h"
@@ -22,7 +21,6 @@ static void report_index(struct Reader *reader, xmlNodePtr node) {
   char *index = attribute(node, "index");
   report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
                index);
-  free(index);
 }
 
 /* Whether the bounds are right and the index is a new name. */
@@ -52,11 +50,9 @@ static void expand_repetition(struct Reader *reader, xmlNodePtr node) {
   double from = 0, to = -1;
   if (node->_private == &refused) return;
   char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
-  free(index_name);
   if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
       !check_repetition(reader, node, index, from, to)) {
     node->_private = &refused;
-    free(index);
     return;
   }
   if (from <= to) node->_private = &repeated;
@@ -65,13 +61,12 @@ static void expand_repetition(struct Reader *reader, xmlNodePtr node) {
     graph_work(reader->model->graph, REPETITION_WORK);
     scope_set_index(scope, index, i);
     definitions_enter(reader->definitions,
-                      (struct Loop){.index = copy_text(index), .value = i, .node = node, .source = reader->source});
+                      (struct Loop){.index = index, .value = i, .node = node, .source = reader->source});
     expand_children(reader, node);
     definitions_leave(reader->definitions);
   }
   check_limit(reader, node);
   scope_remove(scope, index);
-  free(index);
 }
 
 /*
@@ -87,8 +82,6 @@ static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
                    to);
-    free(from);
-    free(to);
   }
 }
 

@@ -1,20 +1,17 @@
 #include "read/linearization_reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/platform.h"
+#include "base/paths.h"
 #include "read/elements/elements.h"
 #include "read/expressions/parser.h"
 
 char *linearized_path(xmlNodePtr root, const char *path) {
   char *of = attribute(root, "of");
   if (of == NULL) return NULL;
-  char *joined = path_beside_file(path, of);
-  free(of);
-  return joined;
+  return path_beside_file(path, of);
 }
 
 static void begin_point(struct Model *model) {
@@ -59,15 +56,12 @@ void apply_point(struct Model *model, struct Scope *scope, const char *const *po
     char *name = format_text("%.*s", equals != NULL ? (int)(equals - point[i]) : 0, point[i]);
     if (equals == NULL) report_error(diagnostics, 0, "--at %s: expected name=value", point[i]);
     else set_point(model, scope, name, equals + 1, 0, diagnostics);
-    free(name);
   }
 }
 
 void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr root, struct Diagnostics *diagnostics) {
   struct Reader reader = {.model = model, .scope = scope, .diagnostics = diagnostics};
   scope->diagnostics = diagnostics;
-  free(model->name);
-  free(model->description);
   model->name = attribute(root, "name");
   model->description = attribute(root, "description");
   model->method = NULL;
@@ -80,8 +74,6 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
     else {
       char *name = reference_attribute(&reader, node, "name"), *value = attribute(node, "value");
       if (name != NULL && value != NULL) set_point(model, scope, name, value, xmlGetLineNo(node), diagnostics);
-      free(name);
-      free(value);
     }
   }
 }

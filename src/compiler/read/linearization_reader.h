@@ -8,7 +8,7 @@
 #include "model/model.h"
 #include "read/names/scope.h"
 
-/* The path of the system that root linearises, relative to the file that holds it. Free with free(). */
+/* The path of the system that root linearises, relative to the file that holds it. */
 char *linearized_path(xmlNodePtr root, const char *path);
 
 /* Turns the model that was read from there into the linearised one of this name. */

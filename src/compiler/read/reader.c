@@ -1,7 +1,6 @@
 #include "read/reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -30,7 +29,6 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < n; i++) {
     char *name = format_text("der(%s)", model->velocities.items[i].name);
     model->accelerations[i] = scope_symbol(scope, ACCELERATION, (int)i, name, model->velocities.items[i].dimension, 0);
-    free(name);
     scope_set_time_derivative(scope, model->coordinates.items[i].node, model->velocities.items[i].node);
     scope_set_time_derivative(scope, model->velocities.items[i].node, model->accelerations[i]);
   }
@@ -65,7 +63,6 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
     int index = (int)(model->coordinates.count + i);
     Node node = model->constraint_forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
-    free(name);
   }
 }
 
@@ -131,7 +128,6 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
       model = read_file(original, options, &local, depth + 1, scope);
       if (model != NULL) read_linearization(model, *scope, root, &local);
     }
-    free(original);
   } else if (root != NULL) {
     model = model_create();
     *scope = language_of(model, &local);
@@ -143,14 +139,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     reader.definition_used = allocate(options->definition_count, sizeof *reader.definition_used);
     frames_begin(&reader);
     read_system(&reader, root);
-    frames_end(&reader);
-    free(reader.definition_used);
-    free(reader.dissipations);
-    free(reader.occurrences);
-    free(reader.undisplaced);
-    names_free(reader.bodies);
     includes_end(&reader);
-    definitions_free(reader.definitions);
     (*scope)->definitions = NULL;
   }
   if (model != NULL && (options->point_count > 0 || options->linearize) && depth == 0 && local.errors == 0)
@@ -158,21 +147,16 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   xmlFreeDoc(document);
   diagnostics->errors += local.errors;
   if (local.errors == 0) return model;
-  model_free(model);
   return NULL;
 }
 
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
-  if (scope != NULL) tables_empty(scope->tables);
-  scope_free(scope);
   if (model == NULL || options->solver == NULL) return model;
   model->method = method_named(options->solver);
   if (model->method != NULL) return model;
   char *names = method_names();
   report_error(diagnostics, 0, "--solver %s is not known; expected %s", options->solver, names);
-  free(names);
-  model_free(model);
   return NULL;
 }

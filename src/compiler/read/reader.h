@@ -8,7 +8,7 @@
 
 /*
  * Reads a system, or the system that a <linearization> names together with its point. Every error is reported;
- * returns NULL where there was any. Free with model_free().
+ * returns NULL where there was any.
  */
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics);
 

@@ -1,6 +1,5 @@
 #include "write/code.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -96,9 +95,6 @@ static void write_blocks(FILE *file, const struct Program *program) {
       write_sizes(file, "size_t", column, block->column, block->start[block->count]);
     }
     write_numbers(file, coordinate, block, program->equations->count);
-    free(start);
-    free(column);
-    free(coordinate);
   }
 }
 
@@ -132,7 +128,6 @@ static void write_as_tables(FILE *file, const struct Program *program) {
   tables_results(file, tables);
   switching_write(file, program);
   description_write(file, program, tables_work_count(tables));
-  table_context_free(tables);
 }
 
 void code_write(FILE *file, const struct Program *program) {

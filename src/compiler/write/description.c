@@ -1,7 +1,6 @@
 #include "write/description.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "write/c_text.h"
@@ -78,7 +77,6 @@ static void write_nominals(FILE *file, const struct Interface *interface) {
     write_c_number(file, isnan(nominal[i]) ? 1.0 : nominal[i]);
   }
   fputs("};\n\n", file);
-  free(nominal);
 }
 
 static void write_lu_pattern(FILE *file, const struct Elimination *factors, size_t coordinates) {
@@ -87,7 +85,6 @@ static void write_lu_pattern(FILE *file, const struct Elimination *factors, size
   write_sizes(file, "int", "lu_place", place, coordinates);
   write_sizes(file, "int", "lu_start", factors->start, coordinates + 1);
   write_sizes(file, "int", "lu_column", factors->column, factors->start[coordinates]);
-  free(place);
 }
 
 static void write_pattern(FILE *file, const struct Program *program) {

@@ -1,7 +1,5 @@
 #include "write/guides.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "base/memory.h"
 #include "write/c_text.h"
@@ -20,7 +18,6 @@ static char *mark_inputs(const struct Model *model, Node constraint, bool *is_gu
     char *before = names;
     names =
         format_text("%s%s%s", before != NULL ? before : "", before != NULL ? ", " : "", model->inputs.items[i].name);
-    free(before);
   }
   return names;
 }
@@ -47,11 +44,9 @@ void guides_write(FILE *file, const struct Model *model) {
     if (names != NULL) write_c_string(file, names);
     else fputs("NULL", file);
     fputs(", ", file);
-    free(names);
   }
   fputs("};\n\nstatic const struct Guide guides[] = {", file);
   for (size_t i = 0; i < model->inputs.count; i++)
     if (is_guide[i]) fprintf(file, "{%zu, %zu}, ", i, rate_count(model, i));
   fputs("};\n\n", file);
-  free(is_guide);
 }

@@ -1,7 +1,5 @@
 #include "write/inertia_names.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "interface/symbol_names.h"
 
@@ -13,7 +11,6 @@ static void name_block(const struct Graph *graph, const struct InertiaBlock *blo
     symbol_names_add(&names, graph, block->mass + block->start[i], block->start[i + 1] - block->start[i]);
     texts[block->coordinates[i]] = symbol_names_text(&names, graph);
   }
-  free(names.symbols);
 }
 
 void inertia_names_write(FILE *file, const struct Program *program) {
@@ -23,10 +20,6 @@ void inertia_names_write(FILE *file, const struct Program *program) {
   char **texts = allocate(n, sizeof *texts);
   for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], n, texts);
   fputs("static const char *const inertia_depends_on[] = {\n", file);
-  for (size_t i = 0; i < n; i++) {
-    fprintf(file, "    \"%s\",\n", texts[i]);
-    free(texts[i]);
-  }
+  for (size_t i = 0; i < n; i++) fprintf(file, "    \"%s\",\n", texts[i]);
   fputs("};\n\n", file);
-  free(texts);
 }

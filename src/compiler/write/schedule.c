@@ -123,8 +123,8 @@ size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks
   }
   if (routine->count > 0) qsort(turns, routine->count, sizeof *turns, compare);
   for (size_t i = 0; i < routine->count; i++) order[i] = turns[i].number;
-  for (int space = 0; space < SPACE_COUNT; space++) free(accesses.of[space]);
-  free(turns);
+  for (int space = 0; space < SPACE_COUNT; space++) release(accesses.of[space]);
+  release(turns);
   return order;
 }
 

@@ -4,7 +4,7 @@
 
 #include "program/expressions/accelerations.h"
 
-/* The numbers of the routine's instructions in the order of execution, to be freed with free(). */
+/* The numbers of the routine's instructions in the order of execution. */
 size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks);
 
 /* The spaces of the result and the operands, packed as in a table; an instruction's run has the same for all. */

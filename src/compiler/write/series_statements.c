@@ -1,5 +1,4 @@
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "write/c_text.h"
@@ -56,9 +55,7 @@ static void write_next_call(FILE *file, const struct Routine *order, const char 
 }
 
 static void write_call_of_order(FILE *file, const struct Program *program, size_t k) {
-  char *order = format_text("%zu", k);
-  write_next_call(file, program->series->order, order);
-  free(order);
+  write_next_call(file, program->series->order, format_text("%zu", k));
 }
 
 /* How many orders get code of their own. */

@@ -1,7 +1,5 @@
 #include "write/statements.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "write/instruction_text.h"
 
@@ -33,8 +31,6 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
   declare(file, reads(routine, SPACE_SEED_STATE, n, 2 * n), "dv", seed_velocity);
   declare(file, routine_uses(routine, SPACE_SEED_INPUT), "du", "seed->input");
   declare(file, routine_uses(routine, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
-  free(velocity);
-  free(seed_velocity);
 }
 
 /* Where series follow, the factors of large blocks are kept for them. */
@@ -80,7 +76,6 @@ static void write_result(FILE *file, const struct Program *program, size_t first
   char *suffix = format_text("%zu", first);
   if (size > 1) write_group(file, program, first, size, suffix);
   else statements_function(file, program, FUNCTION_RESULT, suffix, program->result[first]);
-  free(suffix);
 }
 
 static void begin_choice(FILE *file, enum FunctionName name) {
@@ -108,9 +103,7 @@ void statements_results(FILE *file, const struct Program *program) {
   end_choice(file);
   for (size_t i = 0; i < count; i++) {
     if (program->result_along[i] == NULL) continue;
-    char *suffix = format_text("%zu", i);
-    statements_function(file, program, FUNCTION_RESULT_ALONG, suffix, program->result_along[i]);
-    free(suffix);
+    statements_function(file, program, FUNCTION_RESULT_ALONG, format_text("%zu", i), program->result_along[i]);
   }
   begin_choice(file, FUNCTION_RESULT_ALONG);
   for (size_t i = 0; i < count; i++)

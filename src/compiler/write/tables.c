@@ -1,7 +1,5 @@
 #include "write/tables.h"
 
-#include <stdlib.h>
-
 #include "algebra/functions.h"
 #include "base/memory.h"
 #include "write/c_text.h"
@@ -51,12 +49,6 @@ struct TableContext *table_context_create(const struct Program *program) {
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
     if (context->function[function] > 0) context->function[function] = ++count[operation_arity(function)];
   return context;
-}
-
-void table_context_free(struct TableContext *context) {
-  free(context->number);
-  free(context->numbers.nodes);
-  free(context);
 }
 
 static void write_functions(FILE *file, const struct TableContext *context, int arity, const char *type,
@@ -171,7 +163,6 @@ static void write_code(struct CodeLine *line, const struct TableContext *context
     write_run(line, context, routine, schedule, first, end);
   }
   write_word(line, END);
-  free(schedule);
 }
 
 static void write_table(FILE *file, const struct TableContext *context, const char *name,
@@ -234,10 +225,8 @@ static void write_results(FILE *file, const struct TableContext *context, enum F
   fputs("};\n", file);
   char *table = format_text("%s_start", text->name);
   write_sizes(file, "uint32_t", table, start, count);
-  free(table);
   table = format_text("%s_place", text->name);
   write_sizes(file, "unsigned char", table, place, count);
-  free(table);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
           operations, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
@@ -247,8 +236,6 @@ static void write_results(FILE *file, const struct TableContext *context, enum F
   if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
   fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
           text->name, text->name, text->name);
-  free(start);
-  free(place);
 }
 
 void tables_results(FILE *file, const struct TableContext *context) {
@@ -258,7 +245,6 @@ void tables_results(FILE *file, const struct TableContext *context) {
   for (size_t i = 0; i < count; i++) alone[i] = i;
   write_results(file, context, FUNCTION_RESULT, context->program->result, context->program->leader, count);
   write_results(file, context, FUNCTION_RESULT_ALONG, context->program->result_along, alone, count);
-  free(alone);
 }
 
 static void set_rows(FILE *file) {

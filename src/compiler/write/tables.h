@@ -13,7 +13,6 @@ struct TableContext {
 };
 
 struct TableContext *table_context_create(const struct Program *program);
-void table_context_free(struct TableContext *context);
 
 /* The numbers, functions and blocks that all tables share. */
 void tables_shared(FILE *file, const struct TableContext *context);

@@ -41,7 +41,7 @@ struct Polynomial polynomial_copy(const struct Polynomial *p) {
 }
 
 void polynomial_free(struct Polynomial *p) {
-  free(p->terms);
+  release(p->terms);
   *p = (struct Polynomial){0};
 }
 

@@ -235,7 +235,7 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
   for (size_t i = 0; i < count && !converter->overflow; i++)
     fractions[i] = fraction_copy(&known[cone_place(cone, nodes[i])]);
   for (size_t place = 0; place < cone->count; place++) fraction_free(&known[place]);
-  free(known);
+  release(known);
   return !converter->overflow;
 }
 
@@ -304,7 +304,7 @@ bool solve_fractions(struct Graph *graph, size_t n, const Node *matrix, size_t c
     for (size_t j = 0; j < columns; j++)
       solution[i * columns + j] = fraction_node(&converter, &rows[i * width + n + j]);
   for (size_t i = 0; i < n * width; i++) fraction_free(&rows[i]);
-  free(rows);
-  free(nodes);
+  release(rows);
+  release(nodes);
   return solved;
 }

@@ -36,5 +36,5 @@ void shorten(struct Graph *graph, size_t count, Node *nodes) {
   Node *others = allocate(count, sizeof *others);
   for (size_t i = 0; i < count; i++) others[i] = simplify_fraction(graph, nodes[i]);
   take_shorter(graph, count, nodes, others);
-  free(others);
+  release(others);
 }

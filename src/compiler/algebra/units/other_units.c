@@ -109,7 +109,7 @@ static bool write_short(char text[32], double number) {
   return fabs(strtod(text, NULL) / number - 1) < 1e-12;
 }
 
-/* "1e-2", "1/3.6", "pi/180", "180/pi"; NULL where the factor has no such form. Free with free(). */
+/* "1e-2", "1/3.6", "pi/180", "180/pi"; NULL where the factor has no such form. */
 static char *factor_text(double factor, int pi_power) {
   char number[32], pi[32] = "pi";
   bool is_above = write_short(number, factor);
@@ -134,7 +134,5 @@ char *unit_remedy(const char *text) {
     remedy = format_text("expected %s%s", si,
                          strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
   else if (factor != NULL) remedy = format_text("expected %s, and the value times %s", si, factor);
-  free(factor);
-  free(si);
   return remedy;
 }

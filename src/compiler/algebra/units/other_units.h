@@ -4,7 +4,7 @@
 
 /*
  * What to write instead of a unit that unit_parse() refuses, for example "expected kg/m3, and the value times 1e3" for
- * "g/cm3"; NULL where that is not known. To be freed with free().
+ * "g/cm3"; NULL where that is not known.
  */
 char *unit_remedy(const char *text);
 

@@ -24,7 +24,7 @@ extern const struct Dimension dimension_unknown, dimension_one;
  */
 bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
 
-/* The unit in base units, for example "kg.m2/s2"; "1" without any; to be freed with free(). */
+/* The unit in base units, for example "kg.m2/s2"; "1" without any. */
 char *unit_text(struct Dimension dimension);
 
 /* first * second^power; unknown where either is. */

@@ -1,7 +1,6 @@
 #include "mechanics/mass_matrix/elimination.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "base/sorting.h"
@@ -66,7 +65,6 @@ static struct Set *neighbours_of(size_t count, const struct Position *positions,
     sets[column].items[sets[column].count++] = row;
   }
   for (size_t i = 0; i < count; i++) sort_sizes(sets[i].items, sets[i].count);
-  free(degree);
   return sets;
 }
 
@@ -80,7 +78,6 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
     while (i < set->count && set->items[i] == next) i++;
     while (j < others->count && others->items[j] == next) j++;
   }
-  free(set->items);
   *set = joined;
 }
 
@@ -111,8 +108,6 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
     place[row] = next;
     order[next++] = row;
   }
-  free(is_eliminated);
-  free(queue.items);
 }
 
 static struct Elimination full_elimination(size_t count) {
@@ -145,9 +140,5 @@ struct Elimination eliminate(const struct Graph *graph, size_t count, size_t lat
     for (size_t k = 0; k < set->count; k++) result.column[end[place[set->items[k]]]++] = column;
     result.column[end[column]++] = column;
   }
-  for (size_t i = 0; i < count; i++) free(sets[i].items);
-  free(sets);
-  free(place);
-  free(end);
   return result;
 }

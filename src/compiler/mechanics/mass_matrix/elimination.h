@@ -24,8 +24,7 @@ struct Position {
  * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
  * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree
  * fills nothing in, and a full matrix stays as it is. A row from late on is not taken before its neighbours below late;
- * late is count for none. Its work is counted in the graph; beyond the limit the result is no elimination. The caller frees
- * the three arrays.
+ * late is count for none. Its work is counted in the graph; beyond the limit the result is no elimination.
  */
 struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
                              size_t position_count);

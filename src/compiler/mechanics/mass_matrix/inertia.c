@@ -1,7 +1,5 @@
 #include "mechanics/mass_matrix/inertia.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
@@ -47,7 +45,6 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
   for (size_t k = from; k < to; k++)
     block->mass[find_coordinates(inertia, elements->positions[k].row, elements->positions[k].column)] =
         elements->nodes[k];
-  free(local);
 }
 
 /* count: all rows, the last of which are those of constraints. */
@@ -67,12 +64,8 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
   for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
-  for (size_t b = 0; b < components.count; b++) {
+  for (size_t b = 0; b < components.count; b++)
     create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
-    free(members[b]);
-  }
-  free(members);
-  free(start);
   return inertia;
 }
 
@@ -116,11 +109,8 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   struct Elements elements = elements_of(model, momentum);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
-  if (!is_right || border->count > 0) {
-    inertia_free(inertia);
+  if (!is_right || border->count > 0)
     inertia = is_right ? create_bordered(model->graph, count, &elements, border) : NULL;
-  }
-  elements_free(&elements);
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
   bool power_has_accelerations = (model->drive_count > 0 || model->inputs_move) && model->work_line > 0;
@@ -132,25 +122,6 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   }
   pivots_factor(model->graph, inertia);
   return inertia;
-}
-
-void inertia_free(struct Inertia *inertia) {
-  if (inertia == NULL) return;
-  for (size_t b = 0; b < inertia->block_count; b++) {
-    struct InertiaBlock *block = &inertia->blocks[b];
-    free(block->coordinates);
-    free(block->start);
-    free(block->column);
-    free(block->mass);
-    free(block->factor);
-    free(block->forces);
-    free(block->oblique);
-  }
-  free(inertia->blocks);
-  free(inertia->block_of);
-  free(inertia->place_of);
-  free(inertia->pivots);
-  free(inertia);
 }
 
 static size_t *copy_sizes(const size_t *sizes, size_t count) {
@@ -220,7 +191,6 @@ void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Nod
     if (block->is_unrolled) block_solve(graph, block, x);
     for (size_t i = 0; i < block->count; i++) solution[block->coordinates[i]] = x[i];
   }
-  free(x);
 }
 
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {

@@ -60,11 +60,10 @@ struct Border {
 
 /*
  * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
- * singular everywhere or not positive at the start values; NULL then. Free with inertia_free().
+ * singular everywhere or not positive at the start values; NULL then.
  */
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
                                struct Diagnostics *diagnostics);
-void inertia_free(struct Inertia *inertia);
 
 /* The same matrix with each symbol s replaced by replacements[s], its factors and pivots too. */
 struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements);

@@ -18,11 +18,6 @@ void elements_append(struct Elements *elements, size_t row, size_t column, Node 
   elements->nodes[elements->count++] = node;
 }
 
-void elements_free(struct Elements *elements) {
-  free(elements->positions);
-  free(elements->nodes);
-}
-
 /* M_ij = d p_i / d v_j, row by row; a driven coordinate has 1 alone, for v' = its acceleration. */
 static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
   struct Graph *graph = model->graph;
@@ -38,7 +33,6 @@ static struct Elements differentiate_momenta(const struct Model *model, const No
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
       if (j <= i && !model->drives[j].given) elements_append(&elements, i, j, row.values[k]);
     }
-    gradient_free(&row);
   }
   return elements;
 }
@@ -58,7 +52,6 @@ struct Components find_components(size_t count, const struct Elements *elements)
   }
   for (size_t i = 0; i < count; i++)
     components.of[i] = parent[i] == i ? components.count++ : components.of[root_of(parent, i)];
-  free(parent);
   return components;
 }
 
@@ -77,9 +70,6 @@ size_t *sort_by_components(struct Elements *elements, const struct Components *c
                       elements->nodes[k - 1]);
     start[component + 1] = sorted.count;
   }
-  free(first);
-  free(next);
-  elements_free(elements);
   *elements = sorted;
   return start;
 }
@@ -109,9 +99,6 @@ static void differentiate_columns(const struct Model *model, const Node *momentu
     *seed = ZERO;
     for (size_t k = first; k < end; k++) nodes[parts[k].element] = column[k - first];
   }
-  free(seeds);
-  free(targets);
-  free(column);
 }
 
 /*
@@ -129,9 +116,7 @@ static void try_columns(const struct Model *model, const Node *momentum, const s
     Node *others = allocate(count, sizeof *others);
     differentiate_columns(model, momentum, parts, positions, count, others);
     take_shorter(model->graph, count, nodes, others);
-    free(others);
   }
-  free(parts);
 }
 
 /* Multiplies the elements of each component out where that makes them shorter, and drops those that vanish so. */
@@ -149,8 +134,6 @@ static void shorten_elements(const struct Model *model, const Node *momentum, st
     elements->nodes[kept++] = elements->nodes[k];
   }
   elements->count = kept;
-  free(components.of);
-  free(start);
 }
 
 struct Elements elements_of(const struct Model *model, const Node *momentum) {

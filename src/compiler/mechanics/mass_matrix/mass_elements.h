@@ -14,7 +14,6 @@ struct Elements {
 
 /* From the momenta dL/dv of all coordinates; none is ZERO. */
 struct Elements elements_of(const struct Model *model, const Node *momentum);
-void elements_free(struct Elements *elements);
 
 /* Appends an element; none at its position may be there. */
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node);
@@ -25,10 +24,10 @@ struct Components {
   size_t count;
 };
 
-/* count: coordinates. Free of with free(). */
+/* count: coordinates. */
 struct Components find_components(size_t count, const struct Elements *elements);
 
-/* Sorts the elements by components. Returns where each component begins, and the end; free with free(). */
+/* Sorts the elements by components. Returns where each component begins, and the end. */
 size_t *sort_by_components(struct Elements *elements, const struct Components *components);
 
 #endif

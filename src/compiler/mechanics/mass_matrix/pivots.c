@@ -1,7 +1,6 @@
 #include "mechanics/mass_matrix/pivots.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -41,8 +40,6 @@ static size_t end_in_block(const struct InertiaBlock *block, const double *value
     *sign = fabs(pivot) <= 1e-10 * fabs(values[block->mass[diagonal]]) ? 0 : pivot > 0 ? 1 : -1;
     if (*sign == 0 || (*sign < 0 && ending == NOT_POSITIVE)) found = block->coordinates[i];
   }
-  free(factor);
-  free(row);
   return found;
 }
 
@@ -94,8 +91,6 @@ static bool is_positive_at_start(const struct Model *model, const struct Inertia
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
   int sign = 0;
   long found = ending_coordinate(inertia, values, NOT_POSITIVE, &sign);
-  free(values);
-  free(symbols);
   if (found < 0 || found == (long)inertia->count || sign == 0) return true;
   report_error(
       diagnostics, model->coordinates.items[found].line,
@@ -117,9 +112,7 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
     double *values = graph_evaluate(graph, symbols);
     found = ending_coordinate(inertia, values, SINGULAR, &sign);
     if (found >= 0 && found < regular) singular = found;
-    free(values);
   }
-  free(symbols);
   if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
   report_error(diagnostics, model->coordinates.items[singular].line,
                "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
@@ -181,7 +174,6 @@ static void factor_block(struct Graph *graph, struct InertiaBlock *block) {
     factor[diagonal] = pivot;
     for (size_t k = start[i]; k < diagonal; k++) row[column[k]] = ZERO;
   }
-  free(row);
   block->factor = factor;
 }
 

@@ -1,7 +1,5 @@
 #include "program/expressions/accelerations.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "oblique.h"
 #include "saddle.h"
@@ -81,7 +79,6 @@ static size_t factor_operations(const struct InertiaBlock *block) {
   size_t *below = allocate(block->count, sizeof *below); /* the diagonal of each column */
   for (size_t i = 0; i < elements; i++) below[block->column[i]]++;
   for (size_t j = 0; j < block->count; j++) operations += (below[j] - 1) * below[j] + 2 * (below[j] - 1);
-  free(below);
   return operations;
 }
 
@@ -105,7 +102,6 @@ void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
     struct NodeList elements = {0};
     append_elements(&elements, block);
     values_compute(values, elements.nodes, elements.count, false);
-    free(elements.nodes);
     append_masses(values, &blocks->items[b]);
     append_factor(values, blocks, b);
   }
@@ -127,7 +123,6 @@ static void append_block(struct Values *values, const struct Equations *equation
     if (with_forces || block->coordinates[i] < equations->count)
       routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
                      place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-  free(right_side);
 }
 
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
@@ -135,7 +130,6 @@ void append_accelerations(struct Values *values, const struct Equations *equatio
   const struct Inertia *inertia = equations->inertia;
   struct NodeList targets = accelerations_targets(values->graph, equations);
   values_compute(values, targets.nodes, targets.count, false);
-  free(targets.nodes);
   for (size_t i = 0; i < inertia->pivot_count; i++)
     if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
   for (size_t i = 0; i < equations->count; i++)

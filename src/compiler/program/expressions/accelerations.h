@@ -18,13 +18,12 @@ struct LoopedBlocks {
   size_t mass_count, side_count; /* of all blocks together */
 };
 
-/* Free items with free(). */
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations);
 
 /* The elements of K in a block. */
 void append_elements(struct NodeList *targets, const struct InertiaBlock *block);
 
-/* All nodes that the accelerations rest on. Free its nodes with free(). */
+/* All nodes that the accelerations rest on. */
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations);
 
 /* Whether the pivot depends on parameters alone, so that it is checked when they change. */

@@ -1,7 +1,6 @@
 #include "program/expressions/expressions.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/differentiate.h"
 #include "algebra/kinks.h"
@@ -24,7 +23,6 @@ static Node *create_seeds(struct Graph *graph) {
     if (kind == DISPLACEMENT || kind == REACTION || kind == MODE) continue; /* 0, replaced, or held */
     char *name = format_text("d %s", graph->symbols[i].name);
     seeds[i] = graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, name);
-    free(name);
   }
   return seeds;
 }
@@ -43,7 +41,6 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
   inertia_solve(graph, equations->inertia, right, result);
   for (size_t i = 0; i < n; i++)
     if (is_looped(equations, i)) result[i] = right[i];
-  free(right);
 }
 
 /*
@@ -68,7 +65,6 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
     corrections->position[n + j] = negate(graph, constraints->position[j]);
     corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
   }
-  free(moved);
 }
 
 static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
@@ -84,7 +80,6 @@ static void add_push(const struct Model *model, Node along, enum SymbolKind kind
     if (model->drives[coordinate].given) continue;
     push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
   }
-  gradient_free(&gradient);
 }
 
 /* Contacts push along their gaps, frictions along their velocities. */
@@ -127,8 +122,6 @@ static void create_results(struct Expressions *expressions, const Node *seeds) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (entry->kind == VARIABLE_RESULT && is_unknown(entry)) expressions->result_along[entry->index] = along[next++];
   }
-  free(along);
-  free(outputs.nodes);
 }
 
 static void create_initial(struct Expressions *expressions, const Node *seeds) {
@@ -155,7 +148,6 @@ static void create_directional(struct Expressions *expressions) {
   const struct Elements *jacobian = &expressions->equations->constraints->jacobian;
   expressions->constraints_along = allocate(jacobian->count, sizeof(Node));
   derivative_along(graph, jacobian->nodes, jacobian->count, seeds, expressions->constraints_along);
-  free(seeds);
 }
 
 static void create_linear(struct Expressions *expressions, struct Diagnostics *diagnostics) {
@@ -219,7 +211,6 @@ static void create_watched_series(struct Expressions *expressions) {
   for (size_t i = 0; i < switching->watched_count; i++)
     if (kink_without_series_of(graph, &switching->watched[i], 1) == NULL) append_node(&watched, switching->watched[i]);
   expressions->watched_series = series_plan_of_outputs(graph, watched.nodes, watched.count);
-  free(watched.nodes);
 }
 
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
@@ -237,7 +228,6 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   if (graph_limit(model->graph) != NULL)
     report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
   if (diagnostics->errors == errors) return expressions;
-  expressions_free(expressions);
   return NULL;
 }
 
@@ -278,24 +268,4 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   for (int i = 0; i < 3; i++)
     if (plans[i] != NULL) append_nodes(&targets, plans[i]->targets.nodes, plans[i]->targets.count);
   return targets;
-}
-
-void expressions_free(struct Expressions *expressions) {
-  if (expressions == NULL) return;
-  linear_system_free(expressions->linear);
-  series_plan_free(expressions->series);
-  series_plan_free(expressions->output_series);
-  series_plan_free(expressions->watched_series);
-  jacobian_free(expressions->jacobian);
-  free(expressions->along);
-  free(expressions->initial);
-  free(expressions->initial_along);
-  free(expressions->constraints_along);
-  free(expressions->corrections.position);
-  free(expressions->corrections.velocity);
-  free(expressions->corrections.slope);
-  free(expressions->corrections.push);
-  free(expressions->result);
-  free(expressions->result_along);
-  free(expressions);
 }

@@ -57,12 +57,11 @@ struct Expressions {
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
 };
 
-/* Reports errors where the chosen solver does not fit the system; NULL then. Free with expressions_free(). */
+/* Reports errors where the chosen solver does not fit the system; NULL then. */
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Diagnostics *diagnostics);
-void expressions_free(struct Expressions *expressions);
 
-/* All nodes that are computed. Free its nodes with free(). */
+/* All nodes that are computed. */
 struct NodeList expressions_targets(const struct Expressions *expressions);
 
 #endif

@@ -40,7 +40,6 @@ static void append_gradient(struct ElementList *list, struct Graph *graph, size_
   struct Gradient gradient = gradient_by_kinds(graph, target, STATE_KINDS);
   for (size_t i = 0; i < gradient.count; i++)
     append(list, row, column_of(graph, coordinates, gradient.symbols[i]), gradient.values[i]);
-  gradient_free(&gradient);
 }
 
 /* The elements of one column in the rows of a block: M da = -d(M a - right_side), solved where the block is small. */
@@ -68,8 +67,6 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
       right[residual.items[next].row] = negate(graph, residual.items[next].value);
     append_column(list, graph, equations, block, column, right);
   }
-  free(right);
-  free(residual.items);
 }
 
 /* Rows beyond the states are those of constraints. */
@@ -106,16 +103,5 @@ struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Eq
   if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
   struct JacobianExpressions *jacobian =
       list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->has_work);
-  free(list.items);
   return jacobian;
-}
-
-void jacobian_free(struct JacobianExpressions *jacobian) {
-  if (jacobian == NULL) return;
-  free(jacobian->start);
-  free(jacobian->row);
-  free(jacobian->value);
-  free(jacobian->sides);
-  lu_pattern_free(jacobian->factors);
-  free(jacobian);
 }

@@ -7,8 +7,7 @@
 /* More elements than this are refused: where M couples all coordinates, each depends on all others. */
 enum { JACOBIAN_LIMIT = 2500000 };
 
-/* NULL where there are more than JACOBIAN_LIMIT elements. Free with jacobian_free(). */
+/* NULL where there are more than JACOBIAN_LIMIT elements. */
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations);
-void jacobian_free(struct JacobianExpressions *jacobian);
 
 #endif

@@ -38,16 +38,6 @@ struct Elimination *lu_pattern_create(const struct Graph *graph, const struct Ja
   struct Position *positions = allocate(jacobian->count + coordinates, sizeof *positions);
   struct Elimination *pattern = allocate(1, sizeof *pattern);
   *pattern = eliminate(graph, coordinates, coordinates, positions, find_positions(jacobian, coordinates, positions));
-  free(positions);
   if (is_sparse(pattern, coordinates)) return pattern;
-  lu_pattern_free(pattern);
   return NULL;
-}
-
-void lu_pattern_free(struct Elimination *pattern) {
-  if (pattern == NULL) return;
-  free(pattern->order);
-  free(pattern->start);
-  free(pattern->column);
-  free(pattern);
 }

@@ -5,9 +5,8 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "program/expressions/expressions.h"
 
-/* For so many coordinates; NULL where full matrices are cheaper. Free with lu_pattern_free(). */
+/* For so many coordinates; NULL where full matrices are cheaper. */
 struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
                                       size_t coordinates);
-void lu_pattern_free(struct Elimination *pattern);
 
 #endif

@@ -1,7 +1,5 @@
 #include "program/expressions/series_plan.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/functions.h"
 #include "base/memory.h"
@@ -50,7 +48,6 @@ static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
   }
   plan->slope = reallocate(slope, graph->count, sizeof *slope);
   for (size_t i = size; i < graph->count; i++) plan->slope[i] = ZERO;
-  free(needed);
 }
 
 /* Adds the auxiliary nodes of all nodes that the targets need, and theirs, until there are no new ones. */
@@ -71,9 +68,7 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
       bool is_known = auxiliary == ZERO || auxiliary == node || auxiliary == graph->vertices[node].left;
       if (!is_known) append_node(&plan->targets, auxiliary);
     }
-    free(needed);
   }
-  free(visited);
 }
 
 /* The plan with its targets given. */
@@ -87,7 +82,6 @@ static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
   plan->auxiliary = allocate(size, sizeof *plan->auxiliary);
   for (Node node = 0; node < size; node++)
     if (needed[node] && !graph_is_constant_in_time(graph, node)) plan->auxiliary[node] = auxiliary_of(graph, node);
-  free(needed);
   return plan;
 }
 
@@ -102,12 +96,4 @@ struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outpu
   struct SeriesPlan *plan = allocate(1, sizeof *plan);
   append_nodes(&plan->targets, outputs, count);
   return finish(plan, graph);
-}
-
-void series_plan_free(struct SeriesPlan *plan) {
-  if (plan == NULL) return;
-  free(plan->targets.nodes);
-  free(plan->auxiliary);
-  free(plan->slope);
-  free(plan);
 }

@@ -17,11 +17,10 @@ struct SeriesPlan {
   Node *auxiliary; /* for each node of the graph, the node that its recurrence rests on, see functions.h; ZERO: none */
 };
 
-/* For the motion; the equations have no kink without a series. Free with series_plan_free(). */
+/* For the motion; the equations have no kink without a series. */
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
 
-/* For expressions of the motion, without kinks. Free with series_plan_free(). */
+/* For expressions of the motion, without kinks. */
 struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);
-void series_plan_free(struct SeriesPlan *plan);
 
 #endif

@@ -1,7 +1,6 @@
 #include "program/series/limits.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/functions.h"
@@ -198,9 +197,5 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
       check_division(&list, form.left, form.right);
   }
   find_covered(&list);
-  struct LimitChecks checks = take_rows(builder, &list);
-  free(openers);
-  free(list.items);
-  free(list.first);
-  return checks;
+  return take_rows(builder, &list);
 }

@@ -18,7 +18,7 @@ struct LimitFacts {
 
 const struct LimitFacts *limit_facts(enum LimitRule rule);
 
-/* The checks for all nodes of the series, whose operands have rows from now on. Free items with free(). */
+/* The checks for all nodes of the series, whose operands have rows from now on. */
 struct LimitChecks limits_of(struct SeriesBuilder *builder);
 
 #endif

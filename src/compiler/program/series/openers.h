@@ -16,7 +16,7 @@ struct Openers {
   bool always;
 };
 
-/* One for each node of the graph; NULL where there are no gates. Free with free(). */
+/* One for each node of the graph; NULL where there are no gates. */
 struct Openers *openers_of(const struct Graph *graph, const struct SeriesPlan *plan);
 
 #endif

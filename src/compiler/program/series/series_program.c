@@ -1,7 +1,5 @@
 #include "program/series/series_program.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "program/series/series_builder.h"
 
@@ -23,7 +21,6 @@ static void find_computed(struct SeriesBuilder *builder) {
   }
   for (size_t i = 0; i < cone->count; i++)
     if (builder->is_computed[cone->nodes[i]]) append_node(&builder->nodes, cone->nodes[i]);
-  free(below);
 }
 
 static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const struct Values *values) {
@@ -43,17 +40,6 @@ static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const
   needs_collect(builder->needs, plan->targets.nodes, plan->targets.count, false);
   find_computed(builder);
   return builder;
-}
-
-static void builder_free(struct SeriesBuilder *builder) {
-  needs_free(builder->needs);
-  free(builder->nodes.nodes);
-  free(builder->is_computed);
-  free(builder->has_row);
-  free(builder->is_done);
-  free(builder->rate);
-  free(builder->inverse);
-  free(builder);
 }
 
 static void append_next(struct SeriesBuilder *builder, Node node);
@@ -115,14 +101,7 @@ static struct WholeRows whole_rows_create(const struct SeriesBuilder *builder, c
     for (size_t i = 0; i < count && !filling; i++) rows.start[i + 1] = rows.start[i] + next[i];
     for (size_t i = 0; i < count; i++) next[i] = rows.start[i];
   }
-  free(next);
   return rows;
-}
-
-static void whole_rows_free(struct WholeRows *rows) {
-  free(rows->start);
-  free(rows->column);
-  free(rows->mass);
 }
 
 /* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
@@ -152,7 +131,6 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
   for (size_t i = 0; i < block->count; i++)
     routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-  whole_rows_free(&rows);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Place derivative) {
@@ -210,7 +188,6 @@ static bool *find_used(const struct SeriesBuilder *builder) {
     for (int j = 0; j < opcode_arity(instruction->opcode) && is_used[i]; j++)
       if ((int)space_of(instruction->operands[j]) == SPACE_OF_NODES) is_read[index_in(instruction->operands[j])] = true;
   }
-  free(is_read);
   return is_used;
 }
 
@@ -227,7 +204,6 @@ static struct Routine *settle(struct Rows *rows) {
     Place result = from->opcode == SERIES_SOLVE ? from->result : settled(rows, from->result);
     routine_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
   }
-  free(is_used);
   return rows->order;
 }
 
@@ -250,13 +226,6 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   return rows;
 }
 
-static void rows_free(struct Rows *rows) {
-  free(rows->row);
-  free(rows->local);
-  free(rows->has_local);
-  free(rows->factor);
-}
-
 /* The final order, and the places of the limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
   program->order = settle(rows);
@@ -276,7 +245,6 @@ static void compute_first(const struct SeriesBuilder *builder, struct Values *va
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (builder->has_row[builder->nodes.nodes[i]]) append_node(&targets, builder->nodes.nodes[i]);
   values_compute(values, targets.nodes, targets.count, false);
-  free(targets.nodes);
 }
 
 /* Coefficient 0 of all rows, and the inverses of some. */
@@ -320,9 +288,6 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
                      place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
   }
   if (expressions->equations->has_work) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
-  rows_free(&rows);
-  routine_free(builder->order);
-  builder_free(builder);
   return program;
 }
 
@@ -356,9 +321,6 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   compute_first(builder, values, expressions->result, count);
   copy_first(&rows, values);
   for (size_t i = 0; i < count; i++) values_copy(values, place_in(SPACE_TARGET_ROW, i), expressions->result[i]);
-  rows_free(&rows);
-  routine_free(builder->order);
-  builder_free(builder);
   return program;
 }
 
@@ -380,18 +342,6 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   for (size_t i = 0; i < forces; i++)
     routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
                    place_in(SPACE_ACCELERATION, i), 0, 0);
-  rows_free(&rows);
-  routine_free(builder->order);
-  builder_free(builder);
   if (program->limit.count > 0) return program;
-  series_program_free(program);
   return NULL;
-}
-
-void series_program_free(struct SeriesProgram *program) {
-  if (program == NULL) return;
-  routine_free(program->start);
-  routine_free(program->order);
-  free(program->limit.items);
-  free(program);
 }

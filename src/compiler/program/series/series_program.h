@@ -20,7 +20,7 @@ struct SeriesProgram {
   size_t recurrences; /* in an order */
 };
 
-/* For the motion. Free with series_program_free(). */
+/* For the motion. */
 struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
                                                struct Values *values);
 
@@ -32,7 +32,5 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
  * where nothing limits them.
  */
 struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values);
-
-void series_program_free(struct SeriesProgram *program);
 
 #endif

@@ -1,7 +1,5 @@
 #include "program/values/form.h"
 
-#include <stdlib.h>
-
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "program/values/prepared.h"
@@ -11,13 +9,6 @@ struct Needs *needs_create(const struct Graph *graph) {
   needs->graph = graph;
   needs->cone = cone_create();
   return needs;
-}
-
-void needs_free(struct Needs *needs) {
-  if (needs == NULL) return;
-  cone_free(needs->cone);
-  free(needs->uses);
-  free(needs);
 }
 
 static bool is_leaf(const struct Graph *graph, Node node) {

@@ -25,7 +25,6 @@ struct Needs {
 };
 
 struct Needs *needs_create(const struct Graph *graph);
-void needs_free(struct Needs *needs);
 
 /* Replaces what was collected before. */
 void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing);

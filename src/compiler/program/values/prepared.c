@@ -1,7 +1,5 @@
 #include "program/values/prepared.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 
 bool is_of_parameters(const struct Graph *graph, Node node) {
@@ -21,7 +19,6 @@ static void mark(const struct Graph *graph, struct NodeList targets, size_t *slo
     if (is_of_parameters(graph, vertex->left)) slot[vertex->left] = 1;
     if (arity == 2 && is_of_parameters(graph, vertex->right)) slot[vertex->right] = 1;
   }
-  free(needed);
 }
 
 struct Prepared *prepared_create(const struct Graph *graph, struct NodeList targets) {
@@ -37,11 +34,4 @@ struct Prepared *prepared_create(const struct Graph *graph, struct NodeList targ
   prepared->nodes = nodes.nodes;
   prepared->count = nodes.count;
   return prepared;
-}
-
-void prepared_free(struct Prepared *prepared) {
-  if (prepared == NULL) return;
-  free(prepared->nodes);
-  free(prepared->slot);
-  free(prepared);
 }

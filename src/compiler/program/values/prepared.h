@@ -15,6 +15,5 @@ bool is_of_parameters(const struct Graph *graph, Node node);
 
 /* The prepared values that the targets need, directly or as operands of what changes in time. */
 struct Prepared *prepared_create(const struct Graph *graph, struct NodeList targets);
-void prepared_free(struct Prepared *prepared);
 
 #endif

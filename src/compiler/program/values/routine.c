@@ -1,7 +1,5 @@
 #include "program/values/routine.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 
 /* Checks and blocks have statements of their own, which the writers know. */
@@ -79,12 +77,6 @@ int opcode_arity(enum Opcode opcode) {
 
 struct Routine *routine_create(void) {
   return allocate(1, sizeof(struct Routine));
-}
-
-void routine_free(struct Routine *routine) {
-  if (routine == NULL) return;
-  free(routine->instructions);
-  free(routine);
 }
 
 static void append(struct Routine *routine, struct Instruction instruction) {

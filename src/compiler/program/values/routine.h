@@ -69,7 +69,6 @@ bool opcode_has_result(enum Opcode opcode);
 int opcode_arity(enum Opcode opcode);
 
 struct Routine *routine_create(void);
-void routine_free(struct Routine *routine);
 
 /* Appends an instruction; operands that the opcode does not have are ignored. */
 void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c);

@@ -1,7 +1,6 @@
 #include "program/values/values.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 
@@ -14,15 +13,6 @@ struct Values *values_create(const struct Graph *graph, const struct Prepared *p
                             .local = allocate(graph->count, sizeof(Place)),
                             .has_local = allocate(graph->count, sizeof(bool))};
   return values;
-}
-
-void values_free(struct Values *values) {
-  if (values == NULL) return;
-  needs_free(values->needs);
-  free(values->local);
-  free(values->has_local);
-  free(values->computed.nodes);
-  free(values);
 }
 
 struct Routine *values_begin(struct Values *values) {
@@ -132,5 +122,4 @@ void values_compute(struct Values *values, const Node *targets, size_t count, bo
   }
   for (size_t i = 0; i < cone->count; i++)
     if (needed[i] && is_missing(values, cone->nodes[i])) append(values, cone->nodes[i], form_of(needs, cone->nodes[i]));
-  free(needed);
 }

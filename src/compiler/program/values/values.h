@@ -18,7 +18,6 @@ struct Values {
 };
 
 struct Values *values_create(const struct Graph *graph, const struct Prepared *prepared, size_t coordinates);
-void values_free(struct Values *values);
 
 /* Begins a new routine, which the caller owns. */
 struct Routine *values_begin(struct Values *values);

@@ -1,7 +1,5 @@
 #include "read/context/attributes.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/units/other_units.h"
 #include "base/memory.h"
@@ -14,9 +12,7 @@ bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const c
 
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
   char *text = attribute(node, name);
-  bool right = text != NULL && number_in(reader, node, name, text, value);
-  free(text);
-  return right;
+  return text != NULL && number_in(reader, node, name, text, value);
 }
 
 static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
@@ -24,10 +20,7 @@ static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *na
   if (text == NULL) return NULL;
   struct Place place = {.line = xmlGetLineNo(node), .what = name};
   char *expanded = parse_name(reader->scope, text, place, parts);
-  char *full_name = expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
-  free(expanded);
-  free(text);
-  return full_name;
+  return expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
 }
 
 char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -46,8 +39,6 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   struct Place place = {
       .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
   if (*text != '\0') *value = parse_expression(reader->scope, text, place);
-  free(what);
-  free(text);
   return true;
 }
 
@@ -55,7 +46,6 @@ Node without_displacements(struct Reader *reader, long line, const char *what, N
   struct Graph *graph = reader->model->graph;
   if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
   if (reader->undisplaced_count < graph->symbol_count) { /* what has been read since may have switches */
-    free(reader->undisplaced);
     reader->undisplaced = undisplaced_symbols(graph);
     reader->undisplaced_count = graph->symbol_count;
   }
@@ -81,9 +71,7 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
   char *text = text_of(node);
   struct Place place = {
       .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
-  struct Quantity value = parse_expression(reader->scope, text, place);
-  free(text);
-  return value;
+  return parse_expression(reader->scope, text, place);
 }
 
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
@@ -108,10 +96,8 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
     char *remedy = unit_remedy(text);
     report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,
                  remedy != NULL ? remedy : problem);
-    free(remedy);
   }
   reader->scope->checks_units |= text != NULL;
-  free(text);
   return dimension;
 }
 
@@ -121,6 +107,4 @@ void require_unit(struct Reader *reader, long line, const char *what, struct Qua
   char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
   report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
                expected_unit);
-  free(actual_unit);
-  free(expected_unit);
 }

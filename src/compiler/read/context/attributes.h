@@ -73,7 +73,7 @@ bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const c
 
 /*
  * The full name in an attribute, its index worked out, of what the element declares; NULL where missing or after an
- * error. Free with free().
+ * error.
  */
 char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 

@@ -1,11 +1,10 @@
 #include "read/context/includes.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/platform.h"
+#include "base/paths.h"
 #include "read/robots/robot_system.h"
 #include "read/xml/xml.h"
 
@@ -20,13 +19,6 @@ struct Document {
   xmlDocPtr document;
 };
 
-static void free_source(struct Source *source) {
-  if (source->outer != NULL) free((char *)source->file);
-  free(source->canonical_path);
-  free(source->prefix);
-  free(source->origin);
-}
-
 void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root) {
   reader->includes = allocate(1, sizeof *reader->includes);
   *reader->includes = (struct Includes){names_create(), names_create(), names_create()};
@@ -40,15 +32,9 @@ void includes_end(struct Reader *reader) {
   struct Includes *includes = reader->includes;
   source_enter(reader, names_find(includes->sources, ""));
   reader->scope->prefix = ""; /* the scope lives longer */
-  for (size_t i = 0; i < includes->sources->capacity; i++)
-    if (includes->sources->places[i].text != NULL) free_source(includes->sources->places[i].meaning);
   for (size_t i = 0; i < includes->documents->capacity; i++)
     if (includes->documents->places[i].text != NULL)
       xmlFreeDoc(((struct Document *)includes->documents->places[i].meaning)->document);
-  names_free(includes->sources);
-  names_free(includes->documents);
-  names_free(includes->given);
-  free(includes);
   reader->includes = NULL;
 }
 
@@ -87,14 +73,11 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
   if (first == NULL) return true;
   char *circle = copy_text(source->file);
   for (const struct Source *s = source->outer;; s = s->outer) {
-    char *longer = format_text("%s -> %s", s->file, circle);
-    free(circle);
-    circle = longer;
+    circle = format_text("%s -> %s", s->file, circle);
     if (s == first) break;
   }
   report_error(reader->diagnostics, xmlGetLineNo(node),
                "files include each other in a circle: %s; expected one of them without the next", circle);
-  free(circle);
   return false;
 }
 
@@ -128,9 +111,6 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
     reader->diagnostics->errors += local.errors;
     names_set(reader->includes->documents, key, known);
   }
-  free(key);
-  free(base);
-  free(tool);
   return known->document;
 }
 
@@ -150,9 +130,6 @@ static void note_given(struct Reader *reader, const struct Source *source) {
       *given = (struct Given){.node = node, .source = source->outer, .target = source};
       names_set(reader->includes->given, full_name, given);
     }
-    free(full_name);
-    free(name);
-    free(text);
   }
 }
 
@@ -180,7 +157,6 @@ static struct Source *create_source(struct Reader *reader, xmlNodePtr node, cons
                             .include_line = outer->include_line > 0 ? outer->include_line : line,
                             .include = node,
                             .outer = outer};
-  free(file);
   names_set(reader->includes->sources, prefix, source);
   load(reader, node, source);
   return source;
@@ -198,8 +174,6 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
                  source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
     source = NULL;
   } else source = create_source(reader, node, name, prefix);
-  free(prefix);
-  free(name);
   return source != NULL && source->root != NULL ? source : NULL;
 }
 

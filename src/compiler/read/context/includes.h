@@ -38,7 +38,7 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node);
 /* Goes on in another file; returns the one before. */
 struct Source *source_enter(struct Reader *reader, struct Source *source);
 
-/* The path of a file that the present one names. Free with free(). */
+/* The path of a file that the present one names. */
 char *path_beside(const struct Reader *reader, const char *file);
 
 /* What is given to the element of this full name; NULL for nothing. Reports where another kind of element is given. */

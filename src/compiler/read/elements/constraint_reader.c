@@ -1,7 +1,6 @@
 #include "read/elements/constraint_reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/differentiate.h"
 #include "algebra/polynomials/rational.h"
@@ -20,7 +19,6 @@ static bool is_linear_in_velocities(struct Graph *graph, Node node) {
   struct Gradient slopes = gradient_by_kinds(graph, node, KIND(VELOCITY));
   bool is_linear = true;
   for (size_t i = 0; i < slopes.count; i++) is_linear &= !graph_depends_on(graph, slopes.values[i], VELOCITY);
-  gradient_free(&slopes);
   return is_linear;
 }
 
@@ -33,7 +31,6 @@ static bool is_moving(const struct Model *model, Node constraint) {
   for (size_t i = 0; i < graph->symbol_count; i++)
     at_rest[i] = graph->symbols[i].kind == VELOCITY ? ZERO : graph->symbols[i].node;
   substitute(graph, &constraint, 1, at_rest, &value);
-  free(at_rest);
   return simplify_fraction(graph, value) != ZERO;
 }
 
@@ -58,7 +55,6 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
                  is_input_rate(model, input) ? "the <input> itself in place of its derivative"
                                              : "derivatives=\"2\" of this <input>");
   }
-  gradient_free(&levers);
 }
 
 void read_constraint(struct Reader *reader, xmlNodePtr node) {

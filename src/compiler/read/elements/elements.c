@@ -34,7 +34,6 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   struct Quantity number = {
       .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
   if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
-  free(name);
 }
 
 static Node append_input_rate(struct Reader *reader) {
@@ -71,7 +70,6 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   position.start = velocity.start = 0.0; /* see start_expressions.h */
   char *fixed = attribute(node, "fixed");
   position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
-  free(fixed);
   position.nominal = nominal_attribute(reader, node, "nominal");
   velocity.nominal = nominal_attribute(reader, node, "velocityNominal");
   int index = (int)model->coordinates.count;
@@ -99,7 +97,6 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
                            dimension_multiply(displacement.dimension, unit_of("s"), -1.0), displacement.line);
   scope_set_time_derivative(reader->scope, displacement.node, rate);
   append_variable(&model->displacements, displacement);
-  free(name);
 }
 
 /* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
@@ -131,7 +128,6 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
   if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
   char *name = name_attribute(reader, node, "name");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
-  free(name);
   if (symbol == NULL) return; /* the name was taken, which is reported */
   const struct Variable *velocity = &model->velocities.items[symbol->index];
   if (velocity->dimension.known)
@@ -152,7 +148,6 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   output.node = without_displacements(reader, output.line, what, told);
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
-  free(what);
   output.line = scope_line(reader->scope, output.line);
   append_variable(&reader->model->outputs, output);
 }
@@ -174,7 +169,6 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   double *steps = &reader->model->max_steps;
   if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
     report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
-  free(method);
 }
 
 void read_experiment(struct Reader *reader, xmlNodePtr node) {
@@ -212,7 +206,6 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   const struct Given *given = given_for(reader, node, variable.name);
   if (is_given(given, "value")) { /* an expression like a definition */
     check_calculated(reader, given, node);
-    variable_free(&variable);
     return;
   }
   variable.start = 0.0;

@@ -1,5 +1,4 @@
 /* <event> and <set>. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/cone.h"
@@ -30,7 +29,6 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
     else
       report_error(reader->diagnostics, xmlGetLineNo(node), "<set %s=\"%s\">: there is no %s of this name",
                    targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
-    free(name);
   }
   if (given != 1)
     report_error(reader->diagnostics, xmlGetLineNo(node), "a <set> needs one of velocity, coordinate and mode");
@@ -84,7 +82,6 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
-  free(direction);
 }
 
 /* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */
@@ -103,7 +100,6 @@ static void collect_event(const struct Reader *reader, const struct Event *event
     for (size_t i = 0; i < switches->count; i++)
       if (cone_has(graph->cone, switches->items[i].mode)) roots[count++] = switches->items[i].indicator;
   }
-  free(roots);
 }
 
 /* Of accelerations, an event may look at the forces of contacts, frictions and constraints alone. */

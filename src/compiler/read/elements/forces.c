@@ -1,6 +1,5 @@
 #include "read/elements/forces.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/differentiate.h"
@@ -16,7 +15,7 @@ static bool are_shown(const struct Reader *reader) {
   return reader->diagnostics->errors < ERROR_LIMIT;
 }
 
-/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. Free with free(). */
+/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. */
 static char *meant_coordinate(const struct Reader *reader, const char *name) {
   const struct Model *model = reader->model;
   struct Similar similar = {.wanted = name};
@@ -51,7 +50,6 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
     char *meant = meant_coordinate(reader, coordinate);
     report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; %s", coordinate,
                  meant);
-    free(meant);
     return;
   }
   int index = symbol->index;
@@ -70,7 +68,6 @@ static void add_force(struct Model *model, Node position, Node force) {
     struct Quantity *sum = symbol->kind == TIME ? &model->driven_power : &model->forces[symbol->index];
     add_term(model, sum, multiply(graph, force, levers.values[i]));
   }
-  gradient_free(&levers);
 }
 
 static void append_point_force(struct Model *model, Node position, Node force) {
@@ -82,7 +79,6 @@ static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const ch
   char *meant = meant_body(reader, name);
   report_error(reader->diagnostics, xmlGetLineNo(node), "there is no %s '%s' for this %s; %s", what, name,
                (const char *)node->name, meant);
-  free(meant);
 }
 
 /* The components along the axes of the frame that the attribute in names, of a force or torque. */
@@ -138,7 +134,6 @@ static struct Vector driven_part(const struct Model *model, struct Vector veloci
     at_rest[i] = is_rate ? ZERO : symbol->node;
   }
   substitute(graph, velocity.along, 3, at_rest, velocity.along);
-  free(at_rest);
   return velocity;
 }
 
@@ -150,7 +145,6 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   for (size_t i = 0; i < levers.count; i++)
     add_term(model, &model->forces[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
-  gradient_free(&levers);
   add_term(model, &model->driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
   model->torques = make_room(model->torques, model->torque_count, sizeof *model->torques);
   model->torques[model->torque_count++] = (struct Torque){torque, displaced};
@@ -172,7 +166,6 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
     }
     add_torque(reader, line, torque, turned->pose.angular_velocity);
   }
-  free(name);
 }
 
 /* Whether the name was given in the file being read, not in one that it includes or is included by. */
@@ -220,6 +213,4 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
                  "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
   else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
   else add_cartesian_force(reader, node, on);
-  free(coordinate);
-  free(on);
 }

@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -90,7 +89,6 @@ static void take_row(struct Grid *grid, const char *line) {
                  line, count, surface->columns + 1);
     grid->lines.wrong = true;
   } else if (is_right && check_size(grid)) append_row(grid, numbers);
-  free(numbers);
 }
 
 static void take_line(struct TableLines *lines, const char *line) {

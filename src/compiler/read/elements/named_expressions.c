@@ -1,6 +1,5 @@
 #include "read/elements/named_expressions.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -83,7 +82,6 @@ void collect_components(struct Reader *reader, xmlNodePtr node) {
   char *name = name_of_body(reader, node);
   if (name != NULL && is_spatial(node)) collect_spatial(reader, node, name);
   else if (name != NULL) collect_planar(reader, node, name);
-  free(name);
 }
 
 void collect_value(struct Reader *reader, xmlNodePtr node) {
@@ -91,10 +89,7 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
   const struct Given *given = is_definition ? NULL : given_for(reader, node, name);
-  if (!is_definition && !has_value(node, given)) {
-    free(name);
-    return;
-  }
+  if (!is_definition && !has_value(node, given)) return;
   if (scope_find(reader->scope, name) == NULL) {
     struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source,
                                          is_given(given, "value") ? given : NULL};
@@ -102,5 +97,4 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
     return;
   }
   scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
-  free(name);
 }

@@ -2,7 +2,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -17,7 +16,6 @@ static enum VariableType type_of(xmlNodePtr node) {
   enum VariableType type = TYPE_BOOLEAN;
   while (text != NULL && type > TYPE_REAL && strcmp(text, type_names[type]) != 0) type--;
   if (text == NULL) type = TYPE_REAL;
-  free(text);
   return type;
 }
 
@@ -77,7 +75,6 @@ static void read_start(struct Reader *reader, xmlNodePtr node, const struct Give
   char *text = attribute(node, "start");
   if (text != NULL) read_value(reader, node, "start", text, variable);
   source_enter(reader, present);
-  free(text);
 }
 
 static struct Variable variable_of(struct Reader *reader, xmlNodePtr node) {
@@ -117,7 +114,6 @@ static void read_list(struct Reader *reader, xmlNodePtr node) {
   while (*next != '\0' && name != NULL) {
     char *text = format_text("%.*s", (int)strcspn(next, separators), next);
     struct Variable variable = variable_of(reader, node);
-    free(variable.name);
     variable.name = format_text("%s[%zu]", name, ++count);
     const struct Given *given = given_for(reader, node, variable.name);
     if (is_given(given, "value"))
@@ -130,12 +126,9 @@ static void read_list(struct Reader *reader, xmlNodePtr node) {
     declare(reader, node, given, variable);
     next += strlen(text);
     next += strspn(next, separators);
-    free(text);
   }
   if (count == 0 && name != NULL)
     report_error(reader->diagnostics, xmlGetLineNo(node), "the parameter '%s' has no values; expected numbers", name);
-  free(values);
-  free(name);
 }
 
 void read_parameter(struct Reader *reader, xmlNodePtr node) {
@@ -147,7 +140,6 @@ void read_parameter(struct Reader *reader, xmlNodePtr node) {
   const struct Given *given = given_for(reader, node, variable.name);
   if (has_value(node, given)) {
     check_calculated(reader, given, node);
-    variable_free(&variable);
     return;
   }
   variable.start = 0.0;

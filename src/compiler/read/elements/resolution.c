@@ -1,7 +1,5 @@
 #include "read/elements/resolution.h"
 
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "read/elements/named_expressions.h"
 
@@ -23,7 +21,6 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
                "definitions need each other in a circle: %s%s; expected one of them without the next", text,
                definitions->items[closing].name);
   source_enter(reader, present);
-  free(text);
 }
 
 /* Those that the present one waits for come before it, unless one of them waits for it. */

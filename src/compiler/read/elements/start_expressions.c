@@ -1,7 +1,6 @@
 #include "read/elements/start_expressions.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "read/context/includes.h"
 
@@ -39,6 +38,4 @@ void evaluate_start_expressions(struct Reader *reader) {
     evaluate_start(reader, &model->coordinates.items[i], values);
     evaluate_start(reader, &model->velocities.items[i], values);
   }
-  free(values);
-  free(symbols);
 }

@@ -1,7 +1,6 @@
 #include "read/elements/switching_reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/differentiate.h"
@@ -19,9 +18,7 @@ enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 Node new_mode(struct Reader *reader, const char *of, const char *what) {
   struct Switches *switches = &reader->model->switches;
   char *name = format_text("%s.%s", of, what);
-  Node mode = graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
-  free(name);
-  return mode;
+  return graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
 }
 
 /* One that expressions of events know by the name of the variable which tells it. */
@@ -29,7 +26,6 @@ static Node new_told_mode(struct Reader *reader, const struct Variable *constrai
   Node mode = new_mode(reader, constraint->name, what);
   char *name = format_text("%s.%s", constraint->name, what);
   scope_define(reader->scope, name, (struct Quantity){.node = mode, .dimension = dimension_one}, constraint->line);
-  free(name);
   return mode;
 }
 
@@ -80,7 +76,6 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
                  "a <stop> without min and max; expected one of them, or both");
   if (coordinate != NULL && has_attribute(node, "min")) append_contact(reader, end_of_stop(node, coordinate, "min"));
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
-  free(coordinate);
 }
 
 void declare_friction(struct Reader *reader, xmlNodePtr node) {
@@ -150,7 +145,6 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     Node way = subtract(graph, symbol->node, limit.node);
     set_contact(reader, node, number++, end == 0 ? way : negate(graph, way));
   }
-  free(name);
 }
 
 /* --- Friction --- */
@@ -173,7 +167,6 @@ static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantit
     const struct Variable *variable = &reader->model->velocities.items[symbol->index];
     *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
   }
-  free(name);
   return symbol != NULL;
 }
 
@@ -201,7 +194,6 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
                    "the %s of a friction is not linear in '%s'; expected a force such as mu*%s", what, symbol->name,
                    symbol->name);
   }
-  gradient_free(&gradient);
 }
 
 /* Sliding, it pushes against the velocity; sticking, it is the force of the constraint velocity = 0. */
@@ -236,7 +228,6 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
     struct Quantity *force = &model->forces[graph_symbol_of(graph, levers.symbols[i])->index];
     force->node = add(graph, force->node, multiply(graph, push, levers.values[i]));
   }
-  gradient_free(&levers);
 }
 
 void complete_friction_forces(struct Reader *reader) {
@@ -259,7 +250,6 @@ void complete_friction_forces(struct Reader *reader) {
                  &switches->events[i].assignments[j].value);
   for (size_t i = 0; i < model->outputs.count; i++)
     substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
-  free(replacements);
 }
 
 /* --- Branches --- */

@@ -36,7 +36,6 @@ static void take_lines(struct TableLines *lines, const char *text) {
       lines->take(lines, start);
       lines->is_heading = false;
     }
-    free(line);
     text += length;
     lines->line += *text == '\n';
     text += *text == '\n';
@@ -54,7 +53,6 @@ static char *text_of_file(const char *path) {
   fclose(file);
   close_text(copy, &text, &length);
   if (right) return text;
-  free(text);
   return NULL;
 }
 
@@ -75,8 +73,6 @@ void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *
     lines->is_heading = false;
     diagnostics->file = present;
   }
-  free(text);
-  free(path);
 }
 
 /* The line of a text is that of its end. */

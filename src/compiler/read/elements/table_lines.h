@@ -18,10 +18,7 @@ void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *
 /* The text of an element, or a part of it. */
 void table_lines_of_text(struct TableLines *lines, xmlNodePtr text);
 
-/*
- * The numbers at the beginning of a line, with blanks, a comma or a semicolon between them; *rest is what follows them. Free
- * with free().
- */
+/* The numbers at the beginning of a line, with blanks, a comma or a semicolon between them; *rest is what follows them. */
 double *table_numbers(const char *line, size_t *count, const char **rest);
 
 #endif

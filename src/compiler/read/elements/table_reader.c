@@ -1,7 +1,6 @@
 #include "read/elements/table_reader.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -54,7 +53,6 @@ static void take_line(struct TableLines *lines, const char *line) {
                  "'%.40s' is no point; expected two numbers, the argument and the value, such as 0.5 2", line);
     lines->wrong = true;
   }
-  free(numbers);
 }
 
 /* <point x y/> or text. */
@@ -95,10 +93,7 @@ static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const ch
                  "the table '%s' has %zu points; expected at least two, as <point x=\"0\" y=\"1\"/>, as lines of two "
                  "numbers, or in a file",
                  name, points.curve.count);
-  if (points.lines.wrong || points.curve.count < 2) {
-    curve_free(&points.curve);
-    return NULL;
-  }
+  if (points.lines.wrong || points.curve.count < 2) return NULL;
   struct Table *table = create_table(reader, node);
   table->curve = points.curve;
   curve_interpolate(&table->curve, interpolation_of(node));
@@ -107,10 +102,7 @@ static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const ch
 
 static struct Table *read_surface(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
   struct Surface surface = {0};
-  if (!read_grid(reader, node, name, file, &surface)) {
-    surface_free(&surface);
-    return NULL;
-  }
+  if (!read_grid(reader, node, name, file, &surface)) return NULL;
   struct Table *table = create_table(reader, node);
   table->has_two_arguments = true;
   table->surface = surface;
@@ -128,10 +120,4 @@ void read_table(struct Reader *reader, xmlNodePtr node) {
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   bool is_new = name != NULL && scope_define(reader->scope, name, word, xmlGetLineNo(node));
   if (is_new && table != NULL) names_set(reader->scope->tables, name, table);
-  else if (table != NULL) {
-    table_free(table);
-    free(table);
-  }
-  free(file);
-  free(name);
 }

@@ -104,9 +104,7 @@ static char *read_index(struct Parser *parser, char *name) {
     if (index < 0)
       FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
     expect_character(parser, ']', "after the only index of a name");
-    char *indexed = format_text("%s[%ld]", name, index);
-    free(name);
-    name = indexed;
+    name = format_text("%s[%ld]", name, index);
   }
   return name;
 }
@@ -118,8 +116,6 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
          (isalpha((unsigned char)parser->next[1]) || parser->next[1] == '_')) {
     parser->next++;
     char *part = read_identifier(parser), *whole = format_text("%s.%s", name, part);
-    free(part);
-    free(name);
     name = read_index(parser, whole);
   }
   return name;
@@ -164,7 +160,6 @@ static struct Quantity look_up(struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   const struct Quantity *quantity = scope_find(parser->scope, full_name);
   bool waits = quantity == NULL && definitions_wait_for(parser->scope->definitions, full_name);
-  free(full_name);
   if (waits) return nothing;
   if (quantity == NULL) {
     report_unknown_name(parser, name);
@@ -229,8 +224,6 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
     total = quantity_add(parser, total, parse_sum(parser));
   }
   scope_remove(parser->scope, index);
-  free(index_name);
-  free(index);
   expect_character(parser, ')', "at the end of sum(...)");
   return total;
 }
@@ -244,7 +237,6 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   parser->place.what = what;
   struct Quantity value = parse_sum(parser);
   parser->place = place;
-  free(what);
   expect_character(parser, ')', "at the end of der(...)");
   Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
@@ -269,10 +261,7 @@ static struct Quantity parse_table(struct Parser *parser, const struct Table *ta
 
 /* The table of a name as the file calls it; NULL where there is none. */
 static const struct Table *find_table(const struct Parser *parser, const char *name) {
-  char *full_name = scope_full_name(parser->scope, name);
-  const struct Table *table = table_named(parser->scope, full_name);
-  free(full_name);
-  return table;
+  return table_named(parser->scope, scope_full_name(parser->scope, name));
 }
 
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
@@ -290,14 +279,10 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   int arity = is_root ? 1 : operation_arity(operation);
   struct Quantity a = parse_sum(parser), b = nothing;
   if (arity == 2) {
-    char *context = format_text("between the two arguments of %s", name);
-    expect_character(parser, ',', context);
-    free(context);
+    expect_character(parser, ',', format_text("between the two arguments of %s", name));
     if (!parser->failed) b = parse_sum(parser);
   }
-  char *context = format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name);
-  expect_character(parser, ')', context);
-  free(context);
+  expect_character(parser, ')', format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name));
   if (parser->failed) return nothing;
   if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
   return operation == POWER ? quantity_power(parser, a, b) : quantity_function(parser, operation, a, b);
@@ -342,7 +327,6 @@ static struct Quantity parse_primary(struct Parser *parser) {
   }
   struct Quantity value = nothing;
   if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);
-  free(name);
   return value;
 }
 
@@ -452,6 +436,5 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place, bool
     FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]%s", place.what, text,
          parts ? ", also of what is included, as in motor.theta" : "");
   if (!parser.failed) return name;
-  free(name);
   return NULL;
 }

@@ -12,7 +12,6 @@ static void require_dimensionless(struct Parser *parser, struct Quantity value, 
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
   char *unit = unit_text(value.dimension);
   FAIL(parser, "%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what, unit);
-  free(unit);
 }
 
 /* The dimension of a sum, a minimum and the like, whose operands must agree. */
@@ -24,8 +23,6 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
     char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
     FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
          where);
-    free(first);
-    free(second);
   }
   return a.dimension.known ? a.dimension : b.dimension;
 }
@@ -121,7 +118,6 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
     char *what = format_text("the argument of %s", operation_name(operation));
     require_dimensionless(parser, a, what);
     if (has_two) require_dimensionless(parser, b, what);
-    free(what);
     return result;
   }
   struct Dimension common = has_two ? common_dimension(parser, a, b, operation_name(operation)) : a.dimension;
@@ -135,8 +131,6 @@ static bool check_argument(struct Parser *parser, struct Dimension unit, const c
   char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
   FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s", parser->place.what, which,
        name, actual, expected);
-  free(actual);
-  free(expected);
   return false;
 }
 

@@ -1,6 +1,5 @@
 #include "read/expressions/unknown_names.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/functions.h"
@@ -22,7 +21,6 @@ static bool is_known(const struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   bool known =
       scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
-  free(full_name);
   return known;
 }
 
@@ -36,10 +34,8 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
     char *name = format_text("%.*s.%s", (int)length, body, components[i]);
     if (is_known(parser, name)) {
       char *longer = format_text("%s%s%s", list, *list != '\0' ? " or " : "", name);
-      free(list);
       list = longer;
     }
-    free(name);
   }
   return list;
 }
@@ -48,9 +44,7 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
 static int count_indices(const struct Parser *parser, const char *name) {
   enum { LIMIT = 1000 };
   for (int i = 1; i <= LIMIT; i++) {
-    char *indexed = format_text("%s[%d]", name, i);
-    bool known = is_known(parser, indexed);
-    free(indexed);
+    bool known = is_known(parser, format_text("%s[%d]", name, i));
     if (!known) return i - 1;
   }
   return LIMIT;
@@ -74,7 +68,6 @@ void report_unknown_name(struct Parser *parser, const char *name) {
   else if (similar != NULL)
     FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));
-  free(components);
 }
 
 void report_reserved(struct Parser *parser, const char *name) {
@@ -82,8 +75,6 @@ void report_reserved(struct Parser *parser, const char *name) {
   bool is_table = table_named(parser->scope, full_name) != NULL;
   char *force = format_text("%s.force", full_name);
   bool is_constraint = scope_find(parser->scope, force) != NULL;
-  free(full_name);
-  free(force);
   if (is_constraint)
     FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
          name, name);
@@ -133,6 +124,4 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   else if (is_known(parser, indexed))
     FAIL(parser, "%s: '%s' is no function; write %s[...] for an index", parser->place.what, name, name);
   else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
-  free(indexed);
-  free(names);
 }

@@ -1,7 +1,5 @@
 #include "read/names/branches.h"
 
-#include <stdlib.h>
-
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
@@ -40,7 +38,6 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
       return switches->items[i].mode;
   char *name = format_text("%s in line %ld", function, scope_line(scope, line));
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
-  free(name);
   append_switch(switches, (struct Switch){.mode = mode,
                                           .indicator = indicator,
                                           .kinds = kinds_that_decide(scope, indicator),

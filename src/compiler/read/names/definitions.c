@@ -1,6 +1,5 @@
 #include "read/names/definitions.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -12,27 +11,10 @@ struct Definitions *definitions_create(void) {
   return definitions;
 }
 
-void definitions_free(struct Definitions *definitions) {
-  if (definitions == NULL) return;
-  for (size_t i = 0; i < definitions->count; i++) free(definitions->items[i].name);
-  while (definitions->last != NULL) {
-    struct Loop *loop = definitions->last;
-    definitions->last = loop->previous;
-    free(loop->index);
-    free(loop);
-  }
-  names_free(definitions->numbers);
-  free(definitions->items);
-  free(definitions->stack);
-  free(definitions);
-}
-
 void definitions_enter(struct Definitions *definitions, struct Loop loop) {
   struct Loop *own = allocate(1, sizeof *own);
   *own = loop;
   own->outer = definitions->present;
-  own->previous = definitions->last;
-  definitions->last = own;
   definitions->present = own;
 }
 

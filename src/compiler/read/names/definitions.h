@@ -29,7 +29,6 @@ struct Loop {
   xmlNodePtr node;
   struct Source *source;    /* in which it stands */
   const struct Loop *outer; /* the next one around it */
-  struct Loop *previous;    /* the one made before, of all */
 };
 
 /* ACTIVE: it has been found to need others, which are read now. */
@@ -45,17 +44,15 @@ struct Definition {
 struct Definitions {
   struct Definition *items;
   size_t count;
-  struct Names *numbers; /* name -> size_t, its place among the items */
-  struct Loop *last;
+  struct Names *numbers;      /* name -> size_t, its place among the items */
   const struct Loop *present; /* around what is collected now; NULL for none */
   size_t *stack;              /* those to be read, the present one on top */
   size_t stack_count, waiting;
 };
 
 struct Definitions *definitions_create(void);
-void definitions_free(struct Definitions *definitions);
 
-/* The index of a <for>, whose text is taken over, has a new value until the next call of definitions_leave(). */
+/* The index of a <for> has a new value until the next call of definitions_leave(). */
 void definitions_enter(struct Definitions *definitions, struct Loop loop);
 void definitions_leave(struct Definitions *definitions);
 

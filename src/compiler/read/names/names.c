@@ -13,15 +13,6 @@ struct Names *names_create(void) {
   return names;
 }
 
-void names_free(struct Names *names) {
-  for (size_t i = 0; i < names->capacity; i++) {
-    free(names->places[i].text);
-    free(names->places[i].meaning);
-  }
-  free(names->places);
-  free(names);
-}
-
 /* Where a search for the name begins: the hash function FNV-1a. */
 static size_t home_of(const struct Names *names, const char *text) {
   uint64_t hash = 14695981039346656037u;
@@ -45,7 +36,7 @@ static void grow(struct Names *names) {
   larger.places = allocate(larger.capacity, sizeof *larger.places);
   for (size_t i = 0; i < names->capacity; i++)
     if (names->places[i].text != NULL) *place_of(&larger, names->places[i].text) = names->places[i];
-  free(names->places);
+  release(names->places);
   *names = larger;
 }
 
@@ -60,15 +51,15 @@ void names_set(struct Names *names, const char *text, void *meaning) {
     name->text = copy_text(text);
     names->count++;
   }
-  free(name->meaning);
+  release(name->meaning);
   name->meaning = meaning;
 }
 
 void names_remove(struct Names *names, const char *text) {
   struct Name *name = place_of(names, text);
   if (name->text == NULL) return;
-  free(name->text);
-  free(name->meaning);
+  release(name->text);
+  release(name->meaning);
   *name = (struct Name){0};
   names->count--;
   /* Names after it may have been put there because its place was taken. */

@@ -16,13 +16,10 @@ struct Names {
 
 struct Names *names_create(void);
 
-/* Also frees what the names stand for, with free(). */
-void names_free(struct Names *names);
-
 /* What the name stands for; NULL where it is not in the table. */
 void *names_find(const struct Names *names, const char *text);
 
-/* Gives a name a meaning, which the table owns from now on; the one before is freed. */
+/* Gives a name a meaning, in place of the one before, which is given back. */
 void names_set(struct Names *names, const char *text, void *meaning);
 
 /* Does nothing where the name is not in the table. */

@@ -1,7 +1,6 @@
 #include "read/names/scope.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/differentiate.h"
@@ -22,15 +21,6 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->tables = names_create();
   scope->prefix = "";
   return scope;
-}
-
-void scope_free(struct Scope *scope) {
-  if (scope == NULL) return;
-  names_free(scope->names);
-  names_free(scope->tables);
-  free(scope->time_derivatives);
-  free(scope->requirements.items);
-  free(scope);
 }
 
 static struct Entry *find_entry(const struct Scope *scope, const char *name) {

@@ -28,7 +28,6 @@ struct Scope {
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
-void scope_free(struct Scope *scope);
 
 /* Makes a name known. Where it is taken already, reports this and returns false. */
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line);
@@ -44,10 +43,7 @@ void scope_remove(struct Scope *scope, const char *name);
 /* NULL where the name is unknown. */
 const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 
-/*
- * What the file being read calls by this name: with the prefix of the file, unless it is a word of the language. Free with
- * free().
- */
+/* What the file being read calls by this name: with the prefix of the file, unless it is a word of the language. */
 char *scope_full_name(const struct Scope *scope, const char *name);
 
 /* The line in the system's own file for messages that come when no longer the file of the line is read. */

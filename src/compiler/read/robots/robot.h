@@ -52,6 +52,4 @@ struct Robot {
   struct Link *root;
 };
 
-void robot_free(struct Robot *robot);
-
 #endif

@@ -1,7 +1,6 @@
 #include "read/robots/robot_elements.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/formula.h"
@@ -21,12 +20,10 @@ xmlNodePtr write_element(const struct Writer *writer, const char *name) {
 
 void set_attribute(xmlNodePtr node, const char *attribute, char *value) {
   xmlNewProp(node, (const xmlChar *)attribute, (const xmlChar *)value);
-  free(value);
 }
 
 void set_content(xmlNodePtr node, char *text) {
   xmlNodeAddContent(node, (const xmlChar *)text);
-  free(text);
 }
 
 void set_number(xmlNodePtr node, const char *attribute, double value) {
@@ -80,6 +77,5 @@ char *term(double factor, const char *name) {
   if (factor == 1) return copy_text(name);
   if (factor == -1) return format_text("-%s", name);
   char *text = number(factor), *product = format_text("%s*%s", text, name);
-  free(text);
   return product;
 }

@@ -1,4 +1,4 @@
-/* Elements of the <system> that a robot becomes. Texts that are handed over are taken over: they are freed. */
+/* Elements of the <system> that a robot becomes. */
 #ifndef ROBOT_ELEMENTS_H
 #define ROBOT_ELEMENTS_H
 
@@ -28,10 +28,10 @@ xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const
 /* The same with the input NAME_force, or NAME_torque for an angle. */
 void write_motor(const struct Writer *writer, const char *name, const char *unit, const char *description);
 
-/* The number in short. Free with free(). */
+/* The number in short. */
 char *number(double value);
 
-/* "factor*name" in short. Free with free(). */
+/* "factor*name" in short. */
 char *term(double factor, const char *name);
 
 #endif

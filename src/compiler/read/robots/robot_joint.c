@@ -1,7 +1,6 @@
 #include "read/robots/robot_joint.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "model/kinematics.h"
@@ -45,14 +44,10 @@ static char *ratio_of(const struct Joint *joint) {
   return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
 }
 
-/* Free with free(). */
 static char *position_of(const struct Joint *joint) {
   if (joint->leader == joint) return copy_text(joint->symbol);
   char *ratio = ratio_of(joint), *shift = number(fabs(joint->shift));
-  char *position = format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
-  free(ratio);
-  free(shift);
-  return position;
+  return format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
 }
 
 /* The position of what mimics another joint is an output, with no coordinate behind it. */
@@ -90,8 +85,6 @@ static void write_limits(const struct Writer *writer, const struct Joint *joint)
   write_output(writer, format_text("%s_beyond", name), unit_of_joint(joint),
                format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
                format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
-  free(lower);
-  free(upper);
 }
 
 static void write_single(const struct Writer *writer, const struct Joint *joint, const char *description) {
@@ -102,17 +95,12 @@ static void write_single(const struct Writer *writer, const struct Joint *joint,
   } else motion = write_follower(writer, joint, description);
   write_losses(writer, joint, &motion);
   write_limits(writer, joint);
-  free(motion.velocity);
-  free(motion.ratio);
 }
 
 static void write_planar(const struct Writer *writer, const struct Joint *joint, const char *description) {
   static const char *const coordinates[3][2] = {{"x", "m"}, {"y", "m"}, {"angle", "rad"}};
-  for (int i = 0; i < 3; i++) {
-    char *name = format_text("%s_%s", joint->symbol, coordinates[i][0]);
-    write_motor(writer, name, coordinates[i][1], description);
-    free(name);
-  }
+  for (int i = 0; i < 3; i++)
+    write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], description);
 }
 
 void write_free_coordinates(const struct Writer *writer, const char *name, const char *description) {
@@ -121,7 +109,6 @@ void write_free_coordinates(const struct Writer *writer, const char *name, const
     char *full_name = format_text("%s_%s", name, components[i]);
     xmlNodePtr coordinate = write_coordinate(writer, full_name, i < 3 ? "m" : "1", description);
     if (i == 3) set_attribute(coordinate, "start", number(1)); /* not turned */
-    free(full_name);
   }
 }
 
@@ -131,7 +118,6 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
   else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, description);
-  free(description);
 }
 
 /* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */
@@ -148,7 +134,6 @@ static void write_turn(const struct Writer *writer, xmlNodePtr frame, const doub
   for (int i = 0; i < 3; i++) text[i] = number(axis[i]);
   set_attribute(rotation, "axis", format_text("%s %s %s", text[0], text[1], text[2]));
   set_attribute(rotation, "angle", copy_text(angle));
-  for (int i = 0; i < 3; i++) free(text[i]);
 }
 
 static void write_slide(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *length) {
@@ -175,14 +160,8 @@ static void axes_across(const double axis[3], double first[3], double second[3])
 static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
   double across[2][3];
   axes_across(joint->axis, across[0], across[1]);
-  for (int i = 0; i < 2; i++) {
-    char *name = format_text("%s_%s", joint->symbol, axes[i]);
-    write_slide(writer, frame, across[i], name);
-    free(name);
-  }
-  char *angle = format_text("%s_angle", joint->symbol);
-  write_turn(writer, frame, joint->axis, angle);
-  free(angle);
+  for (int i = 0; i < 2; i++) write_slide(writer, frame, across[i], format_text("%s_%s", joint->symbol, axes[i]));
+  write_turn(writer, frame, joint->axis, format_text("%s_angle", joint->symbol));
 }
 
 void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name) {
@@ -199,6 +178,5 @@ void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Jo
     char *position = position_of(joint);
     if (is_sliding(joint)) write_slide(writer, frame, joint->axis, position);
     else write_turn(writer, frame, joint->axis, position);
-    free(position);
   }
 }

@@ -1,6 +1,5 @@
 #include "read/robots/robot_system.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -141,7 +140,6 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
     write_robot(&writer, robot, end, floats);
     schema_check(document, diagnostics);
   }
-  robot_free(robot);
   if (diagnostics->errors == errors) return document;
   xmlFreeDoc(document);
   return NULL;

@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -38,11 +37,6 @@ bool joint_is_single(const struct Joint *joint) {
 
 static struct Register register_create(const char *kind) {
   return (struct Register){.kind = kind, .names = names_create(), .symbols = names_create()};
-}
-
-static void register_free(struct Register *all) {
-  names_free(all->names);
-  names_free(all->symbols);
 }
 
 char *robot_symbol(const char *name) {
@@ -120,7 +114,6 @@ static struct Link *find_link(const struct Connection *connection, const char *n
                               const struct Joint *joint) {
   char *what = format_text("the %s of the joint '%s'", role, joint->name);
   const struct Entry *entry = find(connection, &connection->links, name, what, joint->line);
-  free(what);
   return entry != NULL ? connection->robot->links[entry->index] : NULL;
 }
 
@@ -185,7 +178,6 @@ static void order_links(struct Connection *connection) {
                  "the link '%s' is its own ancestor, or hangs on one that is; expected a tree", robot->links[i]->name);
     break;
   }
-  free(reached);
 }
 
 /* Sums and products of numbers in the file may be beyond all numbers. */
@@ -295,7 +287,5 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
     find_leader(&connection, robot->joints[i]);
   if (diagnostics->errors == errors) join_fixed_links(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
-  register_free(&connection.links);
-  register_free(&connection.joints);
   return diagnostics->errors == errors;
 }

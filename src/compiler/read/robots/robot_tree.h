@@ -10,7 +10,7 @@
 /* Sets what struct Link and struct Joint leave to it; false after reporting what is wrong. */
 bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 
-/* The name as one of the language, of letters, digits and _ with no digit first. Free with free(). */
+/* The name as one of the language, of letters, digits and _ with no digit first. */
 char *robot_symbol(const char *name);
 
 /* The link of this name; NULL after reporting that there is none for what it is asked for. */

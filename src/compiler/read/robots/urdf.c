@@ -90,7 +90,6 @@ static bool read_numbers(struct Urdf *urdf, xmlNodePtr node, const char *name, s
     report_error(urdf->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
                  (const char *)node->name,
                  count == 1 ? "a number such as 2, -0.5 or 1e-3" : "three numbers such as 0 0.5 -1e-3");
-  free(text);
   return true;
 }
 
@@ -98,7 +97,6 @@ static double required_number(struct Urdf *urdf, xmlNodePtr node, const char *na
   double value = 0;
   char *text = required_attribute(urdf, node, name);
   if (*text != '\0') read_numbers(urdf, node, name, 1, &value);
-  free(text);
   return value;
 }
 
@@ -169,7 +167,6 @@ static enum JointType read_type(struct Urdf *urdf, xmlNodePtr node) {
         urdf->diagnostics, xmlGetLineNo(node),
         "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar",
         text);
-  free(text);
   return type < JOINT_TYPES ? (enum JointType)type : FIXED;
 }
 
@@ -268,15 +265,10 @@ static xmlNodePtr find_xacro(xmlNodePtr node) {
 
 static void tell_left_out(struct Urdf *urdf) {
   char *list = copy_text("");
-  for (size_t i = 0; i < urdf->left_out_count; i++) {
-    char *longer = format_text("%s%s%s", list, i > 0 ? ", " : "", urdf->left_out[i]);
-    free(list);
-    free(urdf->left_out[i]);
-    list = longer;
-  }
+  for (size_t i = 0; i < urdf->left_out_count; i++)
+    list = format_text("%s%s%s", list, i > 0 ? ", " : "", urdf->left_out[i]);
   if (*list != '\0' && urdf->diagnostics->errors == 0)
     report_warning(urdf->diagnostics, 0, "left out, being no part of the equations: %s", list);
-  free(list);
 }
 
 struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics) {

@@ -10,10 +10,7 @@
 /* The joint types by name, in the order of enum JointType. */
 extern const char *const joint_types[JOINT_TYPES];
 
-/*
- * Links and joints of a <robot>, not yet connected. Every mistake is reported, and what is left out told once. Free with
- * robot_free().
- */
+/* Links and joints of a <robot>, not yet connected. Every mistake is reported, and what is left out told once. */
 struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics);
 
 #endif

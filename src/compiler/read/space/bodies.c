@@ -1,7 +1,5 @@
 #include "read/space/bodies.h"
 
-#include <stdlib.h>
-
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -40,7 +38,6 @@ static void append_body(struct Reader *reader, struct Body body) {
   struct NamedBody *named = allocate(1, sizeof *named);
   *named = (struct NamedBody){model->body_count, body.line};
   if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
-  else free(named);
   body.line = scope_line(reader->scope, body.line);
   model->bodies = make_room(model->bodies, model->body_count, sizeof *model->bodies);
   model->bodies[model->body_count++] = body;
@@ -56,7 +53,6 @@ static bool take_component(struct Reader *reader, const struct Body *body, xmlNo
   *displaced = value->node;
   reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
   value->node = without_displacements(reader, body->line, name, value->node);
-  free(name);
   return true;
 }
 
@@ -100,7 +96,6 @@ static void require_accelerations(const struct Reader *reader, const struct Body
                  is_input_rate(model, input) ? "the <input> itself in place of its derivative"
                                              : "derivatives=\"2\" of this <input>");
   }
-  gradient_free(&levers);
 }
 
 void number_body(struct Reader *reader, xmlNodePtr node) {
@@ -212,10 +207,7 @@ static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   const struct Body *other = report_same_name(reader, &body);
   if (!is_element(node, "point")) read_mass(reader, node, &body);
   if (is_element(node, "body")) read_tensor(reader, node, &body);
-  if (other != NULL || reader->diagnostics->errors > 0 || !find_spatial_point(reader, body.name, &point)) {
-    free(body.name);
-    return;
-  }
+  if (other != NULL || reader->diagnostics->errors > 0 || !find_spatial_point(reader, body.name, &point)) return;
   place_body(reader, &point, &body);
   for (int axis = 0; axis < 3; axis++) require_accelerations(reader, &body, axis);
   if (body.mass.node != ZERO) require_angular_accelerations(reader, &body);
@@ -245,7 +237,6 @@ void read_body(struct Reader *reader, xmlNodePtr node) {
   if (is_element(node, "frame")) {
     char *name = name_attribute(reader, node, "name");
     if (name != NULL) append_places(reader, node, name);
-    free(name);
   } else if (!has_right_attributes(reader, node)) return;
   else if (is_spatial(node)) read_spatial_body(reader, node);
   else read_planar_body(reader, node);

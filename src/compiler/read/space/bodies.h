@@ -10,7 +10,7 @@ void read_body(struct Reader *reader, xmlNodePtr node);
 /* Notes the number of a body or particle among those of its file. */
 void number_body(struct Reader *reader, xmlNodePtr node);
 
-/* The own name of a body, particle, point or frame, or one by the number of a body or particle. Free with free(). */
+/* The own name of a body, particle, point or frame, or one by the number of a body or particle. */
 char *name_of_body(struct Reader *reader, xmlNodePtr node);
 
 /* NULL where there is none of this name. */

@@ -1,6 +1,5 @@
 #include "read/space/frames.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/simplify.h"
@@ -52,11 +51,6 @@ void frames_begin(struct Reader *reader) {
   append_frame(reader, "base", (struct ReferenceFrame){.pose = pose_of_base()});
 }
 
-void frames_end(struct Reader *reader) {
-  names_free(reader->frames);
-  names_free(reader->spatial_points);
-}
-
 void declare_frame(struct Reader *reader, xmlNodePtr node) {
   xmlNodePtr turn = quaternion_of(node);
   for (xmlNodePtr step = node->children; step != NULL; step = step->next)
@@ -71,7 +65,6 @@ void declare_frame(struct Reader *reader, xmlNodePtr node) {
                           .line = xmlGetLineNo(turn)};
   reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, norm);
-  free(name);
 }
 
 /* The names of definitions that nobody can write: of a frame, and of a point or body, as a whole. */
@@ -99,9 +92,7 @@ void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
 /* Whether a frame, or else a point or body in a frame, of this name was collected. */
 static bool is_collected(const struct Reader *reader, bool is_frame, const char *name) {
   char *whole = whole_name(is_frame, name);
-  bool collected = definitions_contain(reader->definitions, whole);
-  free(whole);
-  return collected;
+  return definitions_contain(reader->definitions, whole);
 }
 
 /* Whether either was; reports it. */
@@ -121,11 +112,10 @@ void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name) {
     collect(reader, node, format_text("%s.%s", name, components[i]), components[i]);
 }
 
-/* The full name of the frame that the element is in; "base" where it does not say. Free with free(); NULL after an error. */
+/* The full name of the frame that the element is in; "base" where it does not say; NULL after an error. */
 static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
   char *text = attribute(node, attribute_name);
   bool is_in_base = text == NULL || strcmp(text, "base") == 0;
-  free(text);
   return is_in_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
 }
 
@@ -153,7 +143,6 @@ const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePt
   char *frame_named = frame_name(reader, node, name);
   const struct ReferenceFrame *frame = frame_named != NULL ? find_frame(reader, frame_named) : NULL;
   if (frame == NULL && frame_named != NULL) report_unknown_frame(reader, node, frame_named);
-  free(frame_named);
   return frame;
 }
 
@@ -165,8 +154,6 @@ static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr 
   const size_t *place = names_find(reader->frames, name);
   bool waits = place == NULL && definitions_wait_for(reader->definitions, whole);
   if (place == NULL && !waits) report_unknown_frame(reader, node, name);
-  free(whole);
-  free(name);
   return place != NULL ? &reader->model->frames[*place] : NULL;
 }
 
@@ -194,7 +181,6 @@ static Node planar_component(struct Reader *reader, xmlNodePtr node, const char 
   char *name = format_text("%s.%s", body, component);
   const struct Quantity *value = scope_find(reader->scope, name);
   if (value == NULL) definitions_wait_for(reader->definitions, name);
-  free(name);
   return value != NULL ? value->node : ZERO;
 }
 
@@ -251,7 +237,6 @@ static void read_point(struct Reader *reader, xmlNodePtr node, const char *name)
   point->velocity = velocity_at(graph, &frame->pose, point->offset, rate);
   bool is_new = !definitions_are_waiting(reader->definitions) && names_find(reader->spatial_points, name) == NULL;
   if (is_new) names_set(reader->spatial_points, name, point);
-  else free(point);
 }
 
 bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point) {
@@ -312,8 +297,6 @@ struct Quantity read_spatial(struct Reader *reader, xmlNodePtr node, const char 
   char *of = format_text("%.*s", (int)(strlen(name) - strlen(attribute) - 1), name), *whole = whole_name(is_frame, of);
   if (!definitions_wait_for(reader->definitions, whole)) value.node = read_component(reader, of, attribute);
   value.dimension = unit_of(unit_of_component(attribute));
-  free(whole);
-  free(of);
   return value;
 }
 
@@ -337,10 +320,7 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
   for (size_t i = 0; components[i] != NULL; i++) {
     char *full_name = format_text("%s.%s", name, components[i]);
     const struct Quantity *value = scope_find(reader->scope, full_name);
-    if (value == NULL) {
-      free(full_name);
-      continue;
-    }
+    if (value == NULL) continue;
     struct Variable place = {.name = full_name,
                              .description = description_of(name, components[i]),
                              .unit = copy_text(unit_of_component(components[i])),
@@ -382,5 +362,4 @@ void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
     model->stillnesses = make_room(model->stillnesses, model->stillness_count, sizeof *model->stillnesses);
     model->stillnesses[model->stillness_count++] = (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
   }
-  free(name);
 }

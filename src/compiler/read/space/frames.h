@@ -18,7 +18,6 @@ struct SpatialPoint {
 
 /* The base, in which all frames are; before anything is read. */
 void frames_begin(struct Reader *reader);
-void frames_end(struct Reader *reader);
 
 /* Whether the element is a <frame> or <point>, or a body or particle in a frame. */
 bool is_spatial(xmlNodePtr node);

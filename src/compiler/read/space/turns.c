@@ -24,8 +24,6 @@ static void read_expressions(struct Reader *reader, xmlNodePtr node, const char 
   char *part = strtok_r(text, blanks, &rest);
   for (size_t i = 0; i < count && part != NULL; i++, part = strtok_r(NULL, blanks, &rest))
     nodes[i] = parse_expression(reader->scope, part, place).node;
-  free(what);
-  free(text);
 }
 
 /* Whether the attribute is one of the letters x, y and z. */
@@ -39,7 +37,6 @@ static bool read_axis(struct Reader *reader, xmlNodePtr node, struct Vector *axi
   *axis = (struct Vector){{ZERO, ZERO, ZERO}};
   bool is_simple = is_letter(text);
   if (is_simple) axis->along[*text - 'x'] = ONE;
-  free(text);
   if (is_simple) return true;
   read_expressions(reader, node, "axis", IN_MASS, 3, axis->along);
   if (definitions_are_waiting(reader->definitions)) return false;
@@ -75,8 +72,6 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the quaternion of '%s' holds no coordinate; expected four coordinates, whose norm is held at 1",
                  frame);
-  free(frame);
-  free(name);
 }
 
 static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
@@ -97,7 +92,6 @@ static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "%s of <rotate> has %zu parts; expected %zu expressions between blanks, without blanks in them%s",
                  name, found, expected, expected == 3 ? ", or x, y or z" : "");
-  free(text);
 }
 
 void check_turn(struct Reader *reader, xmlNodePtr node) {

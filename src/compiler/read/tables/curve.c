@@ -1,7 +1,6 @@
 #include "read/tables/curve.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 
@@ -88,7 +87,6 @@ static void spline_slopes(struct Curve *curve) {
   }
   for (size_t i = n; i-- > 0;)
     curve->b[i] = (rows[i].right - (i + 1 < n ? rows[i].above * curve->b[i + 1] : 0)) / rows[i].diagonal;
-  free(rows);
 }
 
 void curve_slopes(struct Curve *curve, enum Interpolation interpolation) {
@@ -107,12 +105,4 @@ void curve_interpolate(struct Curve *curve, enum Interpolation interpolation) {
     curve->c[i] = (3 * line - 2 * left - right) / h;
     curve->d[i] = (left + right - 2 * line) / (h * h);
   }
-}
-
-void curve_free(struct Curve *curve) {
-  free(curve->x);
-  free(curve->y);
-  free(curve->b);
-  free(curve->c);
-  free(curve->d);
 }

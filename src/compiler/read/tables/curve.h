@@ -22,6 +22,4 @@ void curve_slopes(struct Curve *curve, enum Interpolation interpolation);
 /* Fills b, c and d from x, which ascends strictly, and y of at least two points. */
 void curve_interpolate(struct Curve *curve, enum Interpolation interpolation);
 
-void curve_free(struct Curve *curve);
-
 #endif

@@ -1,7 +1,5 @@
 #include "read/tables/surface.h"
 
-#include <stdlib.h>
-
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/tables/pieces.h"
@@ -16,8 +14,6 @@ static void slopes_of_lines(const double *knots, size_t length, size_t count, si
     curve_slopes(&curve, interpolation);
     for (size_t i = 0; i < length; i++) slopes[line * step_of_lines + i * step_in_line] = b[i];
   }
-  free(y);
-  free(b);
 }
 
 /* The derivative by both is the mean of the slopes of slopes, which for straight lines and splines are the same. */
@@ -33,7 +29,6 @@ void surface_interpolate(struct Surface *surface, enum Interpolation interpolati
   slopes_of_lines(surface->y, rows, columns, columns, 1, interpolation, surface->along_x, surface->along_both);
   slopes_of_lines(surface->x, columns, rows, 1, columns, interpolation, surface->along_y, other);
   for (size_t i = 0; i < count; i++) surface->along_both[i] = (surface->along_both[i] + other[i]) / 2;
-  free(other);
 }
 
 /* For each knot the function that is 1 there, and the one whose derivative is 1 there; 0 with its slope at the others. */
@@ -75,11 +70,6 @@ static struct Cardinals cardinals_at(struct Scope *scope, const double *knots, s
   return cardinals;
 }
 
-static void cardinals_free(struct Cardinals *cardinals) {
-  free(cardinals->value);
-  free(cardinals->slope);
-}
-
 /* What one column, with its values and their slopes along y, adds up to at y. */
 static Node column_at(struct Graph *graph, const struct Cardinals *along_y, const double *values, const double *slopes,
                       size_t step) {
@@ -104,16 +94,5 @@ Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_cons
     Node slope = column_at(graph, &along_y, surface->along_x + i, surface->along_both + i, surface->columns);
     sum = add(graph, sum, multiply(graph, along_x.slope[i], slope));
   }
-  cardinals_free(&along_x);
-  cardinals_free(&along_y);
   return sum;
-}
-
-void surface_free(struct Surface *surface) {
-  free(surface->x);
-  free(surface->y);
-  free(surface->value);
-  free(surface->along_x);
-  free(surface->along_y);
-  free(surface->along_both);
 }

@@ -25,6 +25,4 @@ void surface_interpolate(struct Surface *surface, enum Interpolation interpolati
  */
 Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y);
 
-void surface_free(struct Surface *surface);
-
 #endif

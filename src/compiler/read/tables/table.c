@@ -3,16 +3,6 @@
 #include "algebra/simplify.h"
 #include "read/tables/pieces.h"
 
-void table_free(struct Table *table) {
-  curve_free(&table->curve);
-  surface_free(&table->surface);
-}
-
-void tables_empty(struct Names *tables) {
-  for (size_t i = 0; i < tables->capacity; i++)
-    if (tables->places[i].text != NULL) table_free(tables->places[i].meaning);
-}
-
 const struct Table *table_named(const struct Scope *scope, const char *full_name) {
   return names_find(scope->tables, full_name);
 }

@@ -19,8 +19,4 @@ const struct Table *table_named(const struct Scope *scope, const char *full_name
 /* The table at its one or two arguments, an expression of pieces.h; line: where it is used. */
 Node table_at(struct Scope *scope, const struct Table *table, const Node arguments[2], long line);
 
-/* Frees what a table holds; all that those of a scope hold, before scope_free(). */
-void table_free(struct Table *table);
-void tables_empty(struct Names *tables);
-
 #endif

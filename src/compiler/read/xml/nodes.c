@@ -1,6 +1,5 @@
 #include "read/xml/nodes.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -23,9 +22,7 @@ char *attribute(xmlNodePtr node, const char *name) {
 
 bool attribute_is(xmlNodePtr node, const char *name, const char *value) {
   char *text = attribute(node, name);
-  bool same = text != NULL && strcmp(text, value) == 0;
-  free(text);
-  return same;
+  return text != NULL && strcmp(text, value) == 0;
 }
 
 char *text_of(xmlNodePtr node) {
@@ -35,7 +32,6 @@ char *text_of(xmlNodePtr node) {
     xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
     char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
     xmlFree(content);
-    free(text);
     text = longer;
   }
   return text;

@@ -13,10 +13,10 @@ bool is_element(const xmlNode *node, const char *name);
 bool has_attribute(xmlNodePtr node, const char *name);
 bool attribute_is(xmlNodePtr node, const char *name, const char *value);
 
-/* NULL where missing; to be freed with free(). */
+/* NULL where missing. */
 char *attribute(xmlNodePtr node, const char *name);
 
-/* The element's text, in which a comment separates what stands before and after it; to be freed with free(). */
+/* The element's text, in which a comment separates what stands before and after it. */
 char *text_of(xmlNodePtr node);
 
 /* Whether it describes a robot in place of a system. */

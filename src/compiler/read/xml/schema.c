@@ -1,7 +1,6 @@
 #include "read/xml/schema.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/xmlschemas.h>
@@ -99,14 +98,7 @@ static struct Choices choices_of_value(const struct Check *check, const char *at
   return choices;
 }
 
-static void choices_free(struct Choices *choices) {
-  for (size_t i = 0; i < choices->count; i++) free(choices->names[i]);
-}
-
-/*
- * "did you mean 'unit'?", or "expected name, start or unit" without anything similar. Takes over the choices; free with
- * free().
- */
+/* "did you mean 'unit'?", or "expected name, start or unit" without anything similar. */
 static char *remedy(const char *wanted, struct Choices choices) {
   struct Similar similar = {.wanted = wanted};
   char *text = NULL;
@@ -118,7 +110,6 @@ static char *remedy(const char *wanted, struct Choices choices) {
   for (size_t i = 0; similar.best == NULL && i < choices.count; i++)
     fprintf(file, "%s%s", i == 0 ? "" : i + 1 == choices.count ? " or " : ", ", choices.names[i]);
   close_text(file, &text, &length);
-  choices_free(&choices);
   return text;
 }
 
@@ -126,7 +117,6 @@ static void report_attribute(const struct Check *check, xmlNodePtr element, cons
   const char *of = (const char *)element->name;
   char *what_then = remedy(name, choices_in(check, element, "attribute"));
   report_error(check->diagnostics, xmlGetLineNo(element), "<%s> has no attribute '%s'; %s", of, name, what_then);
-  free(what_then);
 }
 
 /* One that is there with another spelling was told with it. */
@@ -147,7 +137,6 @@ static void report_element(const struct Check *check, xmlNodePtr element) {
   char *what_then = remedy(name, choices_in(check, element->parent, "element"));
   report_error(check->diagnostics, xmlGetLineNo(element), "<%s> %s <%s>; %s", name,
                is_known ? "cannot stand in" : "is no element of", parent, *hint != '\0' ? hint : what_then);
-  free(what_then);
 }
 
 /* The first element, or the first text that is not blank, in an element; NULL where there is none. */
@@ -177,7 +166,6 @@ static void report_content(const struct Check *check, xmlNodePtr element) {
                  "<%s> stands inside of <%s>; expected the end of <%s> before it, by </%s> or />",
                  (const char *)inner->name, name, name, name);
   else if (text != NULL) report_text(check, text, name, "an attribute");
-  choices_free(&elements);
 }
 
 static void report_root(const struct Check *check, xmlNodePtr root) {
@@ -221,16 +209,12 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
   case XML_SCHEMAV_CVC_ENUMERATION_VALID: {
     char *list = remedy(value, choices_of_value(check, name));
     what_then = format_text("is not known; %s", list);
-    free(list);
     break;
   }
   case XML_SCHEMAV_CVC_MINEXCLUSIVE_VALID: what_then = copy_text("is not above 0; expected a positive number"); break;
   default: what_then = copy_text("is no number; expected one such as 2, 0.5 or 1e-3");
   }
   report_error(check->diagnostics, xmlGetLineNo(element), "%s %s", what, what_then);
-  free(what);
-  free(what_then);
-  free(name);
   xmlFree(value);
 }
 
@@ -288,7 +272,6 @@ static void print_elements(FILE *file, xmlNodePtr schema, xmlNodePtr parent) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     char *name = is_element(node, "element") ? attribute(node, "name") : NULL;
     if (name != NULL && find_declared(schema, "element", name) == node) fprintf(file, "element %s\n", name);
-    free(name);
     print_elements(file, schema, node);
   }
 }

@@ -2,7 +2,6 @@
 
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -83,6 +82,6 @@ char *source_text(const char *path, size_t *length, struct Diagnostics *diagnost
     report_error(diagnostics, 0, "the file is longer than %d bytes; expected a shorter one, and <for> for what repeats",
                  LENGTH_LIMIT);
   if (is_right && *length <= LENGTH_LIMIT && is_readable(text, *length, diagnostics)) return text;
-  free(text);
+  release(text);
   return NULL;
 }

@@ -7,7 +7,7 @@
 #include "base/diagnostics.h"
 
 /*
- * The bytes of the file, to be freed with free(). NULL where it cannot be read, and after reporting that it is too long, or
+ * The bytes of the file. NULL where it cannot be read, and after reporting that it is too long, or
  * has too many elements, or attributes in one of them.
  */
 char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics);

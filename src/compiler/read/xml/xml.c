@@ -1,6 +1,5 @@
 #include "read/xml/xml.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include <libxml/parser.h>
@@ -10,7 +9,7 @@
 #include "read/xml/schema.h"
 #include "read/xml/source_text.h"
 
-/* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. Free with free(). */
+/* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. */
 static char *meaning_of(const xmlError *error) {
   const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
   if (strstr(message, "EntityRef") != NULL)
@@ -72,7 +71,6 @@ static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
   else report_error(diagnostics, error->line, "%.*s", length, message);
-  free(meaning);
 }
 
 /*
@@ -108,7 +106,7 @@ xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
   char *text = source_text(path, &length, diagnostics);
   xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
   xmlDocPtr document = text != NULL ? parse(path, text, length, diagnostics) : NULL;
-  free(text);
+  release(text);
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
   xmlSetStructuredErrorFunc(NULL, NULL);
