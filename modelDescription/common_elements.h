@@ -1,6 +1,5 @@
 /* What model descriptions of all versions of FMI say alike. */
-#ifndef COMMON_ELEMENTS_H
-#define COMMON_ELEMENTS_H
+#pragma once
 
 #include <libxml/xmlwriter.h>
 
@@ -21,5 +20,3 @@ bool has_start(const struct ScalarVariable *entry);
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable);
 
 const char *naming_convention(const struct Model *model);
-
-#endif

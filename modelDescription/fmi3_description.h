@@ -1,7 +1,6 @@
 /* Writes the files of an FMU of FMI 3.0 that describe it (sections 2.4 and 2.5). Each appends to buffer and returns false
  * where libxml2 reports an error. */
-#ifndef FMI3_DESCRIPTION_H
-#define FMI3_DESCRIPTION_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -15,5 +14,3 @@ bool fmi3_build_description_write(xmlBufferPtr buffer, const struct Program *pro
 
 /* terminalsAndIcons/terminalsAndIcons.xml */
 bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program);
-
-#endif

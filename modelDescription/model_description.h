@@ -1,6 +1,5 @@
 /* Writes modelDescription.xml (FMI 2.0.4, sections 2.2, 3.3 and 4.3). */
-#ifndef MODEL_DESCRIPTION_H
-#define MODEL_DESCRIPTION_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -8,5 +7,3 @@
 
 /* Appends the file's text to buffer. Returns false where libxml2 reports an error. */
 bool model_description_write(xmlBufferPtr buffer, const struct Program *program, const char *guid);
-
-#endif

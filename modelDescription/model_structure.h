@@ -1,6 +1,5 @@
 /* Writes ModelStructure: outputs, derivatives and initial unknowns with what they truly depend on. */
-#ifndef MODEL_STRUCTURE_H
-#define MODEL_STRUCTURE_H
+#pragma once
 
 #include <libxml/xmlwriter.h>
 
@@ -9,5 +8,3 @@
 extern const struct StructureForm structure_of_fmi2, structure_of_fmi3;
 
 void model_structure_write(xmlTextWriterPtr writer, const struct Program *program, const struct StructureForm *form);
-
-#endif

@@ -11,8 +11,7 @@
  *
  * All but names are formulas of parameters, in kg, kg.m2 and m/s2. Without in="..." a thing is in the base.
  */
-#ifndef SCENE_H
-#define SCENE_H
+#pragma once
 
 #include <libxml/xmlwriter.h>
 
@@ -22,5 +21,3 @@
 bool has_scene(const struct Model *model);
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model);
-
-#endif

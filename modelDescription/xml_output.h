@@ -1,6 +1,5 @@
 /* Documents and attributes with xmlTextWriter. */
-#ifndef XML_OUTPUT_H
-#define XML_OUTPUT_H
+#pragma once
 
 #include <libxml/xmlwriter.h>
 #include <stdbool.h>
@@ -15,5 +14,3 @@ void write_attribute(xmlTextWriterPtr writer, const char *name, const char *valu
 
 /* A number in the shortest form that reads back the same. */
 void write_number(xmlTextWriterPtr writer, const char *name, double value);
-
-#endif

@@ -2,8 +2,7 @@
  * The files that lagc leaves: all of them, or none. They are written beside those of an earlier run and then renamed;
  * wherever lagc is stopped, system.c is there only with the others of its run.
  */
-#ifndef OUTPUT_H
-#define OUTPUT_H
+#pragma once
 
 #include "base/diagnostics.h"
 #include "interface/summary.h"
@@ -18,5 +17,3 @@ void output_write(const struct Program *program, const struct Summary *summary, 
 
 /* Removes these files, also those of an earlier run: after an error none is left. */
 void output_remove(const char *directory);
-
-#endif

@@ -2,8 +2,7 @@
  * The nodes that some targets need, found at a cost that grows with their number and not with that of the graph's. A
  * cone is a workspace: it is created once and collects again and again.
  */
-#ifndef CONE_H
-#define CONE_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -29,5 +28,3 @@ bool cone_has(const struct Cone *cone, Node node);
 
 /* The place of a member in nodes. */
 size_t cone_place(const struct Cone *cone, Node node);
-
-#endif

@@ -2,8 +2,7 @@
  * Differentiation of the expression graph: forward sweeps for directions, one reverse sweep for a gradient. Each costs
  * as much as the targets have nodes below them, however large the graph is.
  */
-#ifndef DIFFERENTIATE_H
-#define DIFFERENTIATE_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -42,5 +41,3 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
 
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);
-
-#endif

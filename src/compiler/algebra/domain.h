@@ -1,6 +1,5 @@
 /* Where functions of real numbers have real values, and what an expression asks of its arguments for that. */
-#ifndef DOMAIN_H
-#define DOMAIN_H
+#pragma once
 
 #include "algebra/graph.h"
 #include "base/diagnostics.h"
@@ -29,5 +28,3 @@ void require_domain(struct Requirements *requirements, const struct Graph *graph
 /* Warns of arguments out of their domains; values: one of each node. Says so once a line and function. */
 void warn_outside_domains(const struct Requirements *requirements, const struct Graph *graph, const double *values,
                           const struct Diagnostics *diagnostics);
-
-#endif

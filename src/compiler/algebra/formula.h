@@ -1,6 +1,5 @@
 /* Expressions as readable infix text, in the language of system.xml. */
-#ifndef PRINT_H
-#define PRINT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -28,5 +27,3 @@ enum { NUMBER_LENGTH = 40 };
 /* The shortest decimal form that reads back as the same number. */
 void number_text(double value, char text[NUMBER_LENGTH]);
 void print_number(FILE *file, double value);
-
-#endif

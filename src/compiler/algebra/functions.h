@@ -2,8 +2,7 @@
  * What the compiler knows of an operation, in one row: parser, units, algebra, derivatives, Taylor series and C code
  * all follow from it. A new elementary function is one value of enum Operation and one row in functions.c.
  */
-#ifndef FUNCTIONS_H
-#define FUNCTIONS_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -67,5 +66,3 @@ struct Function {
 
 /* One row for each operation. */
 extern const struct Function functions[OPERATION_COUNT];
-
-#endif

@@ -3,8 +3,7 @@
  * sub-expressions are shared by construction. A node's operands always have smaller numbers than the node:
  * numeric order is a topological order, and every sweep is a plain loop.
  */
-#ifndef GRAPH_H
-#define GRAPH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -142,5 +141,3 @@ void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bo
 
 /* Evaluates all nodes; symbol_values in the order of graph->symbols; one value for each. */
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
-
-#endif

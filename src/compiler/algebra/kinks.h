@@ -1,6 +1,5 @@
 /* Where functions turn or jump. */
-#ifndef KINKS_H
-#define KINKS_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -12,5 +11,3 @@ const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 
 /* The same for a kink that no series sees, as that of asin(sin(x)). */
 const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);
-
-#endif

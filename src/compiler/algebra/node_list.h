@@ -1,6 +1,5 @@
 /* Nodes in a row. */
-#ifndef NODE_LIST_H
-#define NODE_LIST_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -15,5 +14,3 @@ void append_nodes(struct NodeList *list, const Node *nodes, size_t count);
 
 /* Puts nodes in ascending order. */
 void sort_nodes(Node *nodes, size_t count);
-
-#endif

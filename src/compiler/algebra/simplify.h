@@ -2,8 +2,7 @@
  * The algebra of the expression graph. These constructors fold constants, gather like terms, cancel common factors
  * and apply sin^2 + cos^2 = 1, looking only at a bounded number of neighbours, so that building stays linear.
  */
-#ifndef SIMPLIFY_H
-#define SIMPLIFY_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -46,5 +45,3 @@ Node product_of(struct Graph *graph, const struct Factor *factors, int count);
 
 /* Splits a sum into at most limit terms, which may be sums themselves. Returns their number. */
 int terms_of(const struct Graph *graph, Node node, Node *terms, int limit);
-
-#endif

@@ -1,6 +1,5 @@
 /* Messages for the person who wrote the file: "file:line: what is wrong, and what was expected". */
-#ifndef DIAGNOSTICS_H
-#define DIAGNOSTICS_H
+#pragma once
 
 /* As many errors of one file are shown: a mistake in a loop would be told ten thousand times. */
 enum { ERROR_LIMIT = 100 };
@@ -18,5 +17,3 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
 /* Prints a warning to stderr. */
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-#endif

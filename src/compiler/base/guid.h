@@ -1,6 +1,5 @@
 /* A GUID made from content: the same model gives the same GUID on every machine. */
-#ifndef GUID_H
-#define GUID_H
+#pragma once
 
 #include <stddef.h>
 
@@ -8,5 +7,3 @@ enum { GUID_LENGTH = 39 };
 
 /* Writes "{xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx}" for the concatenated texts. */
 void guid_of(const char *const *texts, size_t count, char guid[GUID_LENGTH]);
-
-#endif

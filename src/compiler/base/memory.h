@@ -2,8 +2,7 @@
  * Memory for a compiler that runs once: it lasts until the end of the program, and only large scratch space is given back before.
  * After an allocation that fails nothing goes on, but for what main says.
  */
-#ifndef MEMORY_H
-#define MEMORY_H
+#pragma once
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ char *format_text(const char *format, ...) __attribute__((format(printf, 1, 2)))
 
 /* The same with the arguments that a caller was given. */
 char *format_arguments(const char *format, va_list arguments) __attribute__((format(printf, 1, 0)));
-
-#endif

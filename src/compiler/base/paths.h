@@ -1,11 +1,8 @@
 /* Paths of files that name each other. */
-#ifndef PATHS_H
-#define PATHS_H
+#pragma once
 
 /* The one absolute path of a file; NULL where there is no such file, and errno tells why. */
 char *canonical_path(const char *path);
 
 /* A path that a file names, relative to that file. */
 char *path_beside_file(const char *present, const char *named);
-
-#endif

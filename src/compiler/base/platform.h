@@ -1,6 +1,5 @@
 /* What C leaves to the operating system. */
-#ifndef PLATFORM_H
-#define PLATFORM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,5 +29,3 @@ void limit_memory(size_t bytes);
 
 /* Makes \n the end of a line on the standard output too. */
 void write_plain_lines(void);
-
-#endif

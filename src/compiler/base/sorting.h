@@ -1,9 +1,6 @@
 /* Numbers in ascending order. */
-#ifndef SORTING_H
-#define SORTING_H
+#pragma once
 
 #include <stddef.h>
 
 void sort_sizes(size_t *sizes, size_t count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Arrays among the variables of an FMU, for FMI 3.0. */
-#ifndef ARRAYS_H
-#define ARRAYS_H
+#pragma once
 
 #include "interface/interface.h"
 
@@ -16,5 +15,3 @@ char *array_name(const struct InterfaceVariable *variable);
 
 /* Its description; NULL for none. */
 char *array_description(const struct InterfaceVariable *variable);
-
-#endif

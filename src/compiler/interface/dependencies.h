@@ -1,6 +1,5 @@
 /* On which symbols a value depends (FMI 2.0.4, section 2.2.8), accelerations by way of the equations of motion. */
-#ifndef DEPENDENCIES_H
-#define DEPENDENCIES_H
+#pragma once
 
 #include "mechanics/equations.h"
 
@@ -25,5 +24,3 @@ struct Dependencies *dependencies_create(const struct Model *model, const struct
  * equations depends on. initial: also those of the start values that follow from parameters.
  */
 void dependencies_find(struct Dependencies *dependencies, Node node, bool initial);
-
-#endif

@@ -2,8 +2,7 @@
  * The variables of the FMU in the order of their value references. Those of one kind stand together, in the order of their
  * indices.
  */
-#ifndef INTERFACE_H
-#define INTERFACE_H
+#pragma once
 
 #include "lagrangian.h"
 #include "mechanics/equations.h"
@@ -49,5 +48,3 @@ double interface_tolerance(const struct Model *model);
 
 /* How many steps a solver may take in one communication step. */
 long interface_max_steps(const struct Model *model);
-
-#endif

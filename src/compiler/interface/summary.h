@@ -1,6 +1,5 @@
 /* The formulas that the documentation shows, in their readable form; those of large systems in part. */
-#ifndef SUMMARY_H
-#define SUMMARY_H
+#pragma once
 
 #include "algebra/formula.h"
 #include "mechanics/equations.h"
@@ -19,5 +18,3 @@ struct Summary {
 };
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations);
-
-#endif

@@ -1,6 +1,5 @@
 /* The names of the symbols that expressions depend on, as a list for messages. */
-#ifndef SYMBOL_NAMES_H
-#define SYMBOL_NAMES_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -15,5 +14,3 @@ void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, cons
 
 /* "m, l"; a long list ends with "...". */
 char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph);
-
-#endif

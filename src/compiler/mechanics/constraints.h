@@ -6,8 +6,7 @@
  * where J has the derivatives of the constraints by the coordinates, or of nonholonomic ones by the velocities: F is a
  * tension where the constraint is a distance less a length.
  */
-#ifndef CONSTRAINTS_H
-#define CONSTRAINTS_H
+#pragma once
 
 #include "mechanics/mass_matrix/mass_elements.h"
 
@@ -36,5 +35,3 @@ Node *constraint_slopes(struct Graph *graph, const struct Constraints *constrain
 
 /* Whether a constraint force is among the symbols of one of the nodes. */
 bool depend_on_constraint_force(const struct Model *model, const Node *nodes, size_t count);
-
-#endif

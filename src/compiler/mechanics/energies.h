@@ -2,8 +2,7 @@
  * What of the Lagrangian's terms is energy. A term X of L contributes Jacobi's sum v dX/dv - X, which is constant
  * where nothing depends on time; the kinetic energy of masses that are moved in a given way is another one.
  */
-#ifndef ENERGIES_H
-#define ENERGIES_H
+#pragma once
 
 #include "model/model.h"
 
@@ -16,5 +15,3 @@ Node stored_energy(const struct Model *model, Node potential);
  * that is so. Any other T contributes sum v dT/dv - T, as for a relativistic particle.
  */
 Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven);
-
-#endif

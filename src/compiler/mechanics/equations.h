@@ -1,6 +1,5 @@
 /* The equations of motion, and all that is computed beside them. */
-#ifndef EQUATIONS_H
-#define EQUATIONS_H
+#pragma once
 
 #include "mechanics/constraints.h"
 #include "mechanics/mass_matrix/inertia.h"
@@ -42,5 +41,3 @@ size_t row_count(const struct Equations *equations);
 
 /* Whether there is such a block. */
 bool has_loops(const struct Equations *equations);
-
-#endif

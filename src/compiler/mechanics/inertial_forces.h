@@ -7,8 +7,7 @@
  * with the velocities v and omega along the frame's axes, and x' for d/dt of components. Lagrange's general form makes
  * terms that only cancel each other, which these leave out.
  */
-#ifndef INERTIAL_FORCES_H
-#define INERTIAL_FORCES_H
+#pragma once
 
 #include "model/model.h"
 
@@ -20,5 +19,3 @@ Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolK
 
 /* The kinetic energy of what has an inertia without energy: 0 on the motion, but not its second derivatives. */
 Node energy_of_stillness(const struct Model *model);
-
-#endif

@@ -5,12 +5,9 @@
  *
  * For the bodies' share of K the left side is that of inertial_forces.h.
  */
-#ifndef LAGRANGE_H
-#define LAGRANGE_H
+#pragma once
 
 #include "mechanics/equations.h"
 
 /* Derives the equations of motion; NULL after reporting errors (a coordinate without inertia, ...). */
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics);
-
-#endif

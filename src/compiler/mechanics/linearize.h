@@ -1,6 +1,5 @@
 /* Linearisation about a point: x' = A (x - x0) + B (u - u0) + f(x0, u0). */
-#ifndef LINEARIZE_H
-#define LINEARIZE_H
+#pragma once
 
 #include "mechanics/equations.h"
 
@@ -25,5 +24,3 @@ struct LinearSystem *linear_system_of(const struct Model *model, const struct Eq
 
 /* Prints A and B as formulas, then as numbers at the start values of the parameters. */
 void linear_system_print(const struct Model *model, const struct LinearSystem *system);
-
-#endif

@@ -1,6 +1,5 @@
 /* From a model to the equations that its FMU has. */
-#ifndef MOTION_H
-#define MOTION_H
+#pragma once
 
 #include "mechanics/equations.h"
 
@@ -9,5 +8,3 @@
  * massless.h. NULL after reporting errors.
  */
 struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * along the true motion of all else.
  */
-#ifndef REACTIONS_H
-#define REACTIONS_H
+#pragma once
 
 #include "model/model.h"
 
@@ -25,5 +24,3 @@ Node *undisplaced_symbols(const struct Graph *graph);
 
 /* The node with the symbols of reactions replaced by these. */
 Node with_reactions(const struct Model *model, const Node *reactions, Node node);
-
-#endif

@@ -1,6 +1,5 @@
 /* What an FMU must know to switch: the indicators of events, and all that decides on the modes behind one. */
-#ifndef SWITCHING_H
-#define SWITCHING_H
+#pragma once
 
 #include "mechanics/equations.h"
 
@@ -29,5 +28,3 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
 
 /* The node with the modes of branches replaced by the signs that they stand for, as results that no event waits for. */
 Node without_branches(const struct Model *model, Node node);
-
-#endif

@@ -1,10 +1,7 @@
 /* Time derivatives along the motion. */
-#ifndef TIME_DERIVATIVE_H
-#define TIME_DERIVATIVE_H
+#pragma once
 
 #include "model/model.h"
 
 /* The direction of d/dt in the space of all symbols, for derivative_along(): with the accelerations, or with 0 for them. */
 Node *time_seeds(const struct Model *model, bool with_accelerations);
-
-#endif

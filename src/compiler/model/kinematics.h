@@ -3,8 +3,7 @@
  * nodes; what belongs to a moving frame is along its own axes, which keeps expressions short: along a chain of joints
  * each one adds as much as the one before.
  */
-#ifndef KINEMATICS_H
-#define KINEMATICS_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -54,5 +53,3 @@ struct Vector velocity_at(struct Graph *graph, const struct Pose *pose, struct V
 
 /* The place of such a point, along the base's axes. */
 struct Vector position_at(struct Graph *graph, const struct Pose *pose, struct Vector offset);
-
-#endif

@@ -2,8 +2,7 @@
  * The methods of <solver>, as the compiler knows them. A new one has an entry here, a place in fmu/system.xsd and its
  * file in src/runtime/methods/.
  */
-#ifndef METHODS_H
-#define METHODS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ char *method_names(void);
 
 /* The solver for a Jacobian with so many rows and elements other than 0. */
 const char *method_solver(const struct Method *method, size_t rows, size_t elements);
-
-#endif

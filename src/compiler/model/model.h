@@ -1,6 +1,5 @@
 /* A mechanical system: variables, energies, forces. The reader fills it as its author wrote it; massless.h adds inertias. */
-#ifndef MODEL_H
-#define MODEL_H
+#pragma once
 
 #include "algebra/units/quantity.h"
 #include "base/diagnostics.h"
@@ -156,5 +155,3 @@ Node unknown_of_row(const struct Model *model, size_t row);
 
 /* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. */
 char *variable_unit(const struct Variable *variable);
-
-#endif

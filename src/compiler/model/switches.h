@@ -1,6 +1,5 @@
 /* What switches a system: modes, which are constant between events, and what changes them. */
-#ifndef SWITCHES_H
-#define SWITCHES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -70,5 +69,3 @@ bool has_switches(const struct Switches *switches);
 
 /* The force of a friction, from that of its constraint: while it slides it belongs to none. */
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);
-
-#endif

@@ -1,6 +1,5 @@
 /* What brings a state back to the constraints, as instructions: see correct_positions in include/lagrangian.h. */
-#ifndef CORRECTIONS_H
-#define CORRECTIONS_H
+#pragma once
 
 #include "program/program.h"
 
@@ -13,5 +12,3 @@ struct Routine *start_velocities_routine(const struct Program *program, struct V
 
 /* What impulses of contacts and frictions do: see respond in include/lagrangian.h. */
 struct Routine *responses_routine(const struct Program *program, struct Values *values);
-
-#endif

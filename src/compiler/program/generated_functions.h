@@ -1,6 +1,5 @@
 /* The functions of the generated code: a row for each, and what builds those of one routine. */
-#ifndef GENERATED_FUNCTIONS_H
-#define GENERATED_FUNCTIONS_H
+#pragma once
 
 #include "program/values/values.h"
 
@@ -58,5 +57,3 @@ extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
 
 /* A routine that computes nodes as its targets. */
 struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count);
-
-#endif

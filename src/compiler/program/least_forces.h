@@ -1,6 +1,5 @@
 /* The forces of least norm along a direction, where constraints follow from others, as instructions. */
-#ifndef LEAST_FORCES_H
-#define LEAST_FORCES_H
+#pragma once
 
 #include "program/program.h"
 
@@ -9,5 +8,3 @@
  * those at the point, with the forces of least norm: makes the former those of least norm too.
  */
 void append_least_forces_along(const struct Program *program, struct Values *values);
-
-#endif

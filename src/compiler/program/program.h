@@ -1,6 +1,5 @@
 /* The program of an FMU: the routines that the functions of include/lagrangian.h consist of. */
-#ifndef PROGRAM_H
-#define PROGRAM_H
+#pragma once
 
 #include "program/expressions/accelerations.h"
 #include "program/expressions/expressions.h"
@@ -32,5 +31,3 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
 
 /* How many instructions all routines have together, but those of linear(), which copies alone. */
 size_t instruction_count(const struct Program *program);
-
-#endif

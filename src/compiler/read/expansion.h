@@ -1,6 +1,5 @@
 /* The document as a list of the elements that it has without <for> and <include>. */
-#ifndef EXPANSION_H
-#define EXPANSION_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -9,5 +8,3 @@ void expand(struct Reader *reader, xmlNodePtr root);
 
 /* Reads all elements in a later pass. */
 void read_expanded(struct Reader *reader, enum Pass pass);
-
-#endif

@@ -1,6 +1,5 @@
 /* <linearization>: another system and the point at which it is linearised. */
-#ifndef LINEARIZATION_READER_H
-#define LINEARIZATION_READER_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -17,5 +16,3 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
 /* Sets the point from "name=value" texts and marks the model as linearised. */
 void apply_point(struct Model *model, struct Scope *scope, const char *const *point, size_t count,
                  struct Diagnostics *diagnostics);
-
-#endif

@@ -1,6 +1,5 @@
 /* Reads system.xml into a model. */
-#ifndef READER_H
-#define READER_H
+#pragma once
 
 #include "base/diagnostics.h"
 #include "model/model.h"
@@ -11,5 +10,3 @@
  * returns NULL where there was any.
  */
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics);
-
-#endif

@@ -1,6 +1,5 @@
 /* Numbers and strings as C constants. */
-#ifndef C_TEXT_H
-#define C_TEXT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -11,5 +10,3 @@ void write_c_string(FILE *file, const char *text);
 
 /* The definition of a static array of whole numbers; of one element where there are none. */
 void write_sizes(FILE *file, const char *type, const char *name, const size_t *sizes, size_t count);
-
-#endif

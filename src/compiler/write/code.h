@@ -1,6 +1,5 @@
 /* Writes the C file of a system: its program as functions, and the description that names them. */
-#ifndef CODE_H
-#define CODE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -8,5 +7,3 @@
 
 /* The file refers to GUID, which the caller defines before it. */
 void code_write(FILE *file, const struct Program *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* The tables of variables and the struct Lagrangian at the end of a generated file. */
-#ifndef DESCRIPTION_H
-#define DESCRIPTION_H
+#pragma once
 
 #include <stdio.h>
 
@@ -14,5 +13,3 @@ const char *description_solver(const struct Program *program);
 
 /* work_count: as in struct Lagrangian. */
 void description_write(FILE *file, const struct Program *program, size_t work_count);
-
-#endif

@@ -1,6 +1,5 @@
 /* The heads of the functions of the generated code, which both writers write. */
-#ifndef FUNCTION_TEXT_H
-#define FUNCTION_TEXT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -11,5 +10,3 @@ bool takes(enum FunctionName name, const char *argument);
 
 /* The comment and the head of a function, up to its brace; suffix belongs to the name. */
 void write_head(FILE *file, enum FunctionName name, const char *suffix, size_t operations);
-
-#endif

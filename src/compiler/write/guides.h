@@ -1,6 +1,5 @@
 /* The inputs that stand in constraints, as C. */
-#ifndef WRITE_GUIDES_H
-#define WRITE_GUIDES_H
+#pragma once
 
 #include <stdio.h>
 
@@ -11,5 +10,3 @@ bool has_guides(const struct Model *model);
 
 /* guides[] and constraint_inputs[] of include/lagrangian.h. */
 void guides_write(FILE *file, const struct Model *model);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the inertia of coordinates depends on, for messages. */
-#ifndef INERTIA_NAMES_H
-#define INERTIA_NAMES_H
+#pragma once
 
 #include <stdio.h>
 
@@ -8,5 +7,3 @@
 
 /* The array inertia_depends_on of the generated file. */
 void inertia_names_write(FILE *file, const struct Program *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* One instruction as one C statement, with the names that the functions around it declare. */
-#ifndef INSTRUCTION_TEXT_H
-#define INSTRUCTION_TEXT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -11,5 +10,3 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
 
 /* The statements of a routine; without a target, values for it are returned. */
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target);
-
-#endif

@@ -1,6 +1,5 @@
 /* The order of a routine's instructions in a table: those of one run side by side, as far as their operands allow. */
-#ifndef SCHEDULE_H
-#define SCHEDULE_H
+#pragma once
 
 #include "program/expressions/accelerations.h"
 
@@ -12,5 +11,3 @@ uint32_t spaces_of(const struct Instruction *instruction);
 
 /* Whether two instructions may stand in one run. */
 bool same_run(const struct Instruction *first, const struct Instruction *second);
-
-#endif

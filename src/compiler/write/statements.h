@@ -1,6 +1,5 @@
 /* Routines as functions of C statements, one for each instruction. */
-#ifndef STATEMENTS_H
-#define STATEMENTS_H
+#pragma once
 
 #include "write/function_text.h"
 
@@ -25,5 +24,3 @@ void statements_watched_limit(FILE *file, const struct Program *program);
 
 /* Whether the orders of series() get code of their own. */
 bool series_is_unrolled(const struct Program *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the runtime must know of what switches: struct SwitchTable of the generated code. */
-#ifndef WRITE_SWITCHING_H
-#define WRITE_SWITCHING_H
+#pragma once
 
 #include <stdio.h>
 
@@ -8,5 +7,3 @@
 
 /* Nothing where nothing switches. */
 void switching_write(FILE *file, const struct Program *program);
-
-#endif

@@ -1,6 +1,5 @@
 /* Routines as tables of numbers, which instructions.h describes, and the functions that have them carried out. */
-#ifndef TABLES_H
-#define TABLES_H
+#pragma once
 
 #include "write/function_text.h"
 
@@ -32,5 +31,3 @@ void tables_series(FILE *file, const struct TableContext *context);
 
 /* output_series() */
 void tables_output_series(FILE *file, const struct TableContext *context);
-
-#endif

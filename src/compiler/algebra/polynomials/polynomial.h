@@ -1,6 +1,5 @@
 /* Sparse polynomials with numeric coefficients in at most ATOM_LIMIT atoms, and exact division. */
-#ifndef POLYNOMIAL_H
-#define POLYNOMIAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,5 +40,3 @@ void polynomial_scale(struct Polynomial *p, double coefficient, const uint8_t ex
 
 /* The same with a divisor. */
 void polynomial_divide_by(struct Polynomial *p, double divisor, const uint8_t exponent[ATOM_LIMIT]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Expressions brought to one fraction of polynomials with common factors cancelled: readable and well conditioned. */
-#ifndef RATIONAL_H
-#define RATIONAL_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -17,5 +16,3 @@ Node simplify_fraction(struct Graph *graph, Node node);
  */
 bool solve_fractions(struct Graph *graph, size_t n, const Node *matrix, size_t columns, const Node *right,
                      Node *solution);
-
-#endif

@@ -2,8 +2,7 @@
  * Takes the shorter one of two forms of expressions, by the operations that they need together: those that change in
  * motion count first, those of parameters alone are computed once for all.
  */
-#ifndef SHORTEN_H
-#define SHORTEN_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -12,5 +11,3 @@ void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const No
 
 /* Takes the nodes multiplied out, as fractions in lowest terms, where that makes them shorter. */
 void shorten(struct Graph *graph, size_t count, Node *nodes);
-
-#endif

@@ -1,6 +1,5 @@
 /* An expression together with its dimension. */
-#ifndef QUANTITY_H
-#define QUANTITY_H
+#pragma once
 
 #include "algebra/graph.h"
 #include "algebra/units/units.h"
@@ -10,5 +9,3 @@ struct Quantity {
   struct Dimension dimension;
   bool literal; /* made of numbers alone: agrees with any dimension in a sum */
 };
-
-#endif

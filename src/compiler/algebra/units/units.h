@@ -2,8 +2,7 @@
  * Units of measurement as products of powers of the SI base units and the radian (FMI 2.0.4, section 2.2.2).
  * Only coherent units are known: a quantity in one of them needs no conversion factor.
  */
-#ifndef UNITS_H
-#define UNITS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -35,5 +34,3 @@ bool dimension_is_whole(struct Dimension dimension);
 
 /* Whether both are the same quantity; the radian counts as 1, unknown agrees with all. */
 bool dimension_agrees(struct Dimension first, struct Dimension second);
-
-#endif

@@ -1,6 +1,5 @@
 /* In which order the rows of a sparse symmetric matrix are eliminated, and what L of M = L D L^T then holds. */
-#ifndef ELIMINATION_H
-#define ELIMINATION_H
+#pragma once
 
 #include <stddef.h>
 
@@ -28,5 +27,3 @@ struct Position {
  */
 struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
                              size_t position_count);
-
-#endif

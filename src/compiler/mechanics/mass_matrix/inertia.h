@@ -3,8 +3,7 @@
  * It is sparse, in blocks that are independent of each other, each with its factors L D L^T or the pattern of them. Its
  * rows are the coordinates, then the constraints.
  */
-#ifndef INERTIA_H
-#define INERTIA_H
+#pragma once
 
 #include "mechanics/mass_matrix/mass_elements.h"
 
@@ -85,5 +84,3 @@ const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_
 
 /* Whether the pattern of the block is the whole triangle, and its matrix positive definite. */
 bool block_is_full(const struct InertiaBlock *block);
-
-#endif

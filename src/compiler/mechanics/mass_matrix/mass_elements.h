@@ -1,6 +1,5 @@
 /* The elements of the mass matrix, as expressions, and which coordinates they couple. */
-#ifndef MASS_ELEMENTS_H
-#define MASS_ELEMENTS_H
+#pragma once
 
 #include "mechanics/mass_matrix/elimination.h"
 #include "model/model.h"
@@ -29,5 +28,3 @@ struct Components find_components(size_t count, const struct Elements *elements)
 
 /* Sorts the elements by components. Returns where each component begins, and the end. */
 size_t *sort_by_components(struct Elements *elements, const struct Components *components);
-
-#endif

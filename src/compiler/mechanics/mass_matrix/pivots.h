@@ -1,6 +1,5 @@
 /* The factors M = L D L^T of the mass matrix: whether there are any, and the symbolic ones of small blocks. */
-#ifndef PIVOTS_H
-#define PIVOTS_H
+#pragma once
 
 #include "mechanics/mass_matrix/inertia.h"
 
@@ -12,5 +11,3 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
 
 /* Factors the blocks that are unrolled, and appends their pivots. */
 void pivots_factor(struct Graph *graph, struct Inertia *inertia);
-
-#endif

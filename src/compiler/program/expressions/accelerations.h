@@ -1,6 +1,5 @@
 /* The accelerations as instructions: pivots are checked, and large blocks of M are factored at run time. */
-#ifndef ACCELERATIONS_H
-#define ACCELERATIONS_H
+#pragma once
 
 #include "mechanics/equations.h"
 #include "program/values/values.h"
@@ -50,5 +49,3 @@ void append_factors(struct Values *values, const struct LoopedBlocks *blocks);
 
 /* Solves a large block, whose factors are there, for computed right sides; the solution is in its right side. */
 void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side);
-
-#endif

@@ -1,6 +1,5 @@
 /* All expressions that the generated code computes: what derivation gave, differentiated once more where needed. */
-#ifndef EXPRESSIONS_H
-#define EXPRESSIONS_H
+#pragma once
 
 #include "interface/interface.h"
 #include "mechanics/equations.h"
@@ -63,5 +62,3 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
 
 /* All nodes that are computed. */
 struct NodeList expressions_targets(const struct Expressions *expressions);
-
-#endif

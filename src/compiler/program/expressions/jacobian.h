@@ -1,6 +1,5 @@
 /* The Jacobian matrix of the motion, from gradients of the equations one by one. */
-#ifndef JACOBIAN_H
-#define JACOBIAN_H
+#pragma once
 
 #include "program/expressions/expressions.h"
 
@@ -9,5 +8,3 @@ enum { JACOBIAN_LIMIT = 2500000 };
 
 /* NULL where there are more than JACOBIAN_LIMIT elements. */
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations);
-
-#endif

@@ -1,6 +1,5 @@
 /* The pattern in which implicit methods factor their matrices: include/lagrangian.h, struct LuPattern. */
-#ifndef LU_PATTERN_H
-#define LU_PATTERN_H
+#pragma once
 
 #include "mechanics/mass_matrix/elimination.h"
 #include "program/expressions/expressions.h"
@@ -8,5 +7,3 @@
 /* For so many coordinates; NULL where full matrices are cheaper. */
 struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
                                       size_t coordinates);
-
-#endif

@@ -1,6 +1,5 @@
 /* What Taylor series of the motion need beside the equations themselves. */
-#ifndef SERIES_PLAN_H
-#define SERIES_PLAN_H
+#pragma once
 
 #include "mechanics/equations.h"
 #include "algebra/node_list.h"
@@ -22,5 +21,3 @@ struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equat
 
 /* For expressions of the motion, without kinks. */
 struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);
-
-#endif

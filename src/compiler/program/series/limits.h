@@ -1,6 +1,5 @@
 /* How far a step may go by the elementary functions in the series; see series_limit.h. */
-#ifndef LIMITS_H
-#define LIMITS_H
+#pragma once
 
 #include "instructions.h"
 #include "program/series/series_builder.h"
@@ -20,5 +19,3 @@ const struct LimitFacts *limit_facts(enum LimitRule rule);
 
 /* The checks for all nodes of the series, whose operands have rows from now on. */
 struct LimitChecks limits_of(struct SeriesBuilder *builder);
-
-#endif

@@ -2,8 +2,7 @@
  * Under which gates a node of a series matters: where all of them are closed, it may have no value, and must not shorten a
  * step.
  */
-#ifndef OPENERS_H
-#define OPENERS_H
+#pragma once
 
 #include "program/expressions/series_plan.h"
 
@@ -18,5 +17,3 @@ struct Openers {
 
 /* One for each node of the graph; NULL where there are no gates. */
 struct Openers *openers_of(const struct Graph *graph, const struct SeriesPlan *plan);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the parts of a series program share while it is built. */
-#ifndef SERIES_BUILDER_H
-#define SERIES_BUILDER_H
+#pragma once
 
 #include "program/expressions/series_plan.h"
 #include "program/values/form.h"
@@ -48,5 +47,3 @@ bool is_integrated_power(const struct SeriesBuilder *builder, Node node);
 
 /* Appends the coefficient k of the node, whose operands have theirs. */
 void append_recurrence(struct SeriesBuilder *builder, Node node);
-
-#endif

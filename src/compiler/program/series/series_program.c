@@ -342,6 +342,5 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   for (size_t i = 0; i < forces; i++)
     routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
                    place_in(SPACE_ACCELERATION, i), 0, 0);
-  if (program->limit.count > 0) return program;
-  return NULL;
+  return program->limit.count > 0 ? program : NULL;
 }

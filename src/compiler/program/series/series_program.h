@@ -2,8 +2,7 @@
  * Taylor series as instructions: one routine for the coefficients 0, one for the coefficients k of all series. Nodes
  * whose coefficients are needed again have a row of the workspace; of the others, only coefficient k is there.
  */
-#ifndef SERIES_PROGRAM_H
-#define SERIES_PROGRAM_H
+#pragma once
 
 #include "program/expressions/accelerations.h"
 #include "program/expressions/expressions.h"
@@ -32,5 +31,3 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
  * where nothing limits them.
  */
 struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values);
-
-#endif

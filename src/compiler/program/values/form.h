@@ -1,6 +1,5 @@
 /* How a node is computed: an operation of the graph, or a shorter one that stands for two of them. */
-#ifndef FORM_H
-#define FORM_H
+#pragma once
 
 #include "algebra/cone.h"
 
@@ -34,5 +33,3 @@ bool is_fetched(const struct Needs *needs, Node node);
 
 /* The form of a member, with a + (-b) turned to a - b and a * (1 / b) to a / b where nothing else needs 1 / b. */
 struct Form form_of(const struct Needs *needs, Node node);
-
-#endif

@@ -1,6 +1,5 @@
 /* What depends on parameters alone is computed once, when parameters change: the prepared values. */
-#ifndef PREPARED_H
-#define PREPARED_H
+#pragma once
 
 #include "algebra/node_list.h"
 
@@ -15,5 +14,3 @@ bool is_of_parameters(const struct Graph *graph, Node node);
 
 /* The prepared values that the targets need, directly or as operands of what changes in time. */
 struct Prepared *prepared_create(const struct Graph *graph, struct NodeList targets);
-
-#endif

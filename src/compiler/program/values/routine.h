@@ -2,8 +2,7 @@
  * A routine: the instructions of one function of the generated code, in an order in which each result stands before
  * its uses. The instructions themselves are those of include/instructions.h.
  */
-#ifndef ROUTINE_H
-#define ROUTINE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -81,5 +80,3 @@ Place routine_local(struct Routine *routine);
 
 /* Whether any operand or result is in the space. */
 bool routine_uses(const struct Routine *routine, enum Space space);
-
-#endif

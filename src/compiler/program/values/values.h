@@ -1,6 +1,5 @@
 /* Values: expressions as instructions, where each shared operation is computed once. */
-#ifndef VALUES_H
-#define VALUES_H
+#pragma once
 
 #include "program/values/form.h"
 #include "program/values/prepared.h"
@@ -30,5 +29,3 @@ Place values_place(const struct Values *values, Node node);
 
 /* The routine copies the value of a node to a place. */
 void values_copy(struct Values *values, Place target, Node node);
-
-#endif

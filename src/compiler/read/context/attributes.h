@@ -1,6 +1,5 @@
 /* Attributes of XML elements as strings, numbers, names and expressions. */
-#ifndef ATTRIBUTES_H
-#define ATTRIBUTES_H
+#pragma once
 
 #include "model/model.h"
 #include "read/context/reader_options.h"
@@ -106,5 +105,3 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
 /* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
                   struct Dimension expected);
-
-#endif

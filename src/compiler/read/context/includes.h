@@ -2,8 +2,7 @@
  * <include>: other files that are read as parts of a system, their names with a prefix: what motor.xml calls theta is
  * motor.theta of the system. An <include> may give values to what the file declares.
  */
-#ifndef INCLUDES_H
-#define INCLUDES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -53,5 +52,3 @@ bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct
 
 /* Reports what was given to nothing. */
 void check_given(struct Reader *reader);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the command line says of how a file is read. */
-#ifndef READER_OPTIONS_H
-#define READER_OPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,5 +13,3 @@ struct ReaderOptions {
   size_t point_count;
   bool linearize; /* linearise at point even where it is empty */
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* What elements declare becomes variables of the model. */
-#ifndef VARIABLES_H
-#define VARIABLES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -12,5 +11,3 @@ void check_range(struct Reader *reader, const struct Variable *variable);
 
 /* Appends a variable, whose strings the list owns from now on. */
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);
-
-#endif

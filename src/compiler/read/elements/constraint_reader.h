@@ -1,6 +1,5 @@
 /* <constraint>: what is 0 at all times. */
-#ifndef CONSTRAINT_READER_H
-#define CONSTRAINT_READER_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -12,5 +11,3 @@ void read_constraint(struct Reader *reader, xmlNodePtr node);
 
 /* Reports a constraint that holds nothing, or is not linear in the velocities; notes one that moves by itself. */
 void check_constraint(struct Reader *reader, const struct Variable *constraint);
-
-#endif

@@ -1,6 +1,5 @@
 /* The elements of system.xml, one function each. */
-#ifndef ELEMENTS_H
-#define ELEMENTS_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -10,5 +9,3 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass);
 /* <solver> and <experiment>, which systems and linearisations have. */
 void read_solver(struct Reader *reader, xmlNodePtr node);
 void read_experiment(struct Reader *reader, xmlNodePtr node);
-
-#endif

@@ -1,6 +1,5 @@
 /* <force>, <torque> and <gravity>. */
-#ifndef FORCES_H
-#define FORCES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -12,5 +11,3 @@ void read_gravity(struct Reader *reader, xmlNodePtr node);
 
 /* The coordinate of this name, NULL where there is none. */
 const struct Symbol *find_coordinate(const struct Reader *reader, const char *name);
-
-#endif

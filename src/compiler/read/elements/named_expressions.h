@@ -1,6 +1,5 @@
 /* The expressions of definitions.h: what each <define>, calculated <parameter>, particle and body gives. */
-#ifndef NAMED_EXPRESSIONS_H
-#define NAMED_EXPRESSIONS_H
+#pragma once
 
 #include "read/context/includes.h"
 #include "read/names/definitions.h"
@@ -25,5 +24,3 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
  * Enters the value of a <define>, <parameter> or <input> into the model, under its name; bodies enter their components.
  */
 void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value);
-
-#endif

@@ -1,6 +1,5 @@
 /* <parameter>: numbers of each type of FMI, lists of them, and those that are calculated. */
-#ifndef PARAMETERS_H
-#define PARAMETERS_H
+#pragma once
 
 #include "read/context/includes.h"
 
@@ -9,5 +8,3 @@ void read_parameter(struct Reader *reader, xmlNodePtr node);
 
 /* Reports what cannot stand beside a value, the element's own or a given one. */
 void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node);
-
-#endif

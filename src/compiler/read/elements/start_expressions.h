@@ -1,6 +1,5 @@
 /* Start values of coordinates and velocities: numbers, or expressions of parameters, which they then follow. */
-#ifndef START_EXPRESSIONS_H
-#define START_EXPRESSIONS_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -9,5 +8,3 @@ void read_start_expressions(struct Reader *reader, xmlNodePtr node);
 
 /* Their values at the start values of the parameters; reports those that are not finite. */
 void evaluate_start_expressions(struct Reader *reader);
-
-#endif

@@ -1,6 +1,5 @@
 /* <mode>, <event>, <stop>, <contact> and <friction>: what switches a system. */
-#ifndef SWITCHING_READER_H
-#define SWITCHING_READER_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -30,5 +29,3 @@ void undisplace_switches(struct Reader *reader);
 
 /* After all expressions: NAME.force of a friction, in events and outputs, is that while it slides too. */
 void complete_friction_forces(struct Reader *reader);
-
-#endif

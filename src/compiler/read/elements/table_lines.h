@@ -1,6 +1,5 @@
 /* The lines of numbers in a table's text or file; empty ones are passed over, and what follows # is left out. */
-#ifndef TABLE_LINES_H
-#define TABLE_LINES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -20,5 +19,3 @@ void table_lines_of_text(struct TableLines *lines, xmlNodePtr text);
 
 /* The numbers at the beginning of a line, with blanks, a comma or a semicolon between them; *rest is what follows them. */
 double *table_numbers(const char *line, size_t *count, const char **rest);
-
-#endif

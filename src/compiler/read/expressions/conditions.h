@@ -2,8 +2,7 @@
  * Conditions in expressions: comparisons, joined by and, or, not and parentheses. Modes and Boolean parameters are
  * conditions too.
  */
-#ifndef CONDITIONS_H
-#define CONDITIONS_H
+#pragma once
 
 #include "read/expressions/cursor.h"
 
@@ -18,5 +17,3 @@ bool parse_when(struct Scope *scope, const char *text, struct Place place, Node 
 
 /* The rest of if(condition, expression, expression). */
 struct Quantity parse_choice(struct Parser *parser);
-
-#endif

@@ -1,6 +1,5 @@
 /* The reading position in the text of an expression. */
-#ifndef CURSOR_H
-#define CURSOR_H
+#pragma once
 
 #include "read/names/definitions.h"
 #include "read/names/scope.h"
@@ -46,5 +45,3 @@ long current_line(struct Parser *parser);
       report_error((parser)->scope->diagnostics, current_line(parser), __VA_ARGS__);                                   \
     (parser)->failed = true;                                                                                           \
   } while (0)
-
-#endif

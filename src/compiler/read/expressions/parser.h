@@ -1,6 +1,5 @@
 /* The expression language: plain infix text to nodes, with dimensions checked on the way. */
-#ifndef PARSER_H
-#define PARSER_H
+#pragma once
 
 #include "read/expressions/cursor.h"
 
@@ -29,5 +28,3 @@ bool parse_number(struct Scope *scope, const char *text, struct Place place, dou
  * motor.theta. Returns NULL after reporting an error.
  */
 char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);
-
-#endif

@@ -2,8 +2,7 @@
  * Arithmetic with quantities: operations on nodes and dimensions at once. What has no finite value or mixes units is
  * reported, and parser->failed is then set.
  */
-#ifndef QUANTITIES_H
-#define QUANTITIES_H
+#pragma once
 
 #include "read/expressions/cursor.h"
 #include "read/tables/table.h"
@@ -21,5 +20,3 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
 /* A table of this name at its one or two arguments. */
 struct Quantity quantity_of_table(struct Parser *parser, const struct Table *table, const char *name,
                                   const struct Quantity arguments[2]);
-
-#endif

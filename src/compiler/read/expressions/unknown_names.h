@@ -1,6 +1,5 @@
 /* Messages about names and functions that an expression cannot use. */
-#ifndef UNKNOWN_NAMES_H
-#define UNKNOWN_NAMES_H
+#pragma once
 
 #include "read/expressions/cursor.h"
 
@@ -9,5 +8,3 @@ void report_unknown_function(struct Parser *parser, const char *name);
 
 /* A word of the language that has no value: a function without its argument, or a result. */
 void report_reserved(struct Parser *parser, const char *name);
-
-#endif

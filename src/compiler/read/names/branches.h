@@ -2,8 +2,7 @@
  * abs, sign, min, max, if and the knots of tables are smooth pieces. Which of them holds is a mode, the sign of a switching
  * function, that events alone change: so every expression is smooth between events, and its pieces have series.
  */
-#ifndef BRANCHES_H
-#define BRANCHES_H
+#pragma once
 
 #include "read/names/scope.h"
 
@@ -24,5 +23,3 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node);
 
 /* abs, sign, min or max of nodes, by their pieces. */
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
-
-#endif

@@ -2,8 +2,7 @@
  * Named expressions: the text of each <define>, the value of each calculated <parameter> and each component of a particle
  * or body, which may use each other in any order. All names are collected first; then each expression is read after those that it needs.
  */
-#ifndef DEFINITIONS_H
-#define DEFINITIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -74,5 +73,3 @@ bool definitions_contain(const struct Definitions *definitions, const char *name
 
 /* Whether the present expression waits, so that its value means nothing and its mistakes are told when it is read again. */
 bool definitions_are_waiting(const struct Definitions *definitions);
-
-#endif

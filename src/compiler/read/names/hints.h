@@ -1,6 +1,5 @@
 /* The right way to write what other languages write otherwise: ends of messages about expressions. */
-#ifndef HINTS_H
-#define HINTS_H
+#pragma once
 
 #include "algebra/graph.h"
 
@@ -18,5 +17,3 @@ const char *hint_for_element(const char *name);
 
 /* What to do instead of using symbols of a kind where only those of others are allowed, one bit (1 << kind) each. */
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed);
-
-#endif

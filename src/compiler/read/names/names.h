@@ -1,6 +1,5 @@
 /* A table of names: what each stands for is found in a time that does not grow with their number. */
-#ifndef NAMES_H
-#define NAMES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -24,5 +23,3 @@ void names_set(struct Names *names, const char *text, void *meaning);
 
 /* Does nothing where the name is not in the table. */
 void names_remove(struct Names *names, const char *text);
-
-#endif

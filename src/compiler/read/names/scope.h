@@ -1,6 +1,5 @@
 /* The names that an expression may use, and what they stand for. */
-#ifndef SCOPE_H
-#define SCOPE_H
+#pragma once
 
 #include "algebra/domain.h"
 #include "algebra/units/quantity.h"
@@ -68,5 +67,3 @@ Node time_derivative_of_symbol(const struct Scope *scope, Node symbol);
 
 /* d node / dt by the chain rule, the part explicit in time included. */
 Node total_time_derivative(struct Scope *scope, Node node);
-
-#endif

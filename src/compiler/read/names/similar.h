@@ -1,6 +1,5 @@
 /* The known name that was meant by an unknown one. */
-#ifndef SIMILAR_H
-#define SIMILAR_H
+#pragma once
 
 #include "read/names/names.h"
 
@@ -19,5 +18,3 @@ void similar_consider(struct Similar *similar, const char *known);
 
 /* Considers all names of a table. */
 void similar_consider_all(struct Similar *similar, const struct Names *names);
-
-#endif

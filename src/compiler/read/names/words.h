@@ -1,6 +1,5 @@
 /* The words of the language, which systems cannot use as names. */
-#ifndef WORDS_H
-#define WORDS_H
+#pragma once
 
 #include <stdio.h>
 
@@ -23,5 +22,3 @@ void define_language(struct Scope *scope);
 
 /* A line for each of them: "function NAME" or "name NAME". */
 void words_print(FILE *file);
-
-#endif

@@ -1,6 +1,5 @@
 /* Rigid bodies and the places of frames in numbers: what is fixed together becomes one body. */
-#ifndef RIGID_BODY_H
-#define RIGID_BODY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -49,5 +48,3 @@ bool body_is_finite(const struct RigidBody *body);
  * space; a hundredth of their sum is granted for the digits of files.
  */
 bool tensor_is_of_a_body(const struct Matrix3 *tensor);
-
-#endif

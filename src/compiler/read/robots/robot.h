@@ -1,6 +1,5 @@
 /* A robot as its URDF describes it: links, and joints that connect them to a tree. */
-#ifndef ROBOT_H
-#define ROBOT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -51,5 +50,3 @@ struct Robot {
   size_t link_count, joint_count;
   struct Link *root;
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* Elements of the <system> that a robot becomes. */
-#ifndef ROBOT_ELEMENTS_H
-#define ROBOT_ELEMENTS_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -33,5 +32,3 @@ char *number(double value);
 
 /* "factor*name" in short. */
 char *term(double factor, const char *name);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a joint of a robot becomes: coordinates, motors, losses, limits, and the motion of a frame. */
-#ifndef ROBOT_JOINT_H
-#define ROBOT_JOINT_H
+#pragma once
 
 #include "read/robots/robot.h"
 #include "read/robots/robot_elements.h"
@@ -17,5 +16,3 @@ void write_free_coordinates(const struct Writer *writer, const char *name, const
 /* Turns and moves the frame of the joint's child by the coordinates. */
 void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint);
 void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name);
-
-#endif

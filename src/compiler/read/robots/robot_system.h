@@ -1,6 +1,5 @@
 /* Robots as systems: what a URDF describes is written as the <system> that an author would write of it. */
-#ifndef ROBOT_SYSTEM_H
-#define ROBOT_SYSTEM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ struct RobotOptions {
  * NULL after reporting mistakes.
  */
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics);
-
-#endif

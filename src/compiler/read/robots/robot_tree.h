@@ -1,6 +1,5 @@
 /* Connects a robot's links to the tree that its joints make of them. */
-#ifndef ROBOT_TREE_H
-#define ROBOT_TREE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -21,5 +20,3 @@ bool joint_moves(const struct Joint *joint);
 
 /* Whether its position is one number: revolute, continuous or prismatic. */
 bool joint_is_single(const struct Joint *joint);
-
-#endif

@@ -1,6 +1,5 @@
 /* Reads URDF, the robotics community's description of robots, as far as it tells of motion: http://wiki.ros.org/urdf/XML */
-#ifndef URDF_H
-#define URDF_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -12,5 +11,3 @@ extern const char *const joint_types[JOINT_TYPES];
 
 /* Links and joints of a <robot>, not yet connected. Every mistake is reported, and what is left out told once. */
 struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics);
-
-#endif

@@ -1,6 +1,5 @@
 /* <particle> and <body>, planar ones and those in frames, and <point>. */
-#ifndef BODIES_H
-#define BODIES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -15,5 +14,3 @@ char *name_of_body(struct Reader *reader, xmlNodePtr node);
 
 /* NULL where there is none of this name. */
 const struct Body *find_body(const struct Reader *reader, const char *name);
-
-#endif

@@ -2,8 +2,7 @@
  * <frame>, <point>, and bodies and particles that are placed in frames. Their components, such as arm.x, are named
  * expressions; each waits for what it is part of, and that for the frame that it is in.
  */
-#ifndef FRAMES_H
-#define FRAMES_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -52,5 +51,3 @@ const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePt
 
 /* Of a <frame> with a quaternion, when all bodies are known: the inertia of its norm, see model.h. */
 void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node);
-
-#endif

@@ -1,6 +1,5 @@
 /* <rotate>: how a frame is turned, by an angle about an axis or by a quaternion. */
-#ifndef TURNS_H
-#define TURNS_H
+#pragma once
 
 #include "read/context/attributes.h"
 
@@ -12,5 +11,3 @@ void check_turn(struct Reader *reader, xmlNodePtr node);
 
 /* Turns the pose as a <rotate> says. */
 void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose);
-
-#endif

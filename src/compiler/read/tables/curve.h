@@ -1,6 +1,5 @@
 /* Curves through points: cubic polynomials between neighbours, which are continuous with their first derivative. */
-#ifndef CURVE_H
-#define CURVE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ void curve_slopes(struct Curve *curve, enum Interpolation interpolation);
 
 /* Fills b, c and d from x, which ascends strictly, and y of at least two points. */
 void curve_interpolate(struct Curve *curve, enum Interpolation interpolation);
-
-#endif

@@ -2,8 +2,7 @@
  * Functions by pieces, each of which is smooth, see branches.h. At a point where two pieces meet, that counts into which
  * the motion goes.
  */
-#ifndef PIECES_H
-#define PIECES_H
+#pragma once
 
 #include "read/names/scope.h"
 
@@ -15,5 +14,3 @@ Node way_before(struct Scope *scope, Node x, double start);
 
 /* x - end where that is positive, else 0. */
 Node way_behind(struct Scope *scope, Node x, double end);
-
-#endif

@@ -2,8 +2,7 @@
  * Surfaces through the values on a grid: between four neighbours products of cubic polynomials, which are continuous with
  * their first derivatives, or of straight lines. On each line of the grid they are the curves of curve.h.
  */
-#ifndef SURFACE_H
-#define SURFACE_H
+#pragma once
 
 #include "read/names/scope.h"
 #include "read/tables/curve.h"
@@ -24,5 +23,3 @@ void surface_interpolate(struct Surface *surface, enum Interpolation interpolati
  * times functions of x and of y, which are 1 at their own knot and 0 at the others.
  */
 Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y);
-
-#endif

@@ -1,6 +1,5 @@
 /* Functions of one or two variables that are given by points. */
-#ifndef TABLE_H
-#define TABLE_H
+#pragma once
 
 #include "read/tables/curve.h"
 #include "read/tables/surface.h"
@@ -18,5 +17,3 @@ const struct Table *table_named(const struct Scope *scope, const char *full_name
 
 /* The table at its one or two arguments, an expression of pieces.h; line: where it is used. */
 Node table_at(struct Scope *scope, const struct Table *table, const Node arguments[2], long line);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the elements of a document say, as strings. */
-#ifndef NODES_H
-#define NODES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -21,5 +20,3 @@ char *text_of(xmlNodePtr node);
 
 /* Whether it describes a robot in place of a system. */
 bool is_robot(xmlDocPtr document);
-
-#endif

@@ -1,6 +1,5 @@
 /* Holds a file against the schema of system.xml, in words of its author; fmu/system.xsd says what may stand where. */
-#ifndef SCHEMA_H
-#define SCHEMA_H
+#pragma once
 
 #include <stdio.h>
 
@@ -16,5 +15,3 @@ void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics);
 
 /* A line "element NAME" for each element of the schema. */
 void schema_print_elements(FILE *file);
-
-#endif

@@ -1,6 +1,5 @@
 /* The text of an XML file, as far as it is not so large or so made that reading it would take long. */
-#ifndef SOURCE_TEXT_H
-#define SOURCE_TEXT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -11,5 +10,3 @@
  * has too many elements, or attributes in one of them.
  */
 char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics);
-
-#endif

@@ -1,6 +1,5 @@
 /* Loads and validates a system.xml with libxml2; its messages become ours. */
-#ifndef XML_H
-#define XML_H
+#pragma once
 
 #include <libxml/tree.h>
 
@@ -11,5 +10,3 @@
  * names and expressions would hide it among messages that follow from it.
  */
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics);
-
-#endif
