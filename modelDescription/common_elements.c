@@ -58,13 +58,14 @@ void write_log_categories(xmlTextWriterPtr writer) {
 }
 
 void write_experiment(xmlTextWriterPtr writer, const struct Model *model) {
-  double start = isnan(model->start_time) ? 0.0 : model->start_time;
-  double stop = isnan(model->stop_time) ? start + 10.0 : model->stop_time;
+  double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
+  double stop = isnan(model->experiment.stop_time) ? start + 10.0 : model->experiment.stop_time;
   xmlTextWriterStartElement(writer, BAD_CAST "DefaultExperiment");
   write_number(writer, "startTime", start);
   write_number(writer, "stopTime", stop);
   write_number(writer, "tolerance", interface_tolerance(model));
-  write_number(writer, "stepSize", isnan(model->step_size) ? (stop - start) / 1000 : model->step_size);
+  write_number(writer, "stepSize",
+               isnan(model->experiment.step_size) ? (stop - start) / 1000 : model->experiment.step_size);
   xmlTextWriterEndElement(writer);
 }
 

@@ -55,14 +55,14 @@ static void write_rest(xmlTextWriterPtr writer, size_t count, size_t shown, cons
 
 /* Which law totalEnergy obeys (see energies.h). */
 static const char *balance_of(const struct Model *model, bool autonomous) {
-  if (model->moving_constraint != NULL)
+  if (model->given.constraint != NULL)
     return "A constraint moves in a given way: its force does work, so that totalEnergy is not constant even without "
            "other forces.";
-  if (!model->driven && autonomous)
-    return model->has_forces
+  if (!model->energies.driven && autonomous)
+    return model->forces.any
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
                : "totalEnergy is constant.";
-  if (!model->driven)
+  if (!model->energies.driven)
     return "L depends on time explicitly: the derivative of totalEnergy is the power of the non-conservative forces "
            "less the partial derivative dL/dt, so that totalEnergy is not constant even without forces.";
   if (autonomous)
@@ -80,7 +80,7 @@ static void write_energies(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
   const struct Summary *summary = page->summary;
   bool linearized = page->model->linearized;
-  bool separate = !linearized && page->model->kinetic.node != page->equations->kinetic;
+  bool separate = !linearized && page->model->energies.kinetic.node != page->equations->kinetic;
   element(writer, "h2", "Energies");
   if (separate) write_equation(page, "T", summary->lagrangian_kinetic);
   write_equation(page, "K", summary->kinetic);
@@ -172,7 +172,7 @@ static void write_mechanics(const struct Page *page) {
   }
   write_rest(writer, page->equations->count, summary->motion_count, "equations");
   write_reactions(page);
-  if (!page->model->has_forces) return;
+  if (!page->model->forces.any) return;
   element(writer, "h2", "Power of the non-conservative forces");
   write_equation(page, "P", summary->power);
   element(writer, "p",
@@ -233,8 +233,8 @@ static void write_solver(const struct Page *page) {
   if (page->equations->count == 0) return;
   element(writer, "h2", "Solver");
   element(writer, "p", method->sentence);
-  if (!isnan(page->model->max_step)) {
-    element(writer, "p", format_text("No step of the method is longer than %g s.", page->model->max_step));
+  if (!isnan(page->model->solver.max_step)) {
+    element(writer, "p", format_text("No step of the method is longer than %g s.", page->model->solver.max_step));
   } else if (method->series == FIRST_TERMS)
     element(writer, "p",
             "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
@@ -256,7 +256,7 @@ static void write_form(xmlTextWriterPtr writer, const struct Program *program) {
 /* model.png, which src/icon draws: of a system with frames, a sketch of its start. */
 static void write_sketch(xmlTextWriterPtr writer, const struct Model *model) {
   bool has_frames = false;
-  for (size_t i = 1; i < model->frame_count; i++) has_frames |= !model->frames[i].is_of_body;
+  for (size_t i = 1; i < model->mechanism.frame_count; i++) has_frames |= !model->mechanism.frames[i].is_of_body;
   if (!has_frames) return;
   xmlTextWriterStartElement(writer, BAD_CAST "p");
   xmlTextWriterStartElement(writer, BAD_CAST "img");

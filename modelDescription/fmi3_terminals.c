@@ -32,7 +32,7 @@ static int *find_forces(const struct Model *model) {
   int *coordinate_of = allocate(inputs + 1, sizeof *coordinate_of), *force = allocate(coordinates + 1, sizeof *force);
   for (size_t i = 0; i < inputs; i++) coordinate_of[i] = NONE;
   for (size_t i = 0; i < coordinates; i++) {
-    struct Gradient gradient = gradient_by_kinds(model->graph, model->forces[i].node, 1u << INPUT);
+    struct Gradient gradient = gradient_by_kinds(model->graph, model->forces.along[i].node, 1u << INPUT);
     for (size_t j = 0; j < gradient.count; j++) {
       int *coordinate = &coordinate_of[graph_symbol_of(model->graph, gradient.symbols[j])->index];
       *coordinate = *coordinate == NONE && gradient.values[j] == ONE ? (int)i : SEVERAL;

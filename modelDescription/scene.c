@@ -11,12 +11,12 @@ static void write_formula(xmlTextWriterPtr writer, const struct Graph *graph, co
 }
 
 static void write_frame_of(xmlTextWriterPtr writer, const struct Model *model, size_t frame) {
-  if (frame != BASE) write_attribute(writer, "in", model->frames[frame].name);
+  if (frame != BASE) write_attribute(writer, "in", model->mechanism.frames[frame].name);
 }
 
 static void write_frames(xmlTextWriterPtr writer, const struct Model *model) {
-  for (size_t i = BASE + 1; i < model->frame_count; i++) {
-    const struct ReferenceFrame *frame = &model->frames[i];
+  for (size_t i = BASE + 1; i < model->mechanism.frame_count; i++) {
+    const struct ReferenceFrame *frame = &model->mechanism.frames[i];
     if (frame->is_of_body) continue; /* seen as that */
     xmlTextWriterStartElement(writer, BAD_CAST "frame");
     write_attribute(writer, "name", frame->name);
@@ -51,7 +51,7 @@ static void write_body(xmlTextWriterPtr writer, const struct Model *model, const
 }
 
 static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
-  const Node *gravity = model->gravity.along;
+  const Node *gravity = model->mechanism.gravity.along;
   if (gravity[0] == ZERO && gravity[1] == ZERO && gravity[2] == ZERO) return;
   xmlTextWriterStartElement(writer, BAD_CAST "gravity");
   for (int i = 0; i < 3; i++) write_formula(writer, model->graph, axes[i], gravity[i]);
@@ -59,13 +59,13 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
 }
 
 bool has_scene(const struct Model *model) {
-  return model->body_count > 0 || model->frame_count > BASE + 1;
+  return model->mechanism.body_count > 0 || model->mechanism.frame_count > BASE + 1;
 }
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterStartElement(writer, BAD_CAST "scene");
   write_gravity(writer, model);
   write_frames(writer, model);
-  for (size_t i = 0; i < model->body_count; i++) write_body(writer, model, &model->bodies[i]);
+  for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
   xmlTextWriterEndElement(writer);
 }

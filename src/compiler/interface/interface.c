@@ -87,8 +87,8 @@ static bool belong_together(const struct Graph *graph, const struct InterfaceVar
 }
 
 static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
-  for (size_t i = 0; i < model->places.count; i++) {
-    const struct Variable *source = &model->places.items[i];
+  for (size_t i = 0; i < model->mechanism.places.count; i++) {
+    const struct Variable *source = &model->mechanism.places.items[i];
     append_result(interface, source->name, source->unit, equations->places[i], source->description);
     struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
     variable->is_continued = i > 0 && belong_together(model->graph, variable - 1, variable);
@@ -122,7 +122,7 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     char *name = format_text("%s.force", constraint->name);
     const char *description = constraint->description != NULL ? constraint->description : constraint->name;
     char *text = format_text("force of the constraint: %s", description);
-    Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->constraint_forces[i];
+    Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
     append_result(interface, name, "", whole_force(model, i, force), text);
     struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
     struct Dimension energy;
@@ -183,7 +183,8 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
   for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
-  for (size_t i = 0; i < model->places.count; i++) uses |= graph_depends_on(graph, equations->places[i], TIME);
+  for (size_t i = 0; i < model->mechanism.places.count; i++)
+    uses |= graph_depends_on(graph, equations->places[i], TIME);
   return uses;
 }
 
@@ -191,7 +192,7 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
 static bool steps_in_time(const struct Model *model) {
   const struct Graph *graph = model->graph;
   bool steps = false;
-  if (!graph_depends_on(graph, model->potential.node, MODE)) return false;
+  if (!graph_depends_on(graph, model->energies.potential.node, MODE)) return false;
   for (size_t i = 0; i < model->switches.count; i++) {
     Node indicator = model->switches.items[i].indicator;
     const char *function = model->switches.items[i].function;
@@ -206,11 +207,11 @@ static bool steps_in_time(const struct Model *model) {
 static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  bool changes = switches->contact_count + switches->event_count > 0 || model->driven ||
-                 model->moving_constraint != NULL || model->linearized ||
-                 graph_depends_on(graph, model->kinetic.node, TIME) ||
-                 graph_depends_on(graph, model->potential.node, TIME) || steps_in_time(model);
-  if (changes || (model->has_forces && !equations->has_work)) return "kinetic and potential energy";
+  bool changes = switches->contact_count + switches->event_count > 0 || model->energies.driven ||
+                 model->given.constraint != NULL || model->linearized ||
+                 graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
+                 graph_depends_on(graph, model->energies.potential.node, TIME) || steps_in_time(model);
+  if (changes || (model->forces.any && !equations->has_work)) return "kinetic and potential energy";
   return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                              : "kinetic and potential energy; constant";
 }
@@ -218,16 +219,16 @@ static const char *total_energy_description(const struct Model *model, const str
 /* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
 static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
-  bool may = graph_depends_on(graph, model->dissipation.node, VELOCITY);
+  bool may = graph_depends_on(graph, model->energies.dissipation.node, VELOCITY);
   for (size_t i = 0; i < model->coordinates.count; i++)
-    may |= graph_depends_on(graph, model->forces[i].node, VELOCITY) ||
+    may |= graph_depends_on(graph, model->forces.along[i].node, VELOCITY) ||
            graph_depends_on(graph, equations->residual[i], INPUT);
   return may;
 }
 
 static const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
   if (model->coordinates.count == 0) return NULL;
-  if (model->method != NULL) return model->method;
+  if (model->solver.method != NULL) return model->solver.method;
   if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
   return method_named(kink != NULL ? "erk" : may_be_stiff(model, equations) ? "auto" : "taylor");
@@ -343,9 +344,9 @@ size_t interface_find(const struct Interface *interface, enum VariableKind kind,
 }
 
 long interface_max_steps(const struct Model *model) {
-  return isnan(model->max_steps) ? 0 : (long)model->max_steps;
+  return isnan(model->solver.max_steps) ? 0 : (long)model->solver.max_steps;
 }
 
 double interface_tolerance(const struct Model *model) {
-  return isnan(model->tolerance) ? 1e-8 : model->tolerance;
+  return isnan(model->solver.tolerance) ? 1e-8 : model->solver.tolerance;
 }

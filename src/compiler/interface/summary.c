@@ -46,7 +46,7 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
 static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
                           size_t i) {
   struct Graph *graph = model->graph;
-  if (equations->explicit_form) return model->accelerations[i];
+  if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   Node sum = ZERO;
   for (size_t k = 0; k < block->count; k++) {
@@ -64,12 +64,12 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   struct Graph *graph = model->graph;
   struct Summary *summary = allocate(1, sizeof *summary);
   struct NodeNames names = author_names(model);
-  Node lagrangian = subtract(graph, model->kinetic.node, model->potential.node);
+  Node lagrangian = subtract(graph, model->energies.kinetic.node, model->energies.potential.node);
   *summary = (struct Summary){
       .names = names,
-      .lagrangian_kinetic = readable(model, &names, model->kinetic.node),
+      .lagrangian_kinetic = readable(model, &names, model->energies.kinetic.node),
       .kinetic = readable(model, &names, equations->kinetic),
-      .potential = readable(model, &names, model->linearized ? equations->potential : model->potential.node),
+      .potential = readable(model, &names, model->linearized ? equations->potential : model->energies.potential.node),
       .power = readable(model, &names, equations->stated_power),
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = at_most(equations->count, SHOWN_LIMIT),

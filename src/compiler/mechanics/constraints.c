@@ -12,7 +12,7 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
   struct Gradient gradient = gradient_by_kinds(graph, target, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    bool is_driven = model->drives[coordinate].given;
+    bool is_driven = model->given.drives[coordinate].given;
     elements_append(is_driven ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
   }
 }
@@ -29,8 +29,8 @@ static void append_oblique(struct Constraints *constraints, const struct Model *
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   for (size_t i = 0; i < n; i++) {
-    struct Gradient gradient = gradient_by_kinds(graph, model->forces[i].node, 1u << ACCELERATION);
-    for (size_t k = 0; k < gradient.count && !model->drives[i].given; k++) {
+    struct Gradient gradient = gradient_by_kinds(graph, model->forces.along[i].node, 1u << ACCELERATION);
+    for (size_t k = 0; k < gradient.count && !model->given.drives[i].given; k++) {
       size_t row = (size_t)graph_symbol_of(graph, gradient.symbols[k])->index - n;
       elements_append(&constraints->oblique, row, i, negate(graph, gradient.values[k]));
       if (!has_element(&constraints->jacobian, row, i)) elements_append(&constraints->jacobian, row, i, ZERO);
@@ -83,6 +83,6 @@ bool depend_on_constraint_force(const struct Model *model, const Node *nodes, si
   if (model->constraints.count == 0) return false;
   cone_collect(graph->cone, graph, nodes, count, NULL);
   for (size_t j = 0; j < model->constraints.count && !depends; j++)
-    depends = cone_has(graph->cone, model->constraint_forces[j]);
+    depends = cone_has(graph->cone, model->unknowns.forces[j]);
   return depends;
 }

@@ -15,7 +15,7 @@ struct Equations *equations_create(const struct Model *model) {
                                   .acceleration = allocate(rows, sizeof(Node)),
                                   .reactions = allocate(model->reactions.count, sizeof(Node)),
                                   .outputs = allocate(model->outputs.count, sizeof(Node)),
-                                  .places = allocate(model->places.count, sizeof(Node))};
+                                  .places = allocate(model->mechanism.places.count, sizeof(Node))};
   return equations;
 }
 

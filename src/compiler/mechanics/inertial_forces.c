@@ -29,28 +29,28 @@ static bool is_rate(const struct Graph *graph, Node constraint) {
 /* Positions and angles of planar bodies. A weight of ZERO is that of a mere point. */
 static struct Motions motions_of_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
-  struct Motions motions = motions_create(4 * model->body_count + model->stillness_count);
-  Node *rate = allocate(4 * model->body_count, sizeof *rate);
-  for (size_t i = 0; i < model->body_count; i++)
-    for (int component = 0; component < 4 && !model->bodies[i].is_in_frame; component++)
+  struct Motions motions = motions_create(4 * model->mechanism.body_count + model->mechanism.stillness_count);
+  Node *rate = allocate(4 * model->mechanism.body_count, sizeof *rate);
+  for (size_t i = 0; i < model->mechanism.body_count; i++)
+    for (int component = 0; component < 4 && !model->mechanism.bodies[i].is_in_frame; component++)
       rate[4 * i + (size_t)component] =
-          component < 3 ? model->bodies[i].position[component].node : model->bodies[i].angle.node;
-  derivative_along(graph, rate, 4 * model->body_count, seeds, rate);
-  derivative_along(graph, rate, 4 * model->body_count, seeds, rate);
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
+          component < 3 ? model->mechanism.bodies[i].position[component].node : model->mechanism.bodies[i].angle.node;
+  derivative_along(graph, rate, 4 * model->mechanism.body_count, seeds, rate);
+  derivative_along(graph, rate, 4 * model->mechanism.body_count, seeds, rate);
+  for (size_t i = 0; i < model->mechanism.body_count; i++) {
+    const struct Body *body = &model->mechanism.bodies[i];
     for (int component = 0; component < 4 && !body->is_in_frame; component++) {
       Node inertia = component < 3 ? body->mass.node : body->inertia.node, position = body->displaced[component];
       if (kind == COORDINATE) position = component < 3 ? body->position[component].node : body->angle.node;
       append(&motions, position, multiply(graph, inertia, rate[4 * i + (size_t)component]));
     }
   }
-  for (size_t i = 0; i < model->stillness_count && kind == COORDINATE; i++) {
-    Node moved = model->stillnesses[i].constraint, acceleration = moved;
+  for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
+    Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
     if (is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
+    append(&motions, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
   }
   return motions;
 }
@@ -64,9 +64,9 @@ static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struc
 
 static struct Motions motions_of_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
-  struct Motions motions = motions_create(6 * model->body_count + model->stillness_count);
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
+  struct Motions motions = motions_create(6 * model->mechanism.body_count + model->mechanism.stillness_count);
+  for (size_t i = 0; i < model->mechanism.body_count; i++) {
+    const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame) continue;
     bool displaced = kind != COORDINATE;
     struct Vector velocity = displaced ? body->displaced_velocity : body->velocity;
@@ -81,11 +81,11 @@ static struct Motions motions_of_velocities(const struct Model *model, const Nod
       append(&motions, spin.along[axis], torque.along[axis]);
     }
   }
-  for (size_t i = 0; i < model->stillness_count && kind == COORDINATE; i++) {
-    Node moved = model->stillnesses[i].constraint, acceleration = moved;
+  for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
+    Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
     if (!is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    append(&motions, moved, multiply(graph, model->stillnesses[i].inertia, acceleration));
+    append(&motions, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
   }
   return motions;
 }
@@ -108,10 +108,10 @@ Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolK
 Node energy_of_stillness(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, false), energy = ZERO;
-  for (size_t i = 0; i < model->stillness_count; i++) {
-    Node rate = model->stillnesses[i].constraint;
+  for (size_t i = 0; i < model->mechanism.stillness_count; i++) {
+    Node rate = model->mechanism.stillnesses[i].constraint;
     if (!is_rate(graph, rate)) derivative_along(graph, &rate, 1, seeds, &rate);
-    Node term = multiply(graph, model->stillnesses[i].inertia, power_number(graph, rate, 2.0));
+    Node term = multiply(graph, model->mechanism.stillnesses[i].inertia, power_number(graph, rate, 2.0));
     energy = add(graph, energy, scale(graph, 0.5, term));
   }
   return energy;

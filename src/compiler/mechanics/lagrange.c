@@ -15,8 +15,8 @@ static Node *generalized_forces(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   Node *force = allocate(n, sizeof *force);
-  gradient_of(graph, model->dissipation.node, VELOCITY, n, force);
-  for (size_t i = 0; i < n; i++) force[i] = subtract(graph, model->forces[i].node, force[i]);
+  gradient_of(graph, model->energies.dissipation.node, VELOCITY, n, force);
+  for (size_t i = 0; i < n; i++) force[i] = subtract(graph, model->forces.along[i].node, force[i]);
   return force;
 }
 
@@ -29,7 +29,7 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
 }
 
 static bool is_driven(const struct Model *model, size_t row) {
-  return row < model->coordinates.count && model->drives[row].given;
+  return row < model->coordinates.count && model->given.drives[row].given;
 }
 
 /*
@@ -49,7 +49,7 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
     move_block(&inertia->blocks[b], left[0], part, true);
   }
   for (size_t i = 0; i < n; i++) other[i] = left[0][i];
-  for (size_t i = 0; i < count; i++) rows[i] = model->accelerations[i];
+  for (size_t i = 0; i < count; i++) rows[i] = model->unknowns.accelerations[i];
   inertia_add_product(graph, inertia, rows, other);
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
@@ -64,11 +64,11 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
 /* The equation of a driven coordinate tells the force of its drive; what moves it is another one. */
 static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
   struct Graph *graph = model->graph;
-  const struct Drive *drive = &model->drives[i];
+  const struct Drive *drive = &model->given.drives[i];
   shorten(graph, 1, &equations->residual[i]);
   equations->reactions[drive->reaction] = equations->residual[i];
   equations->right_side[i] = drive->acceleration;
-  equations->residual[i] = subtract(graph, model->accelerations[i], drive->acceleration);
+  equations->residual[i] = subtract(graph, model->unknowns.accelerations[i], drive->acceleration);
 }
 
 /* Those that follow from the forces of constraints belong to the matrix. */
@@ -77,8 +77,7 @@ static Node without_forces(const struct Model *model, Node node) {
   if (model->switches.friction_count == 0 || !graph_depends_on(graph, node, ACCELERATION)) return node;
   Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
   for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
-  for (size_t j = 0; j < model->constraints.count; j++)
-    symbols[graph->vertices[model->constraint_forces[j]].left] = ZERO;
+  for (size_t j = 0; j < model->constraints.count; j++) symbols[graph->vertices[model->unknowns.forces[j]].left] = ZERO;
   substitute(graph, &node, 1, symbols, &node);
   return node;
 }
@@ -87,7 +86,7 @@ static Node without_forces(const struct Model *model, Node node) {
 static void derive_motion(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
-  Node lagrangian = subtract(graph, model->explicit_kinetic.node, model->potential.node);
+  Node lagrangian = subtract(graph, model->energies.explicit_kinetic.node, model->energies.potential.node);
   Node *momentum = allocate(n, sizeof *momentum), *gradient = allocate(n, sizeof *gradient);
   Node *rate = allocate(n, sizeof *rate);
   Node *left[2] = {allocate(row_count(equations), sizeof(Node)), allocate(row_count(equations), sizeof(Node))};
@@ -104,7 +103,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = without_forces(model, subtract(graph, right, left[0][i]));
     equations->residual[i] = subtract(graph, left[1][i], right);
-    if (model->drives[i].given) give_motion(model, equations, i);
+    if (model->given.drives[i].given) give_motion(model, equations, i);
   }
 }
 
@@ -115,11 +114,11 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
   const struct Elements *free_ones = &constraints->jacobian, *driven = &constraints->driven;
   for (size_t k = 0; k < free_ones->count; k++) {
     Node *sum = &equations->residual[free_ones->positions[k].column];
-    *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->constraint_forces));
+    *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->unknowns.forces));
   }
   for (size_t k = 0; k < driven->count; k++) {
-    Node *sum = &equations->reactions[model->drives[driven->positions[k].column].reaction];
-    *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->constraint_forces));
+    Node *sum = &equations->reactions[model->given.drives[driven->positions[k].column].reaction];
+    *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->unknowns.forces));
   }
   for (size_t j = 0; j < constraints->count; j++) {
     equations->residual[equations->count + j] = constraints->acceleration[j];
@@ -141,7 +140,7 @@ static Node with_accelerations(const struct Model *model, const struct Equations
   Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
   for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
   for (size_t i = 0; i < equations->count; i++)
-    symbols[graph->vertices[model->accelerations[i]].left] = equations->acceleration[i];
+    symbols[graph->vertices[model->unknowns.accelerations[i]].left] = equations->acceleration[i];
   substitute(graph, &node, 1, symbols, &node);
   shorten(graph, 1, &node);
   return node;
@@ -151,16 +150,16 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   struct Graph *graph = model->graph;
   Node power = ZERO;
   for (size_t i = 0; i < equations->count; i++) {
-    const struct Drive *drive = &model->drives[i];
+    const struct Drive *drive = &model->given.drives[i];
     Node whole = drive->given ? add(graph, force[i], equations->reactions[drive->reaction]) : force[i];
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
   power = add(graph, power, moving_power(model));
-  equations->stated_power = add(graph, power, model->driven_power.node);
+  equations->stated_power = add(graph, power, model->forces.driven_power.node);
   equations->power = equations->stated_power;
   if (equations->has_work) equations->power = with_accelerations(model, equations, equations->power);
-  equations->kinetic = model->kinetic_energy.node;
-  equations->potential = stored_energy(model, model->potential.node);
+  equations->kinetic = model->energies.kinetic_energy.node;
+  equations->potential = stored_energy(model, model->energies.potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
 }
 
@@ -173,8 +172,8 @@ static Node output_of(const struct Model *model, const Node *reactions, Node nod
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->outputs.count; i++)
     equations->outputs[i] = output_of(model, equations->reactions, model->outputs.items[i].node);
-  for (size_t i = 0; i < model->places.count; i++)
-    equations->places[i] = without_branches(model, model->places.items[i].node);
+  for (size_t i = 0; i < model->mechanism.places.count; i++)
+    equations->places[i] = without_branches(model, model->mechanism.places.items[i].node);
 }
 
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics) {
@@ -183,9 +182,9 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   int errors = diagnostics->errors;
   struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
-  Node kinetic = add(graph, model->kinetic.node, energy_of_stillness(model));
-  gradient_of(graph, subtract(graph, kinetic, model->potential.node), VELOCITY, n, momentum);
-  equations->has_work = model->work_line > 0;
+  Node kinetic = add(graph, model->energies.kinetic.node, energy_of_stillness(model));
+  gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
+  equations->has_work = model->forces.work_line > 0;
   const struct Constraints *constraints = equations->constraints;
   const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
   equations->inertia = inertia_derive(model, momentum, &border, diagnostics);

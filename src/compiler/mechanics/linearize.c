@@ -198,7 +198,7 @@ static Node without_forces(const struct Model *model, const struct Equations *li
   Node *replacements = allocate(graph->symbol_count, sizeof *replacements), result;
   for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
   for (size_t j = 0; j < model->constraints.count; j++)
-    replacements[graph->vertices[model->constraint_forces[j]].left] = linear->acceleration[linear->count + j];
+    replacements[graph->vertices[model->unknowns.forces[j]].left] = linear->acceleration[linear->count + j];
   substitute(graph, &node, 1, replacements, &result);
   return result;
 }
@@ -232,13 +232,13 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linearize_block(expansion, equations, &linear->inertia->blocks[b], linear->acceleration);
   for (size_t i = 0; i < linear->count; i++) {
     linear->right_side[i] = linear->acceleration[i];
-    linear->residual[i] = subtract(graph, model->accelerations[i], linear->acceleration[i]);
+    linear->residual[i] = subtract(graph, model->unknowns.accelerations[i], linear->acceleration[i]);
   }
   for (size_t i = 0; i < model->reactions.count; i++)
     linear->reactions[i] = without_forces(model, linear, expand(expansion, equations->reactions[i]));
   for (size_t i = 0; i < model->outputs.count; i++)
     linear->outputs[i] = without_forces(model, linear, expand(expansion, equations->outputs[i]));
-  for (size_t i = 0; i < model->places.count; i++)
+  for (size_t i = 0; i < model->mechanism.places.count; i++)
     linear->places[i] = without_forces(model, linear, expand(expansion, equations->places[i]));
   linear->power = linear->stated_power = equations->power;
   linear->kinetic = expand_twice(expansion, equations->kinetic);
@@ -278,7 +278,7 @@ static void fill_row(const struct Model *model, const struct Equations *equation
     Node *elements = symbol->kind == INPUT ? b : symbol->kind == VELOCITY ? a + n : a;
     elements[symbol->index] = slope;
     if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
-      report_error(diagnostics, model->solver_line,
+      report_error(diagnostics, model->solver.line,
                    "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
                    model->velocities.items[row].name, symbol->name);
   }
@@ -296,7 +296,7 @@ static void fill_accelerations(const struct Model *model, const struct Equations
     fill_row(model, equations, i, system, diagnostics);
     substitute(graph, &equations->acceleration[i], 1, zero, &system->c[n + i]);
     if (!graph_is_constant_in_time(graph, system->c[n + i]))
-      report_error(diagnostics, model->solver_line,
+      report_error(diagnostics, model->solver.line,
                    "the system is not linear with constant coefficients: der(%s) depends on time; expected another "
                    "method than 'exact'",
                    model->velocities.items[i].name);

@@ -31,10 +31,10 @@ static Node *work_along(struct Graph *graph, struct Work *work, enum SymbolKind 
 /* What torques do along the rates of the symbols, which follow these. */
 static void add_torques(const struct Model *model, enum SymbolKind kind, size_t count, Node *force) {
   struct Graph *graph = model->graph;
-  struct Work work = work_create(3 * model->torque_count);
-  for (size_t i = 0; i < model->torque_count; i++)
+  struct Work work = work_create(3 * model->forces.torque_count);
+  for (size_t i = 0; i < model->forces.torque_count; i++)
     for (int axis = 0; axis < 3; axis++) {
-      const struct Torque *torque = &model->torques[i];
+      const struct Torque *torque = &model->forces.torques[i];
       if (graph_depends_on(graph, torque->angular_velocity.along[axis], kind))
         append_work(&work, torque->angular_velocity.along[axis], torque->torque.along[axis]);
     }
@@ -43,10 +43,10 @@ static void add_torques(const struct Model *model, enum SymbolKind kind, size_t 
 }
 
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
-  struct Work work = work_create(model->point_force_count);
-  for (size_t i = 0; i < model->point_force_count; i++)
-    if (graph_depends_on(model->graph, model->point_forces[i].position, kind))
-      append_work(&work, model->point_forces[i].position, model->point_forces[i].force);
+  struct Work work = work_create(model->forces.point_count);
+  for (size_t i = 0; i < model->forces.point_count; i++)
+    if (graph_depends_on(model->graph, model->forces.at_points[i].position, kind))
+      append_work(&work, model->forces.at_points[i].position, model->forces.at_points[i].force);
   Node *force = work_along(model->graph, &work, kind, count);
   add_torques(model, kind, count, force);
   return force;
@@ -55,7 +55,7 @@ static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_
 /* R + Q for each symbol of the kind but the last; that of its rate follows it. */
 static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_t count) {
   struct Graph *graph = model->graph;
-  Node lagrangian = subtract(graph, model->displaced_kinetic.node, model->displaced_potential.node);
+  Node lagrangian = subtract(graph, model->energies.displaced_kinetic.node, model->energies.displaced_potential.node);
   Node *seeds = time_seeds(model, true), *force = inertial_forces(model, seeds, kind, count);
   Node *slope = allocate(count, sizeof *slope), *rate = allocate(count, sizeof *rate);
   gradient_of(graph, lagrangian, kind, count, slope);
@@ -77,7 +77,7 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   if (count == 0) return;
   Node *force = forces_along(model, DISPLACEMENT, 2 * count), *undisplaced = undisplaced_symbols(graph);
   Node *push = point_forces(model, DISPLACEMENT, 2 * count), *damping = allocate(2 * count, sizeof *damping);
-  gradient_of(graph, model->displaced_dissipation.node, DISPLACEMENT, 2 * count, damping);
+  gradient_of(graph, model->energies.displaced_dissipation.node, DISPLACEMENT, 2 * count, damping);
   for (size_t i = 0; i < count; i++)
     reactions[i] = subtract(graph, subtract(graph, push[2 * i], damping[2 * i + 1]), force[2 * i]);
   substitute(graph, reactions, count, undisplaced, reactions);
@@ -88,10 +88,10 @@ void reactions_derive(const struct Model *model, Node *reactions) {
 Node moving_power(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t count = model->inputs.count;
-  if (!model->inputs_move) return ZERO;
+  if (!model->given.inputs_move) return ZERO;
   Node *force = forces_along(model, INPUT, count), *undisplaced = undisplaced_symbols(graph), power = ZERO;
   for (size_t i = 0; i + 1 < count; i++)
-    if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->input_rates[i]));
+    if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->given.input_rates[i]));
   substitute(graph, &power, 1, undisplaced, &power);
   return power;
 }

@@ -84,12 +84,12 @@ static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
 }
 
 static Node indicator_of_contact(const struct Model *model, const struct Contact *contact) {
-  return choose_node(model->graph, contact->mode, model->constraint_forces[contact->constraint], contact->gap);
+  return choose_node(model->graph, contact->mode, model->unknowns.forces[contact->constraint], contact->gap);
 }
 
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
-  Node force = model->constraint_forces[friction->constraint];
+  Node force = model->unknowns.forces[friction->constraint];
   Node limit = power_number(graph, friction->stiction, 2.0);
   Node left = subtract(graph, limit, power_number(graph, force, 2.0));
   Node along = multiply(graph, friction->mode, friction->velocity);
@@ -138,8 +138,8 @@ static void append_energies(const struct Model *model, const struct Equations *e
   append_node(list, equations->kinetic);
   append_node(list, equations->potential);
   Node *momentum = allocate(n, sizeof *momentum);
-  gradient_of(model->graph, model->kinetic.node, VELOCITY, n, momentum);
-  for (size_t i = 0; i < n && graph_depends_on(model->graph, model->kinetic.node, MODE); i++)
+  gradient_of(model->graph, model->energies.kinetic.node, VELOCITY, n, momentum);
+  for (size_t i = 0; i < n && graph_depends_on(model->graph, model->energies.kinetic.node, MODE); i++)
     append_node(list, momentum[i]);
   switching->energy_count = list->count - first;
 }

@@ -7,12 +7,12 @@ Node *time_seeds(const struct Model *model, bool with_accelerations) {
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[model->time].left] = ONE;
   for (size_t i = 0; i < model->inputs.count; i++)
-    seeds[graph->vertices[model->inputs.items[i].node].left] = model->input_rates[i];
+    seeds[graph->vertices[model->inputs.items[i].node].left] = model->given.input_rates[i];
   for (size_t i = 0; i < model->coordinates.count; i++) {
     Node *rate = &seeds[graph->vertices[model->velocities.items[i].node].left];
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-    if (model->drives[i].given) *rate = model->drives[i].acceleration;
-    else if (with_accelerations) *rate = model->accelerations[i];
+    if (model->given.drives[i].given) *rate = model->given.drives[i].acceleration;
+    else if (with_accelerations) *rate = model->unknowns.accelerations[i];
   }
   return seeds;
 }

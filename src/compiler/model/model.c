@@ -21,7 +21,7 @@ struct Variable variable_create(char *name, char *description, long line) {
 }
 
 bool is_input_rate(const struct Model *model, size_t input) {
-  return input > 0 && model->input_rates[input - 1] == model->inputs.items[input].node;
+  return input > 0 && model->given.input_rates[input - 1] == model->inputs.items[input].node;
 }
 
 bool start_follows(const struct Model *model, const struct Variable *variable) {
@@ -32,7 +32,8 @@ double *start_values(const struct Model *model) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
                                               &model->velocities};
   double *values = allocate(model->graph->symbol_count, sizeof *values);
-  values[model->graph->vertices[model->time].left] = isnan(model->start_time) ? 0.0 : model->start_time;
+  values[model->graph->vertices[model->time].left] =
+      isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
   for (size_t list = 0; list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
@@ -47,7 +48,7 @@ bool has_fixed_coordinates(const struct Model *model) {
 
 Node unknown_of_row(const struct Model *model, size_t row) {
   size_t n = model->coordinates.count;
-  return row < n ? model->accelerations[row] : model->constraint_forces[row - n];
+  return row < n ? model->unknowns.accelerations[row] : model->unknowns.forces[row - n];
 }
 
 char *variable_unit(const struct Variable *variable) {

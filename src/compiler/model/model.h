@@ -80,20 +80,17 @@ struct LinearizationPoint {
   bool *given;
 };
 
-struct Model {
-  char *name, *description;
-  struct Graph *graph;
-  struct VariableList parameters, inputs, coordinates, velocities, outputs;
-  struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
-  struct VariableList definitions; /* what each <define> stands for, in its node */
-  struct VariableList displacements;
-  struct VariableList modes; /* that the author declared; those of switches have no names */
-  struct Switches switches;
-  struct VariableList reactions; /* forces along the displacements, then of the drives */
-  Node *input_rates;             /* of each input: the one that is its time derivative; ZERO for none */
-  bool inputs_move;              /* positions or energies depend on inputs */
-  struct Drive *drives;          /* one a coordinate */
-  size_t drive_count;            /* of those that are given */
+/* What moves in a given way, by inputs or by drives. */
+struct GivenMotion {
+  Node *input_rates;                 /* of each input: the one that is its time derivative; ZERO for none */
+  bool inputs_move;                  /* positions or energies depend on inputs */
+  struct Drive *drives;              /* one a coordinate */
+  size_t drive_count;                /* of those that are given */
+  const struct Variable *constraint; /* one that moves in a given way, so that it does work; NULL for none */
+};
+
+/* Bodies, and the frames that they are in. */
+struct Mechanism {
   struct Body *bodies;
   size_t body_count;
   struct ReferenceFrame *frames;
@@ -102,34 +99,71 @@ struct Model {
   struct Vector gravity;      /* m/s2: the direction of what <gravity> gives, along the base's axes */
   struct Stillness *stillnesses;
   size_t stillness_count;
-  Node *accelerations; /* the symbol of each coordinate's acceleration */
-  /* Each is 0 at all times: of coordinates and time, or also linear in the velocities. */
-  struct VariableList constraints;
-  const struct Variable *moving_constraint; /* one that moves in a given way, so that it does work; NULL for none */
-  Node *constraint_forces; /* the symbol of each force, of the kind ACCELERATION, numbered after the coordinates */
-  Node time;
-  struct Quantity kinetic;                /* J: K of L = K - U, of the bodies and of the <kinetic> terms */
-  struct Quantity explicit_kinetic;       /* J: of the <kinetic> terms alone */
-  struct Quantity kinetic_energy;         /* J: the energy of both, see energies.h */
-  bool driven;                            /* masses are moved in a given way, also where all velocities are 0 */
-  struct Quantity potential, dissipation; /* J, W */
-  struct Quantity *forces;                /* generalized force along each coordinate */
+};
+
+/* In J, and in W the dissipation. */
+struct Energies {
+  struct Quantity kinetic;          /* K of L = K - U, of the bodies and of the <kinetic> terms */
+  struct Quantity explicit_kinetic; /* of the <kinetic> terms alone */
+  struct Quantity kinetic_energy;   /* the energy of both, see energies.h */
+  bool driven;                      /* masses are moved in a given way, also where all velocities are 0 */
+  struct Quantity potential, dissipation;
   /* The sums of the <kinetic> terms, potentials and dissipations as functions of displacements too. */
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
-  struct PointForce *point_forces;
-  size_t point_force_count;
+};
+
+struct Forces {
+  struct Quantity *along; /* generalized force along each coordinate */
+  struct PointForce *at_points;
+  size_t point_count;
   struct Torque *torques;
   size_t torque_count;
   struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
-  bool has_forces;              /* some force, dissipation or drive was given */
+  bool any;                     /* some force, dissipation or drive was given */
   long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
+};
+
+/* The symbols that the equations of motion are solved for. */
+struct Unknowns {
+  Node *accelerations; /* of each coordinate */
+  Node *forces;        /* of each constraint, of the kind ACCELERATION, numbered after the coordinates */
+};
+
+/* What <solver> says; NAN where a number was not given. */
+struct SolverChoice {
+  const struct Method *method; /* NULL for the default */
+  double tolerance, max_step;  /* max_step in s */
+  double max_steps;            /* in one communication step, a whole number */
+  long line;
+};
+
+/* What <experiment> says, in s; NAN where none was given. */
+struct Experiment {
+  double start_time, stop_time, step_size;
+};
+
+struct Model {
+  char *name, *description;
+  struct Graph *graph;
+  Node time;
+  struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
+  struct VariableList definitions; /* what each <define> stands for, in its node */
+  struct VariableList displacements;
+  struct VariableList modes; /* that the author declared; those of switches have no names */
+  struct VariableList
+      constraints;               /* each is 0 at all times: of coordinates and time, or also linear in the velocities */
+  struct VariableList reactions; /* forces along the displacements, then of the drives */
+  struct Switches switches;
+  struct GivenMotion given;
+  struct Mechanism mechanism;
+  struct Energies energies;
+  struct Forces forces;
+  struct Unknowns unknowns;
   bool linearized;
-  struct LinearizationPoint point;         /* where linearized */
-  const struct Method *method;             /* NULL for the default */
-  double tolerance, max_step;              /* NAN where none was given; max_step in s */
-  double max_steps;                        /* in one communication step, a whole number; NAN where none was given */
-  double start_time, stop_time, step_size; /* NAN where none was given */
-  long solver_line;
+  struct LinearizationPoint point; /* where linearized */
+  struct SolverChoice solver;
+  struct Experiment experiment;
 };
 
 /* Whether the input is the time derivative of the one before it. */

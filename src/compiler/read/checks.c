@@ -11,23 +11,25 @@ static void check_content(const struct Reader *reader) {
   size_t coordinates = model->coordinates.count;
   if (coordinates == 0 && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
-  if (coordinates == 0 &&
-      (model->body_count > 0 || model->displacements.count > 0 || model->kinetic.node != ZERO || model->has_forces))
+  if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
+                           model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
   if (coordinates == 0 && reader->has_solver)
-    report_error(reader->diagnostics, model->solver_line,
+    report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates has nothing to solve; expected no <solver>");
-  if (model->work_line > 0 && !model->has_forces)
-    report_error(reader->diagnostics, model->work_line, "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && model->work_line > 0 && (model->inputs_move || model->drive_count > 0))
-    report_error(reader->diagnostics, model->work_line,
+  if (model->forces.work_line > 0 && !model->forces.any)
+    report_error(reader->diagnostics, model->forces.work_line,
+                 "<work/> without forces; expected a <force> or <dissipation>");
+  if (model->constraints.count > 0 && model->forces.work_line > 0 &&
+      (model->given.inputs_move || model->given.drive_count > 0))
+    report_error(reader->diagnostics, model->forces.work_line,
                  "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
-                 model->drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
-  if (model->work_line > 0 && model->moving_constraint != NULL)
-    report_error(reader->diagnostics, model->work_line,
+                 model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
+  if (model->forces.work_line > 0 && model->given.constraint != NULL)
+    report_error(reader->diagnostics, model->forces.work_line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
                  "<work/>, or a coordinate that is moved so in place of the constraint",
-                 model->moving_constraint->name);
+                 model->given.constraint->name);
 }
 
 /* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */
@@ -47,13 +49,14 @@ static void warn_without_unit(const struct Reader *reader) {
 
 /* All that may hold displacements, with those that each holds marked. */
 static bool *mark_displaced(const struct Model *model) {
-  Node *targets = allocate(4 * model->body_count + 3, sizeof *targets);
+  Node *targets = allocate(4 * model->mechanism.body_count + 3, sizeof *targets);
   size_t count = 0;
-  for (size_t i = 0; i < model->body_count; i++)
-    for (int component = 0; component < 4; component++) targets[count++] = model->bodies[i].displaced[component];
-  targets[count++] = model->displaced_kinetic.node;
-  targets[count++] = model->displaced_potential.node;
-  targets[count++] = model->displaced_dissipation.node;
+  for (size_t i = 0; i < model->mechanism.body_count; i++)
+    for (int component = 0; component < 4; component++)
+      targets[count++] = model->mechanism.bodies[i].displaced[component];
+  targets[count++] = model->energies.displaced_kinetic.node;
+  targets[count++] = model->energies.displaced_potential.node;
+  targets[count++] = model->energies.displaced_dissipation.node;
   bool *marks = allocate(model->graph->count, sizeof *marks);
   graph_mark(model->graph, targets, count, marks);
   return marks;
@@ -99,8 +102,8 @@ static void check_quaternions(const struct Reader *reader, const double *values)
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
-    for (size_t k = 0; k < model->stillness_count; k++)
-      if (model->stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
+    for (size_t k = 0; k < model->mechanism.stillness_count; k++)
+      if (model->mechanism.stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
         report_error(
             reader->diagnostics, constraint->line,
             "the quaternion of %.*s is 0 at the start values; expected one that turns, such as 1 0 0 0: start=\"1\" "
@@ -112,8 +115,8 @@ static void check_quaternions(const struct Reader *reader, const double *values)
 static void warn_at_start(const struct Reader *reader) {
   const struct Model *model = reader->model;
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
+  for (size_t i = 0; i < model->mechanism.body_count; i++) {
+    const struct Body *body = &model->mechanism.bodies[i];
     warn_of_inertia(reader, body, "mass", body->mass.node, values);
     warn_of_inertia(reader, body, "inertia", body->inertia.node, values);
     if (body->is_in_frame) warn_of_tensor(reader, body, values);

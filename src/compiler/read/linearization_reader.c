@@ -64,8 +64,8 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
   scope->diagnostics = diagnostics;
   model->name = attribute(root, "name");
   model->description = attribute(root, "description");
-  model->method = NULL;
-  model->max_step = model->max_steps = NAN;
+  model->solver.method = NULL;
+  model->solver.max_step = model->solver.max_steps = NAN;
   begin_point(model);
   for (xmlNodePtr node = root->children; node != NULL; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;

@@ -23,14 +23,15 @@
 /* Symbols for time and the accelerations; what der(...) makes of each symbol. */
 static void relate_to_time(struct Model *model, struct Scope *scope) {
   size_t n = model->coordinates.count;
-  model->accelerations = allocate(n, sizeof *model->accelerations);
-  model->forces = allocate(n, sizeof *model->forces);
+  model->unknowns.accelerations = allocate(n, sizeof *model->unknowns.accelerations);
+  model->forces.along = allocate(n, sizeof *model->forces.along);
   scope_set_time_derivative(scope, model->time, ONE);
   for (size_t i = 0; i < n; i++) {
     char *name = format_text("der(%s)", model->velocities.items[i].name);
-    model->accelerations[i] = scope_symbol(scope, ACCELERATION, (int)i, name, model->velocities.items[i].dimension, 0);
+    model->unknowns.accelerations[i] =
+        scope_symbol(scope, ACCELERATION, (int)i, name, model->velocities.items[i].dimension, 0);
     scope_set_time_derivative(scope, model->coordinates.items[i].node, model->velocities.items[i].node);
-    scope_set_time_derivative(scope, model->velocities.items[i].node, model->accelerations[i]);
+    scope_set_time_derivative(scope, model->velocities.items[i].node, model->unknowns.accelerations[i]);
   }
 }
 
@@ -47,21 +48,21 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->displacements.count; i++)
     append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
   for (size_t i = 0; i < model->coordinates.count; i++) {
-    if (!model->drives[i].given) continue;
-    model->drives[i].reaction = model->reactions.count;
+    if (!model->given.drives[i].given) continue;
+    model->given.drives[i].reaction = model->reactions.count;
     append_reaction(model, scope, &model->coordinates.items[i], "force of what drives");
   }
 }
 
 /* Symbols for the forces of the constraints, which are numbered after the accelerations. */
 static void declare_constraint_forces(struct Model *model, struct Scope *scope) {
-  model->constraint_forces = allocate(model->constraints.count, sizeof *model->constraint_forces);
+  model->unknowns.forces = allocate(model->constraints.count, sizeof *model->unknowns.forces);
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     char *name = format_text("%s.force", constraint->name);
     struct Dimension dimension = dimension_multiply(unit_of("J"), constraint->dimension, -1.0);
     int index = (int)(model->coordinates.count + i);
-    Node node = model->constraint_forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
+    Node node = model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
   }
 }
@@ -76,7 +77,8 @@ static void check_definitions_used(struct Reader *reader) {
 static struct Model *model_create(void) {
   struct Model *model = allocate(1, sizeof *model);
   model->graph = graph_create();
-  model->tolerance = model->max_step = model->max_steps = model->start_time = model->stop_time = model->step_size = NAN;
+  model->solver = (struct SolverChoice){.tolerance = NAN, .max_step = NAN, .max_steps = NAN};
+  model->experiment = (struct Experiment){NAN, NAN, NAN};
   return model;
 }
 
@@ -106,7 +108,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, EXPRESSIONS);
   undisplace_switches(reader);
   complete_friction_forces(reader);
-  reader->model->has_forces |= reader->model->inputs_move;
+  reader->model->forces.any |= reader->model->given.inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
@@ -154,8 +156,8 @@ struct Model *model_read(const char *path, const struct ReaderOptions *options, 
   struct Scope *scope = NULL;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
   if (model == NULL || options->solver == NULL) return model;
-  model->method = method_named(options->solver);
-  if (model->method != NULL) return model;
+  model->solver.method = method_named(options->solver);
+  if (model->solver.method != NULL) return model;
   char *names = method_names();
   report_error(diagnostics, 0, "--solver %s is not known; expected %s", options->solver, names);
   return NULL;

@@ -271,7 +271,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
   fputs("    .tolerance = ", file);
   write_c_number(file, interface_tolerance(program->model));
   fputs(",\n    .max_step = ", file);
-  write_c_number(file, isnan(program->model->max_step) ? INFINITY : program->model->max_step);
+  write_c_number(file, isnan(program->model->solver.max_step) ? INFINITY : program->model->solver.max_step);
   fprintf(file, ",\n    .max_steps = %ld,\n    .depends_on_time = %s,\n    .output_derivative_order = %d,\n",
           interface_max_steps(program->model), interface->depends_on_time ? "true" : "false",
           interface->output_derivative_order);

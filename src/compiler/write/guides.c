@@ -24,7 +24,7 @@ static char *mark_inputs(const struct Model *model, Node constraint, bool *is_gu
 
 static size_t rate_count(const struct Model *model, size_t input) {
   size_t count = 0;
-  while (model->input_rates[input + count] != ZERO) count++;
+  while (model->given.input_rates[input + count] != ZERO) count++;
   return count;
 }
 

@@ -72,7 +72,7 @@ static bool rests_on(const struct Program *program, size_t friction, size_t cont
   const struct Model *model = program->model;
   struct Cone *cone = model->graph->cone;
   cone_collect(cone, model->graph, &model->switches.frictions[friction].sliding, 1, NULL);
-  return cone_has(cone, model->constraint_forces[model->switches.contacts[contact].constraint]);
+  return cone_has(cone, model->unknowns.forces[model->switches.contacts[contact].constraint]);
 }
 
 static bool any_rests(const struct Program *program) {

@@ -113,9 +113,10 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
     inertia = is_right ? create_bordered(model->graph, count, &elements, border) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
-  bool power_has_accelerations = (model->drive_count > 0 || model->inputs_move) && model->work_line > 0;
-  bool unroll_all =
-      power_has_accelerations || model->linearized || (model->method != NULL && model->method->needs_linear);
+  bool power_has_accelerations =
+      (model->given.drive_count > 0 || model->given.inputs_move) && model->forces.work_line > 0;
+  bool unroll_all = power_has_accelerations || model->linearized ||
+                    (model->solver.method != NULL && model->solver.method->needs_linear);
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];
     block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);

@@ -77,7 +77,7 @@ static void add_push(const struct Model *model, Node along, enum SymbolKind kind
   struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    if (model->drives[coordinate].given) continue;
+    if (model->given.drives[coordinate].given) continue;
     push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
   }
 }
@@ -89,12 +89,12 @@ static void create_pushes(struct Expressions *expressions, const Node *seeds) {
   Node *push = expressions->corrections.push = allocate(row_count(expressions->equations), sizeof(Node));
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
-    Node seed = seed_of(model->graph, seeds, model->constraint_forces[contact->constraint]);
+    Node seed = seed_of(model->graph, seeds, model->unknowns.forces[contact->constraint]);
     add_push(model, contact->gap, COORDINATE, seed, push);
   }
   for (size_t i = 0; i < switches->friction_count && switches->contact_count > 0; i++) {
     const struct Friction *friction = &switches->frictions[i];
-    Node seed = seed_of(model->graph, seeds, model->constraint_forces[friction->constraint]);
+    Node seed = seed_of(model->graph, seeds, model->unknowns.forces[friction->constraint]);
     add_push(model, friction->velocity, VELOCITY, seed, push);
   }
 }
@@ -152,19 +152,19 @@ static void create_directional(struct Expressions *expressions) {
 
 static void create_linear(struct Expressions *expressions, struct Diagnostics *diagnostics) {
   const struct Model *model = expressions->model;
-  if (!isnan(model->max_step) || !isnan(model->max_steps))
-    report_error(diagnostics, model->solver_line,
+  if (!isnan(model->solver.max_step) || !isnan(model->solver.max_steps))
+    report_error(diagnostics, model->solver.line,
                  "the method 'exact' takes a communication step as a whole; expected no maxStep%s",
-                 isnan(model->max_step) ? "s" : "");
+                 isnan(model->solver.max_step) ? "s" : "");
   if (expressions->equations->constraints->count > 0)
-    report_error(diagnostics, model->solver_line,
+    report_error(diagnostics, model->solver.line,
                  "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
   if (model->switches.contact_count + model->switches.friction_count + model->switches.event_count > 0)
-    report_error(diagnostics, model->solver_line,
+    report_error(diagnostics, model->solver.line,
                  "the method 'exact' knows no events; expected another method for a system that switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
-    report_error(diagnostics, model->solver_line,
+    report_error(diagnostics, model->solver.line,
                  "<work/> is not linear in the state; expected another method than 'exact'");
 }
 
@@ -173,7 +173,7 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
   expressions->jacobian = jacobian_create(model->graph, expressions->equations);
   if (expressions->jacobian == NULL)
     report_error(
-        diagnostics, model->solver_line,
+        diagnostics, model->solver.line,
         "the Jacobian matrix of the method '%s' would have more than %d elements, as the mass matrix couples the "
         "coordinates; expected the method 'taylor', or a smaller system",
         expressions->interface->method->name, JACOBIAN_LIMIT);
@@ -191,7 +191,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   if (kink == NULL || !is_taylor)
     expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
   else
-    report_error(diagnostics, model->solver_line,
+    report_error(diagnostics, model->solver.line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
 }
 

@@ -37,7 +37,7 @@ static bool is_moving(const struct Model *model, Node constraint) {
 /* How many time derivatives of the input are inputs too. */
 static int rate_count(const struct Model *model, size_t input) {
   int count = 0;
-  for (Node rate = model->input_rates[input]; rate != ZERO; rate = model->input_rates[++input]) count++;
+  for (Node rate = model->given.input_rates[input]; rate != ZERO; rate = model->given.input_rates[++input]) count++;
   return count;
 }
 
@@ -80,6 +80,6 @@ void check_constraint(struct Reader *reader, const struct Variable *constraint) 
                  "the constraint '%s' is not linear in the velocities; expected one of coordinates and time, or one "
                  "linear in the velocities, as of rolling without slipping",
                  constraint->name);
-  else if (is_moving(model, constraint->node)) model->moving_constraint = constraint;
+  else if (is_moving(model, constraint->node)) model->given.constraint = constraint;
   if (graph_depends_on(graph, constraint->node, INPUT)) require_rates(reader, constraint);
 }

@@ -79,10 +79,10 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   reader->present->number = (size_t)index;
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
-  model->drives = make_room(model->drives, (size_t)index, sizeof *model->drives);
-  model->drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
-  model->drive_count += model->drives[index].given;
-  model->has_forces |= model->drives[index].given;
+  model->given.drives = make_room(model->given.drives, (size_t)index, sizeof *model->given.drives);
+  model->given.drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
+  model->given.drive_count += model->given.drives[index].given;
+  model->forces.any |= model->given.drives[index].given;
 }
 
 /* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
@@ -105,7 +105,8 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
   add_term(reader->model, displaced, term.node);
-  reader->model->inputs_move |= (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
+  reader->model->given.inputs_move |=
+      (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
   Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
   add_term(reader->model, sum, undisplaced);
   return undisplaced;
@@ -114,11 +115,11 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
 static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   bool driven;
-  Node term = read_energy(reader, node, &model->displaced_kinetic, &model->explicit_kinetic, "the kinetic energy",
-                          IN_ENERGY, "J");
-  add_term(model, &model->kinetic, term);
-  add_term(model, &model->kinetic_energy, energy_of_kinetic_term(model, term, &driven));
-  model->driven |= driven;
+  Node term = read_energy(reader, node, &model->energies.displaced_kinetic, &model->energies.explicit_kinetic,
+                          "the kinetic energy", IN_ENERGY, "J");
+  add_term(model, &model->energies.kinetic, term);
+  add_term(model, &model->energies.kinetic_energy, energy_of_kinetic_term(model, term, &driven));
+  model->energies.driven |= driven;
 }
 
 /* The acceleration of a driven coordinate. */
@@ -133,7 +134,7 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
   if (velocity->dimension.known)
     require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
                  dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
-  model->drives[symbol->index].acceleration = acceleration.node;
+  model->given.drives[symbol->index].acceleration = acceleration.node;
 }
 
 static void read_output(struct Reader *reader, xmlNodePtr node) {
@@ -154,19 +155,19 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
 
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
-  reader->model->solver_line = xmlGetLineNo(node);
+  reader->model->solver.line = xmlGetLineNo(node);
   if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
   reader->has_solver = true;
-  if (method != NULL) reader->model->method = method_named(method);
-  double *tolerance = &reader->model->tolerance;
+  if (method != NULL) reader->model->solver.method = method_named(method);
+  double *tolerance = &reader->model->solver.tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
                  *tolerance);
   if (*tolerance > 0 && *tolerance < 1e-14)
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
-  number_attribute(reader, node, "maxStep", &reader->model->max_step);
-  double *steps = &reader->model->max_steps;
+  number_attribute(reader, node, "maxStep", &reader->model->solver.max_step);
+  double *steps = &reader->model->solver.max_steps;
   if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
     report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
 }
@@ -176,14 +177,15 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
   if (reader->has_experiment)
     report_error(reader->diagnostics, xmlGetLineNo(node), "a second <experiment>; expected one");
   reader->has_experiment = true;
-  number_attribute(reader, node, "startTime", &model->start_time);
-  number_attribute(reader, node, "stopTime", &model->stop_time);
-  if (number_attribute(reader, node, "stepSize", &model->step_size) && !(model->step_size > 0))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number", model->step_size);
-  double start = isnan(model->start_time) ? 0.0 : model->start_time;
-  if (model->stop_time <= start)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g", model->stop_time,
-                 start);
+  number_attribute(reader, node, "startTime", &model->experiment.start_time);
+  number_attribute(reader, node, "stopTime", &model->experiment.stop_time);
+  if (number_attribute(reader, node, "stepSize", &model->experiment.step_size) && !(model->experiment.step_size > 0))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number",
+                 model->experiment.step_size);
+  double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
+  if (model->experiment.stop_time <= start)
+    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g",
+                 model->experiment.stop_time, start);
 }
 
 /* Further inputs that are the time derivatives of the last one. */
@@ -195,8 +197,8 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
                  derivatives);
   size_t index = model->inputs.count - 1;
   for (int k = 0; k == 0 || (k <= 2 && derivatives >= k); k++, index++) {
-    model->input_rates = make_room(model->input_rates, index, sizeof *model->input_rates);
-    model->input_rates[index] = k < 2 && derivatives >= k + 1 ? append_input_rate(reader) : ZERO;
+    model->given.input_rates = make_room(model->given.input_rates, index, sizeof *model->given.input_rates);
+    model->given.input_rates[index] = k < 2 && derivatives >= k + 1 ? append_input_rate(reader) : ZERO;
   }
 }
 
@@ -221,25 +223,26 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
 }
 
 static void read_work(struct Reader *reader, xmlNodePtr node) {
-  reader->model->work_line = xmlGetLineNo(node);
+  reader->model->forces.work_line = xmlGetLineNo(node);
 }
 
 static void read_potential(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  read_energy(reader, node, &model->displaced_potential, &model->potential, "the potential", IN_ENERGY, "J");
+  read_energy(reader, node, &model->energies.displaced_potential, &model->energies.potential, "the potential",
+              IN_ENERGY, "J");
 }
 
 static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  Node dissipation =
-      read_energy(reader, node, &model->displaced_dissipation, &model->dissipation, "the dissipation", IN_FORCE, "W");
+  Node dissipation = read_energy(reader, node, &model->energies.displaced_dissipation, &model->energies.dissipation,
+                                 "the dissipation", IN_FORCE, "W");
   if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
   size_t count = reader->dissipation_count++;
   reader->dissipations = make_room(reader->dissipations, count, sizeof *reader->dissipations);
   reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
-  model->has_forces = true;
+  model->forces.any = true;
 }
 
 typedef void Action(struct Reader *reader, xmlNodePtr node);

@@ -38,7 +38,7 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
 static void check_target(struct Reader *reader, xmlNodePtr node, const struct Event *event, Node symbol) {
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
-  if (is_state && reader->model->drives[target->index].given)
+  if (is_state && reader->model->given.drives[target->index].given)
     report_error(reader->diagnostics, xmlGetLineNo(node), "<set> of '%s', which is driven; expected another one",
                  target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
@@ -112,11 +112,11 @@ static void check_forces(const struct Reader *reader, struct Event *event, long 
   if ((kinds & KIND(ACCELERATION)) == 0) return;
   collect_event(reader, event);
   for (size_t i = 0; i < model->coordinates.count; i++)
-    if (cone_has(model->graph->cone, model->accelerations[i]))
+    if (cone_has(model->graph->cone, model->unknowns.accelerations[i]))
       report_error(reader->diagnostics, line,
                    "an <event> cannot depend on accelerations, but this one does on '%s'; expected velocities, or the "
                    "force of a contact, a friction or a constraint such as ground.force",
-                   graph_symbol_of(model->graph, model->accelerations[i])->name);
+                   graph_symbol_of(model->graph, model->unknowns.accelerations[i])->name);
 }
 
 void read_event(struct Reader *reader, xmlNodePtr node) {

@@ -56,7 +56,8 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
   require_unit(reader, xmlGetLineNo(node), "the force", force,
                dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces[index], without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
+  add_term(model, &model->forces.along[index],
+           without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
 /* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
@@ -65,14 +66,15 @@ static void add_force(struct Model *model, Node position, Node force) {
   struct Gradient levers = gradient_by_kinds(graph, position, KIND(COORDINATE) | KIND(TIME));
   for (size_t i = 0; i < levers.count; i++) {
     const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
-    struct Quantity *sum = symbol->kind == TIME ? &model->driven_power : &model->forces[symbol->index];
+    struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];
     add_term(model, sum, multiply(graph, force, levers.values[i]));
   }
 }
 
 static void append_point_force(struct Model *model, Node position, Node force) {
-  model->point_forces = make_room(model->point_forces, model->point_force_count, sizeof *model->point_forces);
-  model->point_forces[model->point_force_count++] = (struct PointForce){position, force};
+  model->forces.at_points =
+      make_room(model->forces.at_points, model->forces.point_count, sizeof *model->forces.at_points);
+  model->forces.at_points[model->forces.point_count++] = (struct PointForce){position, force};
 }
 
 static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
@@ -144,10 +146,10 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
   struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   for (size_t i = 0; i < levers.count; i++)
-    add_term(model, &model->forces[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
-  add_term(model, &model->driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
-  model->torques = make_room(model->torques, model->torque_count, sizeof *model->torques);
-  model->torques[model->torque_count++] = (struct Torque){torque, displaced};
+    add_term(model, &model->forces.along[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
+  add_term(model, &model->forces.driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
+  model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
+  model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
 }
 
 void read_torque(struct Reader *reader, xmlNodePtr node) {
@@ -156,7 +158,7 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
   const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
   struct Vector torque = read_components(reader, node, "N.m");
   long line = xmlGetLineNo(node);
-  reader->model->has_forces = true;
+  reader->model->forces.any = true;
   if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
   if (turned != NULL && frame != NULL) {
     if (frame != turned) {
@@ -181,13 +183,13 @@ void read_gravity(struct Reader *reader, xmlNodePtr node) {
     struct Quantity gravity = {.node = ZERO};
     if (!expression_attribute(reader, node, axes[axis], IN_MASS, &gravity)) continue;
     require_unit(reader, xmlGetLineNo(node), axes[axis], gravity, unit_of("m/s2"));
-    model->gravity.along[axis] = gravity.node;
-    for (size_t i = 0; i < model->body_count; i++) {
-      const struct Body *body = &model->bodies[i];
+    model->mechanism.gravity.along[axis] = gravity.node;
+    for (size_t i = 0; i < model->mechanism.body_count; i++) {
+      const struct Body *body = &model->mechanism.bodies[i];
       if (!is_of_file(reader, body->name)) continue;
       Node weight = negate(graph, multiply(graph, body->mass.node, gravity.node));
-      add_term(model, &model->potential, multiply(graph, weight, body->position[axis].node));
-      add_term(model, &model->displaced_potential, multiply(graph, weight, body->displaced[axis]));
+      add_term(model, &model->energies.potential, multiply(graph, weight, body->position[axis].node));
+      add_term(model, &model->energies.displaced_potential, multiply(graph, weight, body->displaced[axis]));
     }
   }
 }
@@ -201,7 +203,7 @@ static bool is_blank(xmlNodePtr node) {
 
 void read_force(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = reference_attribute(reader, node, "coordinate"), *on = reference_attribute(reader, node, "on");
-  reader->model->has_forces = true;
+  reader->model->forces.any = true;
   bool has_components = false;
   for (int axis = 0; axis < 3; axis++) has_components |= has_attribute(node, axes[axis]);
   bool is_along_frame = has_attribute(node, "in");

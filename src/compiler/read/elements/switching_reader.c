@@ -86,7 +86,7 @@ void declare_friction(struct Reader *reader, xmlNodePtr node) {
   switches->frictions[switches->friction_count++] = (struct Friction){
       .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
   switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
-  reader->model->has_forces = true;
+  reader->model->forces.any = true;
 }
 
 void number_modes(struct Reader *reader) {
@@ -225,7 +225,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   Node push = negate(graph, multiply(graph, friction->mode, sliding.node));
   struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
   for (size_t i = 0; i < levers.count; i++) {
-    struct Quantity *force = &model->forces[graph_symbol_of(graph, levers.symbols[i])->index];
+    struct Quantity *force = &model->forces.along[graph_symbol_of(graph, levers.symbols[i])->index];
     force->node = add(graph, force->node, multiply(graph, push, levers.values[i]));
   }
 }
@@ -239,7 +239,7 @@ void complete_friction_forces(struct Reader *reader) {
   for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
-    Node force = model->constraint_forces[friction->constraint];
+    Node force = model->unknowns.forces[friction->constraint];
     replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
   }
   for (size_t i = 0; i < switches->count; i++)

@@ -9,8 +9,8 @@
 /* Half of the term, as energy that the body has. */
 static void append_energy(struct Model *model, Node term) {
   Node energy = scale(model->graph, 0.5, term);
-  add_term(model, &model->kinetic, energy);
-  add_term(model, &model->kinetic_energy, energy);
+  add_term(model, &model->energies.kinetic, energy);
+  add_term(model, &model->energies.kinetic_energy, energy);
 }
 
 /* 1/2 inertia rate^2 */
@@ -18,7 +18,7 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   struct Graph *graph = model->graph;
   Node rate = total_time_derivative(scope, position);
   append_energy(model, multiply(graph, inertia, power_number(graph, rate, 2.0)));
-  model->driven |= graph_depends_on(graph, position, TIME);
+  model->energies.driven |= graph_depends_on(graph, position, TIME);
 }
 
 /* Where the body of a name is: its place among the model's, and the line of its own file. */
@@ -29,18 +29,19 @@ struct NamedBody {
 
 const struct Body *find_body(const struct Reader *reader, const char *name) {
   const struct NamedBody *named = names_find(reader->bodies, name);
-  return named != NULL ? &reader->model->bodies[named->place] : NULL;
+  return named != NULL ? &reader->model->mechanism.bodies[named->place] : NULL;
 }
 
 /* Of several bodies of one name, which is reported, the first keeps it. */
 static void append_body(struct Reader *reader, struct Body body) {
   struct Model *model = reader->model;
   struct NamedBody *named = allocate(1, sizeof *named);
-  *named = (struct NamedBody){model->body_count, body.line};
+  *named = (struct NamedBody){model->mechanism.body_count, body.line};
   if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
   body.line = scope_line(reader->scope, body.line);
-  model->bodies = make_room(model->bodies, model->body_count, sizeof *model->bodies);
-  model->bodies[model->body_count++] = body;
+  model->mechanism.bodies =
+      make_room(model->mechanism.bodies, model->mechanism.body_count, sizeof *model->mechanism.bodies);
+  model->mechanism.bodies[model->mechanism.body_count++] = body;
 }
 
 /* A component that definitions.h has read; true where it is given. */
@@ -51,7 +52,7 @@ static bool take_component(struct Reader *reader, const struct Body *body, xmlNo
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
   *displaced = value->node;
-  reader->model->inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
+  reader->model->given.inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
   value->node = without_displacements(reader, body->line, name, value->node);
   return true;
 }
@@ -87,8 +88,8 @@ static void require_accelerations(const struct Reader *reader, const struct Body
   struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
   for (size_t i = 0; i < levers.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
     size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
-    Node rate = model->input_rates[input];
-    if (rate != ZERO && model->input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
+    Node rate = model->given.input_rates[input];
+    if (rate != ZERO && model->given.input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
     report_error(reader->diagnostics, body->line,
                  "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
                  "mass=\"0\" for a mere point",
@@ -167,7 +168,7 @@ static void place_body(struct Reader *reader, const struct SpatialPoint *point, 
   body->frame = point->frame;
   body->offset = vector_without_displacements(reader, body->line, body->name, point->offset);
   body->displaced_velocity = point->velocity;
-  body->displaced_angular_velocity = model->frames[point->frame].pose.angular_velocity;
+  body->displaced_angular_velocity = model->mechanism.frames[point->frame].pose.angular_velocity;
   body->velocity = vector_without_displacements(reader, body->line, body->name, point->velocity);
   body->angular_velocity =
       vector_without_displacements(reader, body->line, body->name, body->displaced_angular_velocity);
@@ -181,7 +182,7 @@ static void place_body(struct Reader *reader, const struct SpatialPoint *point, 
 
 /* Whether the direction of the frame depends on inputs whose second derivatives are not known. */
 static void require_angular_accelerations(const struct Reader *reader, const struct Body *body) {
-  const struct Matrix *rotation = &reader->model->frames[body->frame].pose.rotation;
+  const struct Matrix *rotation = &reader->model->mechanism.frames[body->frame].pose.rotation;
   struct Body turned = *body;
   for (int i = 0; i < 9; i++) {
     turned.displaced[0] = rotation->row[i / 3].along[i % 3];
@@ -195,8 +196,8 @@ static void add_spatial_energy(struct Model *model, const struct Body *body) {
   append_energy(model, multiply(graph, body->mass.node, vector_dot(graph, body->velocity, body->velocity)));
   append_energy(model, vector_dot(graph, body->angular_velocity, momentum));
   for (int i = 0; i < 3; i++)
-    model->driven |= graph_depends_on(graph, body->position[i].node, TIME) ||
-                     graph_depends_on(graph, body->angular_velocity.along[i], TIME);
+    model->energies.driven |= graph_depends_on(graph, body->position[i].node, TIME) ||
+                              graph_depends_on(graph, body->angular_velocity.along[i], TIME);
 }
 
 /* A particle, body or point in a frame. */

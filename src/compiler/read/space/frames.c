@@ -38,10 +38,11 @@ static struct Vector derivative_of(struct Scope *scope, struct Vector vector) {
 static void append_frame(struct Reader *reader, const char *name, struct ReferenceFrame frame) {
   struct Model *model = reader->model;
   size_t *place = allocate(1, sizeof *place);
-  *place = model->frame_count;
-  model->frames = make_room(model->frames, model->frame_count, sizeof *model->frames);
+  *place = model->mechanism.frame_count;
+  model->mechanism.frames =
+      make_room(model->mechanism.frames, model->mechanism.frame_count, sizeof *model->mechanism.frames);
   frame.name = copy_text(name);
-  model->frames[model->frame_count++] = frame;
+  model->mechanism.frames[model->mechanism.frame_count++] = frame;
   names_set(reader->frames, name, place);
 }
 
@@ -134,9 +135,9 @@ static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const c
 
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {
   const size_t *place = names_find(reader->frames, name);
-  if (place != NULL) return &reader->model->frames[*place];
+  if (place != NULL) return &reader->model->mechanism.frames[*place];
   const struct SpatialPoint *point = names_find(reader->spatial_points, name);
-  return point != NULL && point->is_body ? &reader->model->frames[point->frame] : NULL;
+  return point != NULL && point->is_body ? &reader->model->mechanism.frames[point->frame] : NULL;
 }
 
 const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -154,7 +155,7 @@ static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr 
   const size_t *place = names_find(reader->frames, name);
   bool waits = place == NULL && definitions_wait_for(reader->definitions, whole);
   if (place == NULL && !waits) report_unknown_frame(reader, node, name);
-  return place != NULL ? &reader->model->frames[*place] : NULL;
+  return place != NULL ? &reader->model->mechanism.frames[*place] : NULL;
 }
 
 /* A length along each axis in the attributes x, y and z, and its time derivative. */
@@ -210,14 +211,14 @@ static struct Pose read_pose(struct Reader *reader, xmlNodePtr node, const char 
 static void read_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   const struct ReferenceFrame *parent = parent_of(reader, node);
   if (parent == NULL) return;
-  size_t number = (size_t)(parent - reader->model->frames);
+  size_t number = (size_t)(parent - reader->model->mechanism.frames);
   struct Pose pose = read_pose(reader, node, name, parent);
   if (definitions_are_waiting(reader->definitions)) return;
   struct Model *model = reader->model;
   for (int i = 0; i < 3; i++) {
-    model->inputs_move |= graph_depends_on(model->graph, pose.origin.along[i], INPUT);
+    model->given.inputs_move |= graph_depends_on(model->graph, pose.origin.along[i], INPUT);
     for (int j = 0; j < 3; j++)
-      model->inputs_move |= graph_depends_on(model->graph, pose.rotation.row[i].along[j], INPUT);
+      model->given.inputs_move |= graph_depends_on(model->graph, pose.rotation.row[i].along[j], INPUT);
   }
   if (names_find(reader->frames, name) != NULL) return;
   append_frame(reader, name,
@@ -232,7 +233,7 @@ static void read_point(struct Reader *reader, xmlNodePtr node, const char *name)
   struct Vector rate;
   read_offset(reader, node, &point->offset, &rate);
   point->is_body = is_element(node, "body");
-  point->frame = (size_t)(frame - reader->model->frames);
+  point->frame = (size_t)(frame - reader->model->mechanism.frames);
   point->position = position_at(graph, &frame->pose, point->offset);
   point->velocity = velocity_at(graph, &frame->pose, point->offset, rate);
   bool is_new = !definitions_are_waiting(reader->definitions) && names_find(reader->spatial_points, name) == NULL;
@@ -244,7 +245,7 @@ bool find_spatial_point(const struct Reader *reader, const char *name, struct Sp
   const struct ReferenceFrame *frame = known == NULL ? find_frame(reader, name) : NULL;
   if (known != NULL) *point = *known;
   else if (frame != NULL)
-    *point = (struct SpatialPoint){.frame = (size_t)(frame - reader->model->frames),
+    *point = (struct SpatialPoint){.frame = (size_t)(frame - reader->model->mechanism.frames),
                                    .position = frame->pose.origin,
                                    .velocity = frame->pose.velocity};
   return known != NULL || frame != NULL;
@@ -278,7 +279,7 @@ static const char *unit_of_component(const char *component) {
 static Node read_component(struct Reader *reader, const char *name, const char *component) {
   struct SpatialPoint point;
   if (!find_spatial_point(reader, name, &point)) return ZERO; /* reported */
-  const struct Pose *pose = &reader->model->frames[point.frame].pose;
+  const struct Pose *pose = &reader->model->mechanism.frames[point.frame].pose;
   if (component[0] == 'R') return pose->rotation.row[component[1] - '1'].along[component[2] - '1'];
   char axis = component[strlen(component) - 1];
   struct Vector vector = vector_of(reader->scope, pose, &point, component);
@@ -326,12 +327,12 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
                              .unit = copy_text(unit_of_component(components[i])),
                              .dimension = value->dimension,
                              .node = without_displacements(reader, xmlGetLineNo(node), full_name, value->node)};
-    append_variable(&reader->model->places, place);
+    append_variable(&reader->model->mechanism.places, place);
   }
 }
 
 static bool is_inside(const struct Model *model, size_t frame, size_t outer) {
-  while (frame != outer && frame != 0) frame = model->frames[frame].parent;
+  while (frame != outer && frame != 0) frame = model->mechanism.frames[frame].parent;
   return frame == outer;
 }
 
@@ -339,8 +340,8 @@ static bool is_inside(const struct Model *model, size_t frame, size_t outer) {
 static Node inertia_of_norm(const struct Model *model, size_t frame) {
   struct Graph *graph = model->graph;
   Node sum = ZERO;
-  for (size_t i = 0; i < model->body_count; i++) {
-    const struct Body *body = &model->bodies[i];
+  for (size_t i = 0; i < model->mechanism.body_count; i++) {
+    const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame || !is_inside(model, body->frame, frame)) continue;
     for (int axis = 0; axis < 3; axis++) {
       Node lever = body->frame == frame ? body->offset.along[axis] : ZERO;
@@ -359,7 +360,9 @@ void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
     const struct Variable *norm = &model->constraints.items[reader->present->number];
-    model->stillnesses = make_room(model->stillnesses, model->stillness_count, sizeof *model->stillnesses);
-    model->stillnesses[model->stillness_count++] = (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
+    model->mechanism.stillnesses =
+        make_room(model->mechanism.stillnesses, model->mechanism.stillness_count, sizeof *model->mechanism.stillnesses);
+    model->mechanism.stillnesses[model->mechanism.stillness_count++] =
+        (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
   }
 }
