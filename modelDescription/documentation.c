@@ -229,7 +229,7 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
 
 static void write_solver(const struct Page *page) {
   xmlTextWriterPtr writer = page->writer;
-  const struct Method *method = page->interface->method;
+  const struct Method *method = page->equations->method;
   if (page->equations->count == 0) return;
   element(writer, "h2", "Solver");
   element(writer, "p", method->sentence);

@@ -25,7 +25,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_abilities(writer, model);
   /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
-  if (model->constraints.count > 0 || program->interface->switching != NULL)
+  if (model->constraints.count > 0 || program->equations->switching != NULL)
     write_attribute(writer, "needsCompletedIntegratorStep", "true");
   xmlTextWriterEndElement(writer);
   xmlTextWriterStartElement(writer, BAD_CAST "CoSimulation");
@@ -34,8 +34,8 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
                                     program->interface->output_derivative_order);
   write_attribute(writer, "providesIntermediateUpdate", "true");
-  if (program->interface->switching != NULL) write_attribute(writer, "hasEventMode", "true");
-  if (program->interface->method != NULL) {
+  if (program->equations->switching != NULL) write_attribute(writer, "hasEventMode", "true");
+  if (program->equations->method != NULL) {
     /* Where a solver comes to a part of a step alone, and where the importer asks for it. */
     write_attribute(writer, "mightReturnEarlyFromDoStep", "true");
     write_attribute(writer, "canReturnEarlyAfterIntermediateUpdate", "true");

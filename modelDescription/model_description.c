@@ -11,7 +11,7 @@
 
 /* FMUs without SUNDIALS are complete in C, as one file that the build makes of system.c and the runtime. */
 static void write_sources(xmlTextWriterPtr writer, const struct Program *program) {
-  const struct Method *method = program->interface->method;
+  const struct Method *method = program->equations->method;
   if (method != NULL && method->uses_library) return;
   xmlTextWriterStartElement(writer, BAD_CAST "SourceFiles");
   xmlTextWriterStartElement(writer, BAD_CAST "File");
@@ -28,7 +28,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
   /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
-  if (model->constraints.count == 0 && program->interface->switching == NULL)
+  if (model->constraints.count == 0 && program->equations->switching == NULL)
     write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
   write_sources(writer, program);
@@ -103,7 +103,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   if (model->description != NULL) write_attribute(writer, "description", model->description);
   write_attribute(writer, "generationTool", "lagrange-fmu");
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "numberOfEventIndicators", "%zu",
                                     switching != NULL ? switching->indicator_count : 0);
   write_interfaces(writer, program);

@@ -133,7 +133,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
   written = written && write_buffers(program, summary, guid, buffers);
   for (int i = 0; i < FILE_COUNT; i++) texts[i] = (const char *)xmlBufferContent(buffers[i]);
-  const struct Method *method = program->interface->method;
+  const struct Method *method = program->equations->method;
   if (method != NULL && method->uses_library) texts[BUILD_DESCRIPTION] = NULL;
   texts[CODE] = file;
   limit = graph_limit(program->model->graph);

@@ -165,13 +165,13 @@ static void append_statistic(struct Interface *interface, enum Statistic statist
   append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
 }
 
-static void append_statistics(struct Interface *interface, const struct Model *model) {
+static void append_statistics(struct Interface *interface, const struct Model *model, const struct Method *method) {
   append_statistic(interface, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
-  if (interface->method->evaluations != NULL)
-    append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", interface->method->evaluations);
-  if (interface->method->needs_jacobian)
+  if (method->evaluations != NULL)
+    append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", method->evaluations);
+  if (method->needs_jacobian)
     append_statistic(interface, STATISTIC_JACOBIANS, "jacobianEvaluations", "evaluations of the Jacobian matrix");
-  if (interface->method->hands_over)
+  if (method->hands_over)
     append_statistic(interface, STATISTIC_HANDOVERS, "solverHandovers", "handovers between the methods of the solver");
   if (has_switches(&model->switches))
     append_statistic(interface, STATISTIC_EVENTS, "events", "events that changed a mode or a velocity");
@@ -216,28 +216,9 @@ static const char *total_energy_description(const struct Model *model, const str
                              : "kinetic and potential energy; constant";
 }
 
-/* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
-static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
-  const struct Graph *graph = model->graph;
-  bool may = graph_depends_on(graph, model->energies.dissipation.node, VELOCITY);
-  for (size_t i = 0; i < model->coordinates.count; i++)
-    may |= graph_depends_on(graph, model->forces.along[i].node, VELOCITY) ||
-           graph_depends_on(graph, equations->residual[i], INPUT);
-  return may;
-}
-
-static const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
-  if (model->coordinates.count == 0) return NULL;
-  if (model->solver.method != NULL) return model->solver.method;
-  if (model->linearized) return method_named("exact");
-  const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
-  return method_named(kink != NULL ? "erk" : may_be_stiff(model, equations) ? "auto" : "taylor");
-}
-
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
-static int output_derivative_order(const struct Interface *interface, const struct Model *model,
-                                   const struct Equations *equations) {
-  if (interface->method != NULL && interface->method->series == FIRST_TERMS) return 1;
+static int output_derivative_order(const struct Model *model, const struct Equations *equations) {
+  if (equations->method != NULL && equations->method->series == FIRST_TERMS) return 1;
   if (depend_on_constraint_force(model, equations->outputs, model->outputs.count)) return 1;
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
@@ -265,11 +246,11 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
 }
 
 /* What FMI 2.0 asks for by a function alone. */
-static void append_indicators(struct Interface *interface) {
-  for (size_t i = 0; interface->switching != NULL && i < interface->switching->indicator_count; i++) {
+static void append_indicators(struct Interface *interface, const struct SwitchingExpressions *switching) {
+  for (size_t i = 0; switching != NULL && i < switching->indicator_count; i++) {
     char *name = format_text("eventIndicator[%zu]", i + 1);
     append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
-        interface->switching->indicators[i];
+        switching->indicators[i];
   }
 }
 
@@ -291,15 +272,14 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   for (size_t i = 0; i < interface->count; i++)
     if (interface->variables[i].entry.kind == VARIABLE_RESULT)
       interface->variables[i].node = without_branches(model, interface->variables[i].node);
-  append_statistics(interface, model);
+  append_statistics(interface, model, equations->method);
   mark_moved_states(interface, model, equations);
 }
 
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
   struct Interface *interface = allocate(1, sizeof *interface);
   size_t n = model->coordinates.count;
-  interface->method = method_of(model, equations);
-  interface->output_derivative_order = output_derivative_order(interface, model, equations);
+  interface->output_derivative_order = output_derivative_order(model, equations);
   interface->depends_on_time = uses_time(model, equations);
   interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
   if (interface->depends_on_time) append_time(interface, model);
@@ -332,8 +312,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_calculated(interface, model);
   if (n > 0) append_mechanics(interface, model, equations);
   interface->count_in_fmi2 = interface->count;
-  interface->switching = switching_derive(model, equations);
-  append_indicators(interface);
+  append_indicators(interface, equations->switching);
   if (!interface->depends_on_time) append_time(interface, model);
   arrays_find(interface);
   return interface;

@@ -28,9 +28,7 @@ struct Interface {
   size_t first[VARIABLE_INDICATOR + 1]; /* the place of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
-  const struct Method *method; /* the one that is used; NULL for a system without coordinates */
   int output_derivative_order;
-  struct SwitchingExpressions *switching; /* NULL where nothing switches */
 };
 
 /* Whether initialization computes the state, from its start value among others. */

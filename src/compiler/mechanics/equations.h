@@ -4,6 +4,8 @@
 #include "mechanics/constraints.h"
 #include "mechanics/mass_matrix/inertia.h"
 
+struct SwitchingExpressions;
+
 /* What follows from a model, which stays as it is. */
 struct Equations {
   size_t count; /* coordinates */
@@ -19,11 +21,13 @@ struct Equations {
   bool has_work; /* the work of the non-conservative forces is a state */
   /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
   Node power;
-  Node stated_power;              /* the same, which may hold the acceleration symbols */
-  Node kinetic, potential, total; /* energies, see energies.h */
-  Node *outputs;                  /* of the model */
-  Node *reactions;                /* of the model; they may hold the acceleration symbols */
-  Node *places;                   /* of the model; they too */
+  Node stated_power;                            /* the same, which may hold the acceleration symbols */
+  Node kinetic, potential, total;               /* energies, see energies.h */
+  Node *outputs;                                /* of the model */
+  Node *reactions;                              /* of the model; they may hold the acceleration symbols */
+  Node *places;                                 /* of the model; they too */
+  const struct Method *method;                  /* that solves them; NULL without coordinates */
+  const struct SwitchingExpressions *switching; /* NULL where nothing switches */
 };
 
 /* Equations of a model without anything derived yet. */

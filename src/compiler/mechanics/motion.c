@@ -3,6 +3,8 @@
 #include "mechanics/lagrange.h"
 #include "mechanics/linearize.h"
 #include "mechanics/massless.h"
+#include "mechanics/method_choice.h"
+#include "mechanics/switching.h"
 
 struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics) {
   hold_massless_coordinates(model);
@@ -11,6 +13,9 @@ struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics
     struct Equations *linear = linearize(model, equations, diagnostics);
     equations = linear;
   }
-  if (equations != NULL) equations_check_finite(model, equations, diagnostics);
+  if (equations == NULL) return NULL;
+  equations_check_finite(model, equations, diagnostics);
+  equations->method = method_of(model, equations);
+  equations->switching = switching_derive(model, equations);
   return equations;
 }

@@ -204,7 +204,7 @@ struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t
 }
 
 static struct Routine *indicators_routine(const struct Program *program, struct Values *values) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   return targets_routine(values, switching->indicators, switching->indicator_count);
 }
 
@@ -214,7 +214,7 @@ static struct Routine *roundings_routine(const struct Program *program, struct V
 }
 
 static struct Routine *switching_values_routine(const struct Program *program, struct Values *values) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   return targets_routine(values, switching->values, switching->value_count);
 }
 
@@ -249,7 +249,7 @@ static bool is_fixed_at_start(const struct Program *program) {
 }
 
 static bool switches(const struct Program *program) {
-  return program->interface->switching != NULL;
+  return program->equations->switching != NULL;
 }
 
 const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {

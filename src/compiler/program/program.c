@@ -31,7 +31,7 @@ static void create_results(struct Program *program, struct Values *values) {
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
   if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
-  if (program->series != NULL && program->interface->method->series != ALL_TERMS && program->series->limit.count == 0)
+  if (program->series != NULL && program->equations->method->series != ALL_TERMS && program->series->limit.count == 0)
     program->series = NULL;
   if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, values);
   if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, values);

@@ -35,7 +35,7 @@ static bool has_oblique_block(const struct Program *program) {
  * adds those of the version of FMI.
  */
 static void write_runtime(FILE *file, const struct Program *program) {
-  const struct Method *method = program->interface->method;
+  const struct Method *method = program->equations->method;
   const struct Switches *switches = &program->model->switches;
   const char *solver = description_solver(program), *lu = description_lu(program);
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);

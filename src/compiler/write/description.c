@@ -99,12 +99,12 @@ static void write_pattern(FILE *file, const struct Program *program) {
 const char *description_solver(const struct Program *program) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   if (program->equations->count == 0) return NULL;
-  return method_solver(program->interface->method, program->interface->state_count,
+  return method_solver(program->equations->method, program->interface->state_count,
                        jacobian != NULL ? jacobian->count : 0);
 }
 
 const char *description_lu(const struct Program *program) {
-  const struct Method *method = program->interface->method;
+  const struct Method *method = program->equations->method;
   if (method == NULL || !method->factors) return NULL;
   return program->expressions->jacobian->factors != NULL ? "lu_sparse" : "lu_dense";
 }
@@ -242,7 +242,7 @@ static double work_of_series(const struct Program *program) {
  */
 static void write_work(FILE *file, const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };
-  bool has_series = program->interface->method->series == ALL_TERMS && program->series != NULL;
+  bool has_series = program->equations->method->series == ALL_TERMS && program->series != NULL;
   double share = program->routines[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
   double evaluation = share * work_of_evaluation(program);
   double step = 250.0 + CORRECTIONS * (operations_of(program->routines[FUNCTION_CORRECT_POSITIONS]) +
@@ -280,7 +280,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
     fputs("    .lu_pattern = {lu_place, lu_start, lu_column},\n", file);
   write_functions(file, program);
   if (solver != NULL) write_work(file, program);
-  if (interface->method != NULL && interface->method->hands_over) write_operations(file, program);
+  if (program->equations->method != NULL && program->equations->method->hands_over) write_operations(file, program);
   fputs("};\n", file);
 }
 

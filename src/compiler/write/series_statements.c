@@ -18,7 +18,7 @@ enum {
 };
 
 bool series_is_unrolled(const struct Program *program) {
-  return program->series != NULL && program->interface->method->series == ALL_TERMS && program->blocks.count == 0 &&
+  return program->series != NULL && program->equations->method->series == ALL_TERMS && program->blocks.count == 0 &&
          program->series->recurrences <= UNROLLED_RECURRENCES;
 }
 

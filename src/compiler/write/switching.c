@@ -9,7 +9,7 @@ static int mode_index(const struct Program *program, Node mode) {
 }
 
 static void write_branches(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   if (switching->branch_count == 0) return;
   fputs("static const struct BranchFacts branch_facts[] = {", file);
   for (size_t i = 0; i < switching->branch_count; i++) {
@@ -52,7 +52,7 @@ static void write_contacts(FILE *file, const struct Program *program) {
 
 /* Whether a branch turns by the force of a constraint. */
 static bool turns_by_forces(const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   bool turns = false;
   for (size_t i = 0; i < switching->branch_count; i++)
     turns |= graph_depends_on(program->model->graph, switching->branches[i]->indicator, ACCELERATION);
@@ -125,7 +125,7 @@ static void write_events(FILE *file, const struct Program *program) {
 }
 
 void switching_write(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   if (switching == NULL) return;
   const struct Switches *switches = &program->model->switches;
   fputs("extern const struct Switching switching;\n\n", file);

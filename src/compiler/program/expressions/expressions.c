@@ -176,8 +176,8 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
         diagnostics, model->solver.line,
         "the Jacobian matrix of the method '%s' would have more than %d elements, as the mass matrix couples the "
         "coordinates; expected the method 'taylor', or a smaller system",
-        expressions->interface->method->name, JACOBIAN_LIMIT);
-  else if (expressions->interface->method->factors)
+        expressions->equations->method->name, JACOBIAN_LIMIT);
+  else if (expressions->equations->method->factors)
     expressions->jacobian->factors =
         lu_pattern_create(model->graph, expressions->jacobian, expressions->equations->count);
 }
@@ -187,7 +187,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   const struct Model *model = expressions->model;
   const struct Equations *equations = expressions->equations;
   const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
-  bool is_taylor = expressions->interface->method->series == ALL_TERMS;
+  bool is_taylor = expressions->equations->method->series == ALL_TERMS;
   if (kink == NULL || !is_taylor)
     expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
   else
@@ -204,7 +204,7 @@ static void create_output_series(struct Expressions *expressions) {
 
 /* A function that is folded has no series where it turns, and hides nothing. */
 static void create_watched_series(struct Expressions *expressions) {
-  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  const struct SwitchingExpressions *switching = expressions->equations->switching;
   struct Graph *graph = expressions->model->graph;
   if (switching == NULL) return;
   struct NodeList watched = {0};
@@ -216,7 +216,7 @@ static void create_watched_series(struct Expressions *expressions) {
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
-  const struct Method *method = interface->method;
+  const struct Method *method = equations->method;
   struct Expressions *expressions = allocate(1, sizeof *expressions);
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
   if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
@@ -257,7 +257,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);
-  const struct SwitchingExpressions *switching = expressions->interface->switching;
+  const struct SwitchingExpressions *switching = expressions->equations->switching;
   if (switching != NULL) {
     append_nodes(&targets, switching->indicators, switching->indicator_count);
     append_nodes(&targets, switching->roundings, switching->indicator_count);

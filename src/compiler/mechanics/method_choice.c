@@ -1,0 +1,21 @@
+#include "mechanics/method_choice.h"
+
+#include "algebra/kinks.h"
+
+/* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
+static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  bool may = graph_depends_on(graph, model->energies.dissipation.node, VELOCITY);
+  for (size_t i = 0; i < model->coordinates.count; i++)
+    may |= graph_depends_on(graph, model->forces.along[i].node, VELOCITY) ||
+           graph_depends_on(graph, equations->residual[i], INPUT);
+  return may;
+}
+
+const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
+  if (model->coordinates.count == 0) return NULL;
+  if (model->solver.method != NULL) return model->solver.method;
+  if (model->linearized) return method_named("exact");
+  const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
+  return method_named(kink != NULL ? "erk" : may_be_stiff(model, equations) ? "auto" : "taylor");
+}
