@@ -200,6 +200,26 @@ static void append_values(const struct Model *model, const struct Equations *equ
   append_energies(model, equations, switching, list);
 }
 
+/* Whether the friction follows from the force of the contact. */
+static bool rests_on(const struct Model *model, const struct Friction *friction, const struct Contact *contact) {
+  struct Cone *cone = model->graph->cone;
+  cone_collect(cone, model->graph, &friction->sliding, 1, NULL);
+  return cone_has(cone, model->unknowns.forces[contact->constraint]);
+}
+
+static void find_forces(const struct Model *model, struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  bool *rests = allocate(switches->friction_count * switches->contact_count, sizeof *rests), any = false;
+  for (size_t i = 0; i < switching->branch_count; i++)
+    switching->feels_forces |= graph_depends_on(model->graph, switching->branches[i]->indicator, ACCELERATION);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding);
+    for (size_t j = 0; j < switches->contact_count; j++)
+      any |= rests[i * switches->contact_count + j] = rests_on(model, &switches->frictions[i], &switches->contacts[j]);
+  }
+  switching->rests = any ? rests : NULL;
+}
+
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
@@ -209,6 +229,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   append_indicators(model, switching, &indicators);
   append_watched(model, switching, &watched);
   append_values(model, equations, switching, &values);
+  find_forces(model, switching);
   switching->indicators = indicators.nodes;
   switching->indicator_count = indicators.count;
   switching->watched = watched.nodes;

@@ -21,6 +21,10 @@ struct SwitchingExpressions {
   size_t watched_count;
   Node *values; /* as value[] of struct SwitchTable holds them, see include/lagrangian.h */
   size_t value_count;
+  bool feels_forces;    /* some branch turns by the force of a constraint */
+  bool friction_varies; /* some friction slides with a force that is not constant */
+  bool *
+      rests; /* of each friction, and in it of each contact: the friction follows from its force; NULL where none does */
 };
 
 /* NULL for a system that does not switch. Both hold the acceleration symbols. */

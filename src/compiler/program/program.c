@@ -1,6 +1,7 @@
 #include "program/program.h"
 
 #include "base/memory.h"
+#include "program/costs.h"
 
 /*
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
@@ -8,6 +9,9 @@
  * they take a fifth and three quarters of the time.
  */
 enum { STATEMENT_LIMIT = 6000, SERIES_STATEMENT_LIMIT = 8000, DERIVATIVES_STATEMENT_LIMIT = 20000 };
+
+/* Series of up to this many recurrences an order get code of their own for the first orders. */
+enum { UNROLLED_RECURRENCES = 40 };
 
 static void create_results(struct Program *program, struct Values *values) {
   const struct Interface *interface = program->interface;
@@ -58,9 +62,21 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
   program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
   program->series_is_table = form == TABLES || (program->is_table && length > SERIES_STATEMENT_LIMIT);
+  program->series_is_unrolled = series != NULL && program->equations->method->series == ALL_TERMS &&
+                                program->blocks.count == 0 && series->recurrences <= UNROLLED_RECURRENCES;
   program->derivatives_are_table =
       form == TABLES ||
       (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
+}
+
+static void choose_parts_of_runtime(struct Program *program) {
+  const struct Method *method = program->equations->method;
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  if (method == NULL) return;
+  program->solver = method_solver(method, program->interface->state_count, jacobian != NULL ? jacobian->count : 0);
+  if (method->factors) program->lu = jacobian->factors != NULL ? "lu_sparse" : "lu_dense";
+  program->work = step_work_of(program);
+  if (method->hands_over) program->operations = operation_counts_of(program);
 }
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {
@@ -79,5 +95,6 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   create_results(program, values);
   create_series(program, values);
   choose_form(program, form);
+  choose_parts_of_runtime(program);
   return program;
 }

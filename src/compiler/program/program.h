@@ -25,6 +25,10 @@ struct Program {
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */
   bool derivatives_are_table, series_is_table;
+  bool series_is_unrolled; /* the orders of series() get code of their own */
+  const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */
+  struct StepWork work;    /* where there is a solver */
+  struct OperationCounts operations; /* where it hands over */
 };
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);

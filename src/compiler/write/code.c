@@ -37,7 +37,7 @@ static bool has_oblique_block(const struct Program *program) {
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->equations->method;
   const struct Switches *switches = &program->model->switches;
-  const char *solver = description_solver(program), *lu = description_lu(program);
+  const char *solver = program->solver, *lu = program->lu;
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);
   for (const char *const *room = core_rooms; *room != NULL; room++) include_room(file, *room);
   if (solver != NULL) fprintf(file, "#include \"methods/%s%s.c\"\n", method->uses_library ? "sundials/" : "", solver);
@@ -56,7 +56,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
 
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
-  if (program->series != NULL && !program->series_is_table && !series_is_unrolled(program))
+  if (program->series != NULL && !program->series_is_table && !program->series_is_unrolled)
     fputs("#define SERIES_ROLLED 1\n", file);
   write_runtime(file, program);
   /* Long statements of series take a compiler half the time so, and the processor not more. */

@@ -6,21 +6,10 @@
 #include "write/statements.h"
 
 /*
- * Systems up to this many recurrences an order get code of their own for the first orders, as many as have together so
- * many products that their code stays in the processor's instruction cache. With few recurrences, it is faster as one
- * piece, without a jump that the processor would have to foresee.
+ * As many orders get code of their own as have together so many products that their code stays in the processor's instruction
+ * cache. With few recurrences, it is faster as one piece, without a jump that the processor would have to foresee.
  */
-enum {
-  UNROLLED_RECURRENCES = 40,
-  UNROLLED_PRODUCTS = 1300,
-  RECURRENCES_IN_ONE_PIECE = 12,
-  PRODUCTS_IN_ONE_PIECE = 1100
-};
-
-bool series_is_unrolled(const struct Program *program) {
-  return program->series != NULL && program->equations->method->series == ALL_TERMS && program->blocks.count == 0 &&
-         program->series->recurrences <= UNROLLED_RECURRENCES;
-}
+enum { UNROLLED_PRODUCTS = 1300, RECURRENCES_IN_ONE_PIECE = 12, PRODUCTS_IN_ONE_PIECE = 1100 };
 
 /* What an order may need beside k, x and w: its declaration, and what series() passes for it. */
 static const struct {
@@ -102,7 +91,7 @@ static void write_series(FILE *file, const struct Program *program) {
   const struct Routine *order = program->series->order;
   write_head(file, FUNCTION_SERIES, "", order->operation_count);
   declare_time(file, routine_uses(order, SPACE_TIME_ROW));
-  if (series_is_unrolled(program)) write_unrolled_orders(file, program);
+  if (program->series_is_unrolled) write_unrolled_orders(file, program);
   else {
     statements_declare_point(file, program, order);
     if (program->blocks.count > 0)
@@ -164,7 +153,7 @@ static void write_limit(FILE *file, const struct Program *program) {
 }
 
 void statements_series(FILE *file, const struct Program *program) {
-  if (series_is_unrolled(program)) write_next_function(file, program);
+  if (program->series_is_unrolled) write_next_function(file, program);
   statements_function(file, program, FUNCTION_START, "", program->series->start);
   write_series(file, program);
   if (program->series->limit.count > 0) write_limit(file, program);

@@ -21,6 +21,3 @@ void statements_output_series(FILE *file, const struct Program *program);
 
 /* watched_limit() */
 void statements_watched_limit(FILE *file, const struct Program *program);
-
-/* Whether the orders of series() get code of their own. */
-bool series_is_unrolled(const struct Program *program);

@@ -1,6 +1,5 @@
 #include "write/switching.h"
 
-#include "algebra/cone.h"
 #include "write/c_text.h"
 #include "write/statements.h"
 
@@ -50,45 +49,13 @@ static void write_contacts(FILE *file, const struct Program *program) {
   if (switches->friction_count > 0) fputs("};\n\n", file);
 }
 
-/* Whether a branch turns by the force of a constraint. */
-static bool turns_by_forces(const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  bool turns = false;
-  for (size_t i = 0; i < switching->branch_count; i++)
-    turns |= graph_depends_on(program->model->graph, switching->branches[i]->indicator, ACCELERATION);
-  return turns;
-}
-
-static bool friction_varies(const struct Program *program) {
-  const struct Switches *switches = &program->model->switches;
-  bool varies = false;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    varies |= !graph_is_constant_in_time(program->model->graph, switches->frictions[i].sliding);
-  return varies;
-}
-
-/* Whether the friction follows from the force of the contact. */
-static bool rests_on(const struct Program *program, size_t friction, size_t contact) {
-  const struct Model *model = program->model;
-  struct Cone *cone = model->graph->cone;
-  cone_collect(cone, model->graph, &model->switches.frictions[friction].sliding, 1, NULL);
-  return cone_has(cone, model->unknowns.forces[model->switches.contacts[contact].constraint]);
-}
-
-static bool any_rests(const struct Program *program) {
-  const struct Switches *switches = &program->model->switches;
-  bool any = false;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    for (size_t j = 0; j < switches->contact_count; j++) any |= rests_on(program, i, j);
-  return any;
-}
-
 static void write_rests(FILE *file, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
-  if (!any_rests(program)) return;
+  const bool *rests = program->equations->switching->rests;
+  if (rests == NULL) return;
   fputs("static const bool rests[] = {", file);
-  for (size_t i = 0; i < switches->friction_count; i++)
-    for (size_t j = 0; j < switches->contact_count; j++) fputs(rests_on(program, i, j) ? "true, " : "false, ", file);
+  for (size_t i = 0; i < switches->friction_count * switches->contact_count; i++)
+    fputs(rests[i] ? "true, " : "false, ", file);
   fputs("};\n\n", file);
 }
 
@@ -151,10 +118,10 @@ void switching_write(FILE *file, const struct Program *program) {
             "    .watched_limit = watched_limit,\n",
             program->watched_series->row_count, program->watched_series->acceleration_row,
             program->watched_series->acceleration_count);
-  if (friction_varies(program)) fputs("    .friction_varies = true,\n", file);
-  if (turns_by_forces(program)) fputs("    .feels_forces = true,\n", file);
+  if (switching->friction_varies) fputs("    .friction_varies = true,\n", file);
+  if (switching->feels_forces) fputs("    .feels_forces = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
-  if (any_rests(program)) fputs("    .rests_on = rests,\n", file);
+  if (switching->rests != NULL) fputs("    .rests_on = rests,\n", file);
   if (switches->friction_count > 0)
     fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
   if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);

@@ -1,0 +1,75 @@
+#include "program/costs.h"
+
+#include <math.h>
+
+/* 0 for none. */
+static double operations_of(const struct Routine *routine) {
+  enum { OPERATIONS_OF_CALL = 20 };
+  if (routine == NULL) return 0.0;
+  double count = (double)routine->operation_count;
+  for (size_t i = 0; i < routine->count; i++)
+    if (routine->instructions[i].opcode == CALL || routine->instructions[i].opcode == CALL_OF_TWO)
+      count += OPERATIONS_OF_CALL - 1;
+  return count;
+}
+
+/* Elements of the rows of L with their diagonals, and the sum of the squares of their numbers. */
+static void count_factors(const struct Program *program, double *elements, double *squares) {
+  const struct Elimination *factors = program->expressions->jacobian->factors;
+  *elements = *squares = 0.0;
+  for (size_t i = 0; i < program->equations->count; i++) {
+    double row = factors != NULL ? (double)(factors->start[i + 1] - factors->start[i]) : (double)i + 1.0;
+    *elements += row;
+    *squares += row * row;
+  }
+}
+
+struct OperationCounts operation_counts_of(const struct Program *program) {
+  double elements, squares;
+  count_factors(program, &elements, &squares);
+  return (struct OperationCounts){.derivatives = operations_of(program->routines[FUNCTION_DERIVATIVES]),
+                                  .jacobian = operations_of(program->routines[FUNCTION_JACOBIAN]),
+                                  .series = operations_of(program->series->order),
+                                  .recurrences = (double)program->series->recurrences,
+                                  .factor = squares,
+                                  .solve = elements};
+}
+
+/* For orders and iterations as they are at middling tolerances. */
+enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
+
+/* Of an evaluation of the equations by a method of Runge and Kutta or an implicit one, with its share in linear algebra. */
+static double work_of_evaluation(const struct Program *program) {
+  double work = 250.0 + operations_of(program->routines[FUNCTION_DERIVATIVES]);
+  if (program->routines[FUNCTION_JACOBIAN] == NULL) return work;
+  double elements, squares, systems = 4.0 * STAGES - 2.0;
+  count_factors(program, &elements, &squares);
+  return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
+         (operations_of(program->routines[FUNCTION_JACOBIAN]) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
+}
+
+static double work_of_series(const struct Program *program) {
+  double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
+  return 380.0 + 4.0 * operations_of(program->routines[FUNCTION_DERIVATIVES]) +
+         ORDER * (0.5 * operations_of(program->series->order) + 1.5 * states + 0.45 * ORDER * recurrences);
+}
+
+/*
+ * What counts against the limit of work in a communication step: each evaluation; each step, which takes what the series take
+ * beyond one, is brought back to the constraints and is searched for events; each event. The constants were fitted like those
+ * of auto.c, to the times of the systems in fmu/.
+ */
+struct StepWork step_work_of(const struct Program *program) {
+  enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };
+  bool has_series = program->equations->method->series == ALL_TERMS && program->series != NULL;
+  double share = program->routines[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
+  double evaluation = share * work_of_evaluation(program);
+  double step = 250.0 + CORRECTIONS * (operations_of(program->routines[FUNCTION_CORRECT_POSITIONS]) +
+                                       operations_of(program->routines[FUNCTION_CORRECT_VELOCITIES]));
+  if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
+  if (program->routines[FUNCTION_INDICATORS] != NULL)
+    step += SEARCHES * (LOOK + operations_of(program->routines[FUNCTION_INDICATORS]) +
+                        2.0 * ORDER * (double)program->interface->state_count);
+  return (struct StepWork){evaluation, step,
+                           EVENT + 4.0 * evaluation + operations_of(program->routines[FUNCTION_SWITCHING_VALUES])};
+}
