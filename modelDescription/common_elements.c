@@ -7,9 +7,7 @@
 #include "xml_output.h"
 
 static void write_unit(xmlTextWriterPtr writer, const char *name) {
-  struct Dimension dimension;
-  const char *problem;
-  unit_parse(name, &dimension, &problem);
+  struct Dimension dimension = unit_of(name);
   xmlTextWriterStartElement(writer, BAD_CAST "Unit");
   write_attribute(writer, "name", name);
   xmlTextWriterStartElement(writer, BAD_CAST "BaseUnit");

@@ -138,6 +138,12 @@ void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t 
   weighted_gradient_of(graph, &target, &weight, 1, kind, count, gradient);
 }
 
+Node *own_symbols(const struct Graph *graph) {
+  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  return symbols;
+}
+
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, targets, count, NULL);

@@ -39,5 +39,8 @@ void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t 
 void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
                           enum SymbolKind kind, size_t count, Node *gradient);
 
+/* Each symbol of the graph for itself: replacements that change nothing yet. */
+Node *own_symbols(const struct Graph *graph);
+
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);

@@ -4,3 +4,15 @@
 #include <stddef.h>
 
 void sort_sizes(size_t *sizes, size_t count);
+
+/* For qsort(). */
+int compare_sizes(const void *first, const void *second);
+
+/* The larger and the smaller of two. */
+static inline size_t larger(size_t a, size_t b) {
+  return a > b ? a : b;
+}
+
+static inline size_t smaller(size_t a, size_t b) {
+  return a < b ? a : b;
+}

@@ -2,6 +2,7 @@
 
 #include "algebra/cone.h"
 #include "base/memory.h"
+#include "base/sorting.h"
 
 /* Steps for a symbol that something depends on, which is put in order and written. */
 enum { LIST_WORK = 10 };
@@ -21,10 +22,6 @@ struct Dependencies *dependencies_create(const struct Model *model, const struct
   return dependencies;
 }
 
-static enum Dependency larger(enum Dependency a, enum Dependency b) {
-  return a > b ? a : b;
-}
-
 static void clear(struct Dependencies *dependencies) {
   for (size_t i = 0; i < dependencies->count; i++) dependencies->of[dependencies->symbols[i]] = INDEPENDENT;
   dependencies->count = 0;
@@ -32,7 +29,7 @@ static void clear(struct Dependencies *dependencies) {
 
 static void note(struct Dependencies *dependencies, size_t symbol, enum Dependency kind) {
   if (dependencies->of[symbol] == INDEPENDENT) dependencies->symbols[dependencies->count++] = symbol;
-  dependencies->of[symbol] = larger(dependencies->of[symbol], kind);
+  if (kind > dependencies->of[symbol]) dependencies->of[symbol] = kind;
 }
 
 /* How an operation depends on one of its operands, which stands beside the other. */
@@ -58,7 +55,7 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
     for (int i = 0; i < arity; i++) {
       Node operand = i == 0 ? vertex->left : vertex->right, other = i == 0 ? vertex->right : vertex->left;
       enum Dependency *below = &on[cone_place(cone, operand)];
-      *below = larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
+      *below = (enum Dependency)larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
     }
   }
 }

@@ -60,15 +60,16 @@ static void append_calculated(struct Interface *interface, const struct Model *m
   }
 }
 
+/* NULL where FMI has no unit of the dimension. */
+static char *unit_of_dimension(struct Dimension dimension) {
+  return dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
+}
+
 static void append_derivative(struct Interface *interface, const struct Variable *state, size_t index, Node node) {
   char *name = format_text("der(%s)", state->name), *text = format_text("time derivative of %s", state->name);
   struct InterfaceVariable *variable = append(interface, VARIABLE_DERIVATIVE, index, name, text);
   variable->node = node;
-  struct Dimension second;
-  const char *problem;
-  unit_parse("s", &second, &problem);
-  struct Dimension dimension = dimension_multiply(state->dimension, second, -1.0);
-  variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
+  variable->unit = unit_of_dimension(dimension_multiply(state->dimension, unit_of("s"), -1.0));
 }
 
 static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
@@ -124,12 +125,8 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     char *text = format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
     append_result(interface, name, "", whole_force(model, i, force), text);
-    struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
-    struct Dimension energy;
-    const char *problem;
-    unit_parse("J", &energy, &problem);
-    struct Dimension dimension = dimension_multiply(energy, constraint->dimension, -1.0);
-    variable->unit = dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
+    interface->variables[interface->count - 1].unit =
+        unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "base/sorting.h"
 #include "mechanics/switching.h"
 
 /* Mere numbers and variables read as well by themselves. */
@@ -56,10 +57,6 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
   return readable(model, names, sum);
 }
 
-static size_t at_most(size_t count, size_t limit) {
-  return count < limit ? count : limit;
-}
-
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
   struct Graph *graph = model->graph;
   struct Summary *summary = allocate(1, sizeof *summary);
@@ -72,9 +69,9 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
       .potential = readable(model, &names, model->linearized ? equations->potential : model->energies.potential.node),
       .power = readable(model, &names, equations->stated_power),
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
-      .motion_count = at_most(equations->count, SHOWN_LIMIT),
-      .reaction_count = at_most(model->reactions.count, SHOWN_LIMIT),
-      .output_count = at_most(model->outputs.count, SHOWN_LIMIT)};
+      .motion_count = smaller(equations->count, SHOWN_LIMIT),
+      .reaction_count = smaller(model->reactions.count, SHOWN_LIMIT),
+      .output_count = smaller(model->outputs.count, SHOWN_LIMIT)};
   summary->inertial = allocate(summary->motion_count, sizeof(Node));
   summary->right_side = allocate(summary->motion_count, sizeof(Node));
   summary->outputs = allocate(summary->output_count, sizeof(Node));

@@ -75,8 +75,7 @@ static void give_motion(const struct Model *model, struct Equations *equations, 
 static Node without_forces(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   if (model->switches.friction_count == 0 || !graph_depends_on(graph, node, ACCELERATION)) return node;
-  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
-  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  Node *symbols = own_symbols(graph);
   for (size_t j = 0; j < model->constraints.count; j++) symbols[graph->vertices[model->unknowns.forces[j]].left] = ZERO;
   substitute(graph, &node, 1, symbols, &node);
   return node;
@@ -137,8 +136,7 @@ static void solve_for_accelerations(const struct Model *model, struct Equations 
 static Node with_accelerations(const struct Model *model, const struct Equations *equations, Node node) {
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, node, ACCELERATION)) return node;
-  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
-  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
+  Node *symbols = own_symbols(graph);
   for (size_t i = 0; i < equations->count; i++)
     symbols[graph->vertices[model->unknowns.accelerations[i]].left] = equations->acceleration[i];
   substitute(graph, &node, 1, symbols, &node);

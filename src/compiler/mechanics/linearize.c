@@ -45,9 +45,8 @@ static Node point_of(const struct Model *model, Node symbol) {
 static struct Expansion expansion_create(const struct Model *model) {
   struct Graph *graph = model->graph;
   struct Expansion expansion = {.graph = graph};
-  expansion.values = allocate(graph->symbol_count, sizeof(Node));
+  expansion.values = own_symbols(graph);
   expansion.deviations = allocate(graph->symbol_count, sizeof(Node));
-  for (size_t i = 0; i < graph->symbol_count; i++) expansion.values[i] = graph->symbols[i].node;
   const struct VariableList *lists[] = {&model->coordinates, &model->velocities, &model->inputs};
   for (size_t list = 0; list < 3; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
@@ -195,8 +194,7 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
 /* The expression with the linearised forces of constraints in place of their symbols. */
 static Node without_forces(const struct Model *model, const struct Equations *linear, Node node) {
   struct Graph *graph = model->graph;
-  Node *replacements = allocate(graph->symbol_count, sizeof *replacements), result;
-  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  Node *replacements = own_symbols(graph), result;
   for (size_t j = 0; j < model->constraints.count; j++)
     replacements[graph->vertices[model->unknowns.forces[j]].left] = linear->acceleration[linear->count + j];
   substitute(graph, &node, 1, replacements, &result);

@@ -64,13 +64,6 @@ static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_
   return force;
 }
 
-/* Each symbol for itself. */
-static Node *all_symbols(const struct Graph *graph) {
-  Node *symbols = allocate(graph->symbol_count, sizeof *symbols);
-  for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = graph->symbols[i].node;
-  return symbols;
-}
-
 void reactions_derive(const struct Model *model, Node *reactions) {
   struct Graph *graph = model->graph;
   size_t count = model->displacements.count;
@@ -97,7 +90,7 @@ Node moving_power(const struct Model *model) {
 }
 
 Node *undisplaced_symbols(const struct Graph *graph) {
-  Node *symbols = all_symbols(graph);
+  Node *symbols = own_symbols(graph);
   for (size_t i = 0; i < graph->symbol_count; i++)
     if (graph->symbols[i].kind == DISPLACEMENT) symbols[i] = ZERO;
   return symbols;
@@ -106,7 +99,7 @@ Node *undisplaced_symbols(const struct Graph *graph) {
 Node with_reactions(const struct Model *model, const Node *reactions, Node node) {
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, node, REACTION)) return node;
-  Node *symbols = all_symbols(graph);
+  Node *symbols = own_symbols(graph);
   for (size_t i = 0; i < model->reactions.count; i++)
     symbols[graph->vertices[model->reactions.items[i].node].left] = reactions[i];
   substitute(graph, &node, 1, symbols, &node);

@@ -245,8 +245,7 @@ Node without_branches(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
   if (switches->count == 0) return node;
-  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
-  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->count; i++)
     replacements[graph->vertices[switches->items[i].mode].left] =
         function(graph, SIGN, switches->items[i].indicator, ZERO);

@@ -166,6 +166,9 @@ struct Model {
   struct Experiment experiment;
 };
 
+/* How many time derivatives of the input are inputs too; they follow it. */
+size_t input_rate_count(const struct Model *model, size_t input);
+
 /* Whether the input is the time derivative of the one before it. */
 bool is_input_rate(const struct Model *model, size_t input);
 

@@ -22,12 +22,6 @@ static char *mark_inputs(const struct Model *model, Node constraint, bool *is_gu
   return names;
 }
 
-static size_t rate_count(const struct Model *model, size_t input) {
-  size_t count = 0;
-  while (model->given.input_rates[input + count] != ZERO) count++;
-  return count;
-}
-
 bool has_guides(const struct Model *model) {
   bool has = false;
   for (size_t j = 0; j < model->constraints.count; j++)
@@ -47,6 +41,6 @@ void guides_write(FILE *file, const struct Model *model) {
   }
   fputs("};\n\nstatic const struct Guide guides[] = {", file);
   for (size_t i = 0; i < model->inputs.count; i++)
-    if (is_guide[i]) fprintf(file, "{%zu, %zu}, ", i, rate_count(model, i));
+    if (is_guide[i]) fprintf(file, "{%zu, %zu}, ", i, input_rate_count(model, i));
   fputs("};\n\n", file);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sorting.h"
 
 /* When a place was written and read last; levels count from 1, and 0 is before all. */
 struct Access {
@@ -37,10 +38,6 @@ static struct Access *access_of(const struct Accesses *accesses, Place place) {
   return &accesses->of[space_of(place)][index_in(place)];
 }
 
-static size_t later(size_t first, size_t second) {
-  return first > second ? first : second;
-}
-
 /* A block's instruction reads and writes its whole part of the spaces. */
 static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors,
                              size_t level) {
@@ -48,13 +45,13 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
   struct Access *side = accesses->of[SPACE_SIDE] + looped->first_side;
   size_t elements = looped->mass_count;
   for (size_t i = 0; i < elements; i++)
-    level = later(level, factors ? later(mass[i].written, mass[i].read) : mass[i].written);
+    level = larger(level, factors ? larger(mass[i].written, mass[i].read) : mass[i].written);
   for (size_t i = 0; i < looped->block->count && !factors; i++)
-    level = later(level, later(side[i].written, side[i].read));
+    level = larger(level, larger(side[i].written, side[i].read));
   level++;
   for (size_t i = 0; i < elements; i++) {
     if (factors) mass[i].written = level;
-    else mass[i].read = later(mass[i].read, level);
+    else mass[i].read = larger(mass[i].read, level);
   }
   for (size_t i = 0; i < looped->block->count && !factors; i++) side[i].written = level;
   return level;
@@ -67,15 +64,16 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
   if (facts->result == BLOCK)
     return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
-    if (facts->operands[j] != ROW_OF_PAST) level = later(level, access_of(accesses, instruction->operands[j])->written);
+    if (facts->operands[j] != ROW_OF_PAST)
+      level = larger(level, access_of(accesses, instruction->operands[j])->written);
   if (opcode_has_result(instruction->opcode)) {
     const struct Access *result = access_of(accesses, instruction->result);
-    level = later(level, later(result->written, result->read));
+    level = larger(level, larger(result->written, result->read));
   }
   level++;
   for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
     struct Access *operand = access_of(accesses, instruction->operands[j]);
-    if (facts->operands[j] != ROW_OF_PAST) operand->read = later(operand->read, level);
+    if (facts->operands[j] != ROW_OF_PAST) operand->read = larger(operand->read, level);
   }
   if (opcode_has_result(instruction->opcode)) access_of(accesses, instruction->result)->written = level;
   return level;

@@ -132,6 +132,13 @@ bool unit_parse(const char *text, struct Dimension *dimension, const char **prob
   return reader.problem == NULL;
 }
 
+struct Dimension unit_of(const char *text) {
+  struct Dimension dimension;
+  const char *problem;
+  unit_parse(text, &dimension, &problem);
+  return dimension;
+}
+
 static void append_powers(FILE *file, struct Dimension dimension, int sign, const char *separator) {
   for (int i = 0; i < BASE_UNIT_COUNT; i++) {
     double exponent = dimension.exponent[i] * sign;

@@ -23,6 +23,9 @@ extern const struct Dimension dimension_unknown, dimension_one;
  */
 bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
 
+/* The dimension of a unit that is right. */
+struct Dimension unit_of(const char *text);
+
 /* The unit in base units, for example "kg.m2/s2"; "1" without any. */
 char *unit_text(struct Dimension dimension);
 

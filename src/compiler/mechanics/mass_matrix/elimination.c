@@ -5,6 +5,12 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
+int compare_positions(const void *first, const void *second) {
+  const struct Position *a = first, *b = second;
+  int order = compare_sizes(&a->column, &b->column);
+  return order != 0 ? order : compare_sizes(&a->row, &b->row);
+}
+
 /* Steps for each item that two sets have when they are joined, which takes memory too. */
 enum { JOIN_WORK = 4 };
 

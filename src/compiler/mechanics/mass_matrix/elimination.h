@@ -19,6 +19,9 @@ struct Position {
   size_t row, column;
 };
 
+/* For qsort(), of what begins with a position: by columns, and in these by rows. */
+int compare_positions(const void *first, const void *second);
+
 /*
  * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
  * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree

@@ -74,30 +74,20 @@ size_t *sort_by_components(struct Elements *elements, const struct Components *c
   return start;
 }
 
-struct ColumnPart {
-  size_t column, element;
-};
-
-static int compare_columns(const void *first, const void *second) {
-  const struct ColumnPart *a = first, *b = second;
-  if (a->column != b->column) return a->column < b->column ? -1 : 1;
-  return (a->element > b->element) - (a->element < b->element);
-}
-
-/* The elements at these positions column by column, which gives other expressions of the same values. */
-static void differentiate_columns(const struct Model *model, const Node *momentum, const struct ColumnPart *parts,
+/* The elements at these positions column by column, whose numbers the parts have as rows, which gives other expressions of the same values. */
+static void differentiate_columns(const struct Model *model, const Node *momentum, const struct Position *parts,
                                   const struct Position *positions, size_t count, Node *nodes) {
   struct Graph *graph = model->graph;
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   Node *targets = allocate(count, sizeof *targets), *column = allocate(count, sizeof *column);
   for (size_t first = 0, end = 0; first < count && graph_limit(graph) == NULL; first = end) {
     for (end = first; end < count && parts[end].column == parts[first].column; end++)
-      targets[end - first] = momentum[positions[parts[end].element].row];
+      targets[end - first] = momentum[positions[parts[end].row].row];
     Node *seed = &seeds[graph->vertices[model->velocities.items[parts[first].column].node].left];
     *seed = ONE;
     derivative_along(graph, targets, end - first, seeds, column);
     *seed = ZERO;
-    for (size_t k = first; k < end; k++) nodes[parts[k].element] = column[k - first];
+    for (size_t k = first; k < end; k++) nodes[parts[k].row] = column[k - first];
   }
 }
 
@@ -107,10 +97,10 @@ static void differentiate_columns(const struct Model *model, const Node *momentu
  */
 static void try_columns(const struct Model *model, const Node *momentum, const struct Position *positions, size_t count,
                         Node *nodes) {
-  struct ColumnPart *parts = allocate(count, sizeof *parts);
+  struct Position *parts = allocate(count, sizeof *parts);
   size_t columns = 0;
-  for (size_t k = 0; k < count; k++) parts[k] = (struct ColumnPart){positions[k].column, k};
-  qsort(parts, count, sizeof *parts, compare_columns);
+  for (size_t k = 0; k < count; k++) parts[k] = (struct Position){k, positions[k].column};
+  qsort(parts, count, sizeof *parts, compare_positions);
   for (size_t k = 0; k < count; k++) columns += k == 0 || parts[k].column != parts[k - 1].column;
   if (columns > 1 && 4 * count >= columns * columns) {
     Node *others = allocate(count, sizeof *others);

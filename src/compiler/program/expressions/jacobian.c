@@ -10,7 +10,7 @@
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY };
 
 struct Element {
-  size_t row, column;
+  struct Position at;
   Node value;
 };
 
@@ -21,13 +21,7 @@ struct ElementList {
 
 static void append(struct ElementList *list, size_t row, size_t column, Node value) {
   list->items = make_room(list->items, list->count, sizeof *list->items);
-  list->items[list->count++] = (struct Element){row, column, value};
-}
-
-static int compare(const void *first, const void *second) {
-  const struct Element *a = first, *b = second;
-  if (a->column != b->column) return a->column < b->column ? -1 : 1;
-  return (a->row > b->row) - (a->row < b->row);
+  list->items[list->count++] = (struct Element){{row, column}, value};
 }
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
@@ -58,13 +52,13 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
   struct ElementList residual = {0};
   for (size_t i = 0; i < block->count; i++)
     append_gradient(&residual, graph, equations->count, equations->residual[block->coordinates[i]], i);
-  if (residual.count > 0) qsort(residual.items, residual.count, sizeof *residual.items, compare);
+  if (residual.count > 0) qsort(residual.items, residual.count, sizeof *residual.items, compare_positions);
   Node *right = allocate(block->count, sizeof *right);
   for (size_t first = 0, next = 0; first < residual.count && list->count <= JACOBIAN_LIMIT; first = next) {
-    size_t column = residual.items[first].column;
+    size_t column = residual.items[first].at.column;
     for (size_t i = 0; i < block->count; i++) right[i] = ZERO;
-    for (; next < residual.count && residual.items[next].column == column; next++)
-      right[residual.items[next].row] = negate(graph, residual.items[next].value);
+    for (; next < residual.count && residual.items[next].at.column == column; next++)
+      right[residual.items[next].at.row] = negate(graph, residual.items[next].value);
     append_column(list, graph, equations, block, column, right);
   }
 }
@@ -72,20 +66,20 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
 /* Rows beyond the states are those of constraints. */
 static struct JacobianExpressions *by_columns(struct ElementList *list, size_t columns) {
   struct JacobianExpressions *jacobian = allocate(1, sizeof *jacobian);
-  if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare);
+  if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare_positions);
   jacobian->start = allocate(columns + 1, sizeof *jacobian->start);
   jacobian->row = allocate(list->count, sizeof *jacobian->row);
   jacobian->value = allocate(list->count, sizeof *jacobian->value);
   jacobian->sides = allocate(list->count, sizeof *jacobian->sides);
   for (size_t i = 0; i < list->count; i++) {
     const struct Element *element = &list->items[i];
-    if (element->row >= columns) {
-      struct ConstraintSide side = {element->column, element->row - columns, element->value};
+    if (element->at.row >= columns) {
+      struct ConstraintSide side = {element->at.column, element->at.row - columns, element->value};
       jacobian->sides[jacobian->side_count++] = side;
       continue;
     }
-    jacobian->start[element->column + 1]++;
-    jacobian->row[jacobian->count] = element->row;
+    jacobian->start[element->at.column + 1]++;
+    jacobian->row[jacobian->count] = element->at.row;
     jacobian->value[jacobian->count++] = element->value;
   }
   for (size_t j = 0; j < columns; j++) jacobian->start[j + 1] += jacobian->start[j];

@@ -4,12 +4,6 @@
 
 #include "base/memory.h"
 
-static int compare(const void *first, const void *second) {
-  const struct Position *a = first, *b = second;
-  if (a->row != b->row) return a->row < b->row ? -1 : 1;
-  return (a->column > b->column) - (a->column < b->column);
-}
-
 /* Where stiffness or damping couples two coordinates, in the lower triangle, each position once. Returns the count. */
 static size_t find_positions(const struct JacobianExpressions *jacobian, size_t coordinates,
                              struct Position *positions) {
@@ -22,9 +16,9 @@ static size_t find_positions(const struct JacobianExpressions *jacobian, size_t 
     }
   }
   for (size_t i = 0; i < coordinates; i++) positions[found++] = (struct Position){i, i};
-  qsort(positions, found, sizeof *positions, compare);
+  qsort(positions, found, sizeof *positions, compare_positions);
   for (size_t i = 0; i < found; i++)
-    if (i == 0 || compare(&positions[i - 1], &positions[i]) != 0) positions[count++] = positions[i];
+    if (i == 0 || compare_positions(&positions[i - 1], &positions[i]) != 0) positions[count++] = positions[i];
   return count;
 }
 

@@ -81,13 +81,6 @@ struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, cons
   return value;
 }
 
-struct Dimension unit_of(const char *text) {
-  struct Dimension dimension;
-  const char *problem;
-  unit_parse(text, &dimension, &problem);
-  return dimension;
-}
-
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Dimension dimension = dimension_unknown;
   const char *problem;

@@ -96,9 +96,6 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
 /* The same where no event waits for its pieces: abs, min and the like stay whole. */
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 
-/* The dimension of a unit that is right. */
-struct Dimension unit_of(const char *text);
-
 /* The unit in an attribute of the element; unknown where missing or after an error. */
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 

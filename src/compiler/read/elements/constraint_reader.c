@@ -34,21 +34,14 @@ static bool is_moving(const struct Model *model, Node constraint) {
   return simplify_fraction(graph, value) != ZERO;
 }
 
-/* How many time derivatives of the input are inputs too. */
-static int rate_count(const struct Model *model, size_t input) {
-  int count = 0;
-  for (Node rate = model->given.input_rates[input]; rate != ZERO; rate = model->given.input_rates[++input]) count++;
-  return count;
-}
-
 /* Accelerations feel the second derivatives of inputs that move a position, and the first of those in velocities. */
 static void require_rates(const struct Reader *reader, const struct Variable *constraint) {
   const struct Model *model = reader->model;
-  int needed = graph_depends_on(model->graph, constraint->node, VELOCITY) ? 1 : 2;
+  size_t needed = graph_depends_on(model->graph, constraint->node, VELOCITY) ? 1 : 2;
   struct Gradient levers = gradient_by_kinds(model->graph, constraint->node, KIND(INPUT));
   for (size_t i = 0; i < levers.count; i++) {
     size_t input = (size_t)graph_symbol_of(model->graph, levers.symbols[i])->index;
-    if (rate_count(model, input) >= needed) continue;
+    if (input_rate_count(model, input) >= needed) continue;
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' needs the %s derivative of '%s'; expected %s", constraint->name,
                  needed == 1 ? "time" : "second", model->inputs.items[input].name,

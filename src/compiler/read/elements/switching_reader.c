@@ -235,8 +235,7 @@ void complete_friction_forces(struct Reader *reader) {
   struct Graph *graph = model->graph;
   struct Switches *switches = &model->switches;
   if (switches->friction_count == 0) return;
-  Node *replacements = allocate(graph->symbol_count, sizeof *replacements);
-  for (size_t i = 0; i < graph->symbol_count; i++) replacements[i] = graph->symbols[i].node;
+  Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
     Node force = model->unknowns.forces[friction->constraint];

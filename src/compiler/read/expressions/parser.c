@@ -244,10 +244,7 @@ static struct Quantity parse_derivative(struct Parser *parser) {
       FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
            is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, place.kinds));
   if (parser->failed) return nothing;
-  struct Dimension second;
-  const char *problem;
-  unit_parse("s", &second, &problem);
-  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, second, -1.0)};
+  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, unit_of("s"), -1.0)};
 }
 
 static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {

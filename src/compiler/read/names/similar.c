@@ -4,14 +4,12 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/sorting.h"
+
 enum { NAME_LIMIT = 40 };
 
 static bool is_same_letter(char a, char b) {
   return tolower((unsigned char)a) == tolower((unsigned char)b);
-}
-
-static size_t least(size_t a, size_t b) {
-  return a < b ? a : b;
 }
 
 /*
@@ -29,9 +27,9 @@ static size_t edit_distance(const char *a, const char *b) {
         continue;
       }
       size_t best = distance[i - 1][j - 1] + !is_same_letter(a[i - 1], b[j - 1]);
-      best = least(best, least(distance[i - 1][j], distance[i][j - 1]) + 1);
+      best = smaller(best, smaller(distance[i - 1][j], distance[i][j - 1]) + 1);
       if (i > 1 && j > 1 && is_same_letter(a[i - 1], b[j - 2]) && is_same_letter(a[i - 2], b[j - 1]))
-        best = least(best, distance[i - 2][j - 2] + 1);
+        best = smaller(best, distance[i - 2][j - 2] + 1);
       distance[i][j] = best;
     }
   }
@@ -60,7 +58,7 @@ static bool is_better(const struct Similar *similar, const char *known, size_t d
 
 void similar_consider(struct Similar *similar, const char *known) {
   size_t distance = edit_distance(similar->wanted, known);
-  size_t allowed = least(allowed_mistakes(similar->wanted), allowed_mistakes(known));
+  size_t allowed = smaller(allowed_mistakes(similar->wanted), allowed_mistakes(known));
   if (distance > allowed || !is_better(similar, known, distance)) return;
   similar->best = known;
   similar->distance = distance;
