@@ -4,7 +4,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "mechanics/time_derivative.h"
+#include "model/time_derivative.h"
 
 static void append_row(struct Constraints *constraints, const struct Model *model, size_t row, Node target,
                        enum SymbolKind kind) {

@@ -3,23 +3,8 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "mechanics/time_derivative.h"
-
-/* What moves, and the forces of inertia along it. */
-struct Motions {
-  Node *moved, *force;
-  size_t count;
-};
-
-static struct Motions motions_create(size_t capacity) {
-  return (struct Motions){.moved = allocate(capacity, sizeof(Node)), .force = allocate(capacity, sizeof(Node))};
-}
-
-static void append(struct Motions *motions, Node moved, Node force) {
-  if (moved == ZERO || force == ZERO) return;
-  motions->moved[motions->count] = moved;
-  motions->force[motions->count++] = force;
-}
+#include "model/time_derivative.h"
+#include "mechanics/virtual_work.h"
 
 /* Whether what rests is a velocity, of a nonholonomic constraint. */
 static bool is_rate(const struct Graph *graph, Node constraint) {
@@ -27,9 +12,9 @@ static bool is_rate(const struct Graph *graph, Node constraint) {
 }
 
 /* Positions and angles of planar bodies. A weight of ZERO is that of a mere point. */
-static struct Motions motions_of_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
+static struct VirtualWork work_on_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
-  struct Motions motions = motions_create(4 * model->mechanism.body_count + model->mechanism.stillness_count);
+  struct VirtualWork work = {0};
   Node *rate = allocate(4 * model->mechanism.body_count, sizeof *rate);
   for (size_t i = 0; i < model->mechanism.body_count; i++)
     for (int component = 0; component < 4 && !model->mechanism.bodies[i].is_in_frame; component++)
@@ -42,7 +27,7 @@ static struct Motions motions_of_positions(const struct Model *model, const Node
     for (int component = 0; component < 4 && !body->is_in_frame; component++) {
       Node inertia = component < 3 ? body->mass.node : body->inertia.node, position = body->displaced[component];
       if (kind == COORDINATE) position = component < 3 ? body->position[component].node : body->angle.node;
-      append(&motions, position, multiply(graph, inertia, rate[4 * i + (size_t)component]));
+      virtual_work_add(&work, position, multiply(graph, inertia, rate[4 * i + (size_t)component]));
     }
   }
   for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
@@ -50,9 +35,9 @@ static struct Motions motions_of_positions(const struct Model *model, const Node
     if (is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    append(&motions, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
+    virtual_work_add(&work, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
   }
-  return motions;
+  return work;
 }
 
 /* v' + omega x v */
@@ -62,9 +47,9 @@ static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struc
   return vector_add(graph, vector, carried);
 }
 
-static struct Motions motions_of_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
+static struct VirtualWork work_on_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
-  struct Motions motions = motions_create(6 * model->mechanism.body_count + model->mechanism.stillness_count);
+  struct VirtualWork work = {0};
   for (size_t i = 0; i < model->mechanism.body_count; i++) {
     const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame) continue;
@@ -77,31 +62,30 @@ static struct Motions motions_of_velocities(const struct Model *model, const Nod
       force = vector_scale(graph, body->mass.node, rate_in_frame(graph, seeds, body->angular_velocity, body->velocity));
     struct Vector torque = rate_in_frame(graph, seeds, body->angular_velocity, momentum);
     for (int axis = 0; axis < 3; axis++) {
-      append(&motions, velocity.along[axis], force.along[axis]);
-      append(&motions, spin.along[axis], torque.along[axis]);
+      virtual_work_add(&work, velocity.along[axis], force.along[axis]);
+      virtual_work_add(&work, spin.along[axis], torque.along[axis]);
     }
   }
   for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
     Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
     if (!is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    append(&motions, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
+    virtual_work_add(&work, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
   }
-  return motions;
+  return work;
 }
 
 Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count) {
   struct Graph *graph = model->graph;
-  struct Motions positions = motions_of_positions(model, seeds, kind);
-  struct Motions velocities = motions_of_velocities(model, seeds, kind);
-  Node *force = allocate(count, sizeof *force), *along = allocate(count, sizeof *along);
-  weighted_gradient_of(graph, positions.moved, positions.force, positions.count, kind, count, force);
-  weighted_gradient_of(graph, velocities.moved, velocities.force, velocities.count,
-                       kind == COORDINATE ? VELOCITY : kind, count, along);
-  if (kind == COORDINATE)
-    for (size_t i = 0; i < count; i++) force[i] = add(graph, force[i], along[i]);
-  else
-    for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
+  const struct VirtualWork positions = work_on_positions(model, seeds, kind);
+  const struct VirtualWork velocities = work_on_velocities(model, seeds, kind);
+  Node *force = virtual_work_along(graph, &positions, kind, count);
+  if (kind != COORDINATE) {
+    virtual_work_add_along_rates(graph, &velocities, kind, count, force);
+    return force;
+  }
+  const Node *along = virtual_work_along(graph, &velocities, VELOCITY, count);
+  for (size_t i = 0; i < count; i++) force[i] = add(graph, force[i], along[i]);
   return force;
 }
 

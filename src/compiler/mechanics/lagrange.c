@@ -8,7 +8,7 @@
 #include "mechanics/inertial_forces.h"
 #include "mechanics/reactions.h"
 #include "mechanics/switching.h"
-#include "mechanics/time_derivative.h"
+#include "model/time_derivative.h"
 
 /* Q_i, with -dD/dv_i of the dissipation function D added. */
 static Node *generalized_forces(const struct Model *model) {

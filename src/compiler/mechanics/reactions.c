@@ -5,51 +5,26 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/inertial_forces.h"
-#include "mechanics/time_derivative.h"
+#include "model/time_derivative.h"
+#include "mechanics/virtual_work.h"
 
-/* sum weight . d position / d s for all symbols s of the kind, over positions as functions of displacements too. */
-struct Work {
-  Node *positions, *weights;
-  size_t count;
-};
-
-static struct Work work_create(size_t capacity) {
-  return (struct Work){.positions = allocate(capacity, sizeof(Node)), .weights = allocate(capacity, sizeof(Node))};
-}
-
-static void append_work(struct Work *work, Node position, Node weight) {
-  work->positions[work->count] = position;
-  work->weights[work->count++] = weight;
-}
-
-static Node *work_along(struct Graph *graph, struct Work *work, enum SymbolKind kind, size_t count) {
-  Node *force = allocate(count, sizeof *force);
-  weighted_gradient_of(graph, work->positions, work->weights, work->count, kind, count, force);
-  return force;
-}
-
-/* What torques do along the rates of the symbols, which follow these. */
-static void add_torques(const struct Model *model, enum SymbolKind kind, size_t count, Node *force) {
-  struct Graph *graph = model->graph;
-  struct Work work = work_create(3 * model->forces.torque_count);
-  for (size_t i = 0; i < model->forces.torque_count; i++)
-    for (int axis = 0; axis < 3; axis++) {
-      const struct Torque *torque = &model->forces.torques[i];
-      if (graph_depends_on(graph, torque->angular_velocity.along[axis], kind))
-        append_work(&work, torque->angular_velocity.along[axis], torque->torque.along[axis]);
-    }
-  Node *along = work_along(graph, &work, kind, count);
-  for (size_t i = 0; i + 1 < count; i++) force[i] = add(graph, force[i], along[i + 1]);
-}
-
+/* What Cartesian forces and torques do along the symbols of the kind; each is followed by that of its rate. */
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
-  struct Work work = work_create(model->forces.point_count);
-  for (size_t i = 0; i < model->forces.point_count; i++)
-    if (graph_depends_on(model->graph, model->forces.at_points[i].position, kind))
-      append_work(&work, model->forces.at_points[i].position, model->forces.at_points[i].force);
-  Node *force = work_along(model->graph, &work, kind, count);
-  add_torques(model, kind, count, force);
-  return force;
+  const struct Forces *forces = &model->forces;
+  struct Graph *graph = model->graph;
+  struct VirtualWork work = {0}, work_of_torques = {0};
+  for (size_t i = 0; i < forces->point_count; i++)
+    if (graph_depends_on(graph, forces->at_points[i].position, kind))
+      virtual_work_add(&work, forces->at_points[i].position, forces->at_points[i].force);
+  for (size_t i = 0; i < forces->torque_count; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      const struct Torque *torque = &forces->torques[i];
+      if (graph_depends_on(graph, torque->angular_velocity.along[axis], kind))
+        virtual_work_add(&work_of_torques, torque->angular_velocity.along[axis], torque->torque.along[axis]);
+    }
+  Node *along = virtual_work_along(graph, &work, kind, count);
+  virtual_work_add_along_rates(graph, &work_of_torques, kind, count, along);
+  return along;
 }
 
 /* R + Q for each symbol of the kind but the last; that of its rate follows it. */

@@ -7,7 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "lagrangian.h"
-#include "mechanics/time_derivative.h"
+#include "model/time_derivative.h"
 
 /* What decides on the motion. */
 static struct NodeList roots_of(const struct Model *model, const struct Equations *equations) {

@@ -60,14 +60,12 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
            without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
-/* A force F along r contributes Q_i = F dr/dq_i (principle of virtual work); its power is F dr/dt. */
-static void add_force(struct Model *model, Node position, Node force) {
-  struct Graph *graph = model->graph;
-  struct Gradient levers = gradient_by_kinds(graph, position, KIND(COORDINATE) | KIND(TIME));
-  for (size_t i = 0; i < levers.count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
+/* A force F along r contributes Q_i = F dr/dq_i, and the power F dr/dt; levers: of r by coordinates, or by velocities, and time. */
+static void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers) {
+  for (size_t i = 0; i < levers->count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(model->graph, levers->symbols[i]);
     struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];
-    add_term(model, sum, multiply(graph, force, levers.values[i]));
+    add_term(model, sum, multiply(model->graph, force, levers->values[i]));
   }
 }
 
@@ -121,7 +119,9 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);
     Node displaced = body != NULL ? body->displaced[axis] : point.position.along[axis];
-    add_force(model, without_displacements(reader, line, name, displaced), force.along[axis]);
+    struct Gradient levers = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
+                                               KIND(COORDINATE) | KIND(TIME));
+    add_virtual_work(model, force.along[axis], &levers);
     append_point_force(model, displaced, force.along[axis]);
   }
 }
@@ -145,8 +145,7 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Graph *graph = model->graph;
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
   struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
-  for (size_t i = 0; i < levers.count; i++)
-    add_term(model, &model->forces.along[graph_symbol_of(graph, levers.symbols[i])->index], levers.values[i]);
+  add_virtual_work(model, ONE, &levers);
   add_term(model, &model->forces.driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
   model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};

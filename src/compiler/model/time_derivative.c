@@ -1,4 +1,4 @@
-#include "mechanics/time_derivative.h"
+#include "model/time_derivative.h"
 
 #include "base/memory.h"
 
