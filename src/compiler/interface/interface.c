@@ -190,9 +190,9 @@ static bool steps_in_time(const struct Model *model) {
   const struct Graph *graph = model->graph;
   bool steps = false;
   if (!graph_depends_on(graph, model->energies.potential.node, MODE)) return false;
-  for (size_t i = 0; i < model->switches.count; i++) {
-    Node indicator = model->switches.items[i].indicator;
-    const char *function = model->switches.items[i].function;
+  for (size_t i = 0; i < model->switches.branch_count; i++) {
+    Node indicator = model->switches.branches[i].indicator;
+    const char *function = model->switches.branches[i].function;
     steps |= strcmp(function, "sign") == 0 || strcmp(function, "a condition") == 0;
     steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
              graph_depends_on(graph, indicator, INPUT);

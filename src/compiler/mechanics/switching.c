@@ -33,7 +33,7 @@ static struct NodeList roots_of(const struct Model *model, const struct Equation
 }
 
 /* Whether the state decides by a branch on an energy; the cone holds the energies. */
-static bool holds_energy(const struct Model *model, const struct Switch *branch) {
+static bool holds_energy(const struct Model *model, const struct Branch *branch) {
   const unsigned of_state = 1u << COORDINATE | 1u << VELOCITY;
   return (branch->kinds & of_state) != 0 && cone_has(model->graph->cone, branch->mode);
 }
@@ -43,35 +43,36 @@ static void find_energies(const struct Model *model, const struct Equations *equ
                           struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   const Node energies[] = {equations->kinetic, equations->potential};
-  switching->holds_energy = allocate(switches->count, sizeof(bool));
+  switching->holds_energy = allocate(switches->branch_count, sizeof(bool));
   cone_collect(model->graph->cone, model->graph, energies, 2, NULL);
-  for (size_t i = 0; i < switches->count; i++) switching->holds_energy[i] = holds_energy(model, &switches->items[i]);
+  for (size_t i = 0; i < switches->branch_count; i++)
+    switching->holds_energy[i] = holds_energy(model, &switches->branches[i]);
 }
 
 /* The branches whose modes stand in the roots, or in the indicators of such branches. */
 static void find_branches(const struct Model *model, struct NodeList *roots, struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
-  bool *is_used = allocate(switches->count, sizeof *is_used);
-  for (size_t i = 0; i < switches->count; i++) {
+  bool *is_used = allocate(switches->branch_count, sizeof *is_used);
+  for (size_t i = 0; i < switches->branch_count; i++) {
     is_used[i] = switching->holds_energy[i];
-    if (is_used[i]) append_node(roots, switches->items[i].indicator);
+    if (is_used[i]) append_node(roots, switches->branches[i].indicator);
   }
-  for (bool grown = switches->count > 0; grown;) {
+  for (bool grown = switches->branch_count > 0; grown;) {
     grown = false;
     cone_collect(cone, model->graph, roots->nodes, roots->count, NULL);
-    for (size_t i = 0; i < switches->count; i++) {
-      if (is_used[i] || !cone_has(cone, switches->items[i].mode)) continue;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      if (is_used[i] || !cone_has(cone, switches->branches[i].mode)) continue;
       is_used[i] = grown = true;
     }
-    for (size_t i = 0; i < switches->count && grown; i++)
-      if (is_used[i]) append_node(roots, switches->items[i].indicator);
+    for (size_t i = 0; i < switches->branch_count && grown; i++)
+      if (is_used[i]) append_node(roots, switches->branches[i].indicator);
   }
-  switching->branches = allocate(switches->count, sizeof(const struct Switch *));
-  for (size_t i = 0; i < switches->count; i++) {
+  switching->branches = allocate(switches->branch_count, sizeof(const struct Branch *));
+  for (size_t i = 0; i < switches->branch_count; i++) {
     if (!is_used[i]) continue;
     switching->holds_energy[switching->branch_count] = switching->holds_energy[i];
-    switching->branches[switching->branch_count++] = &switches->items[i];
+    switching->branches[switching->branch_count++] = &switches->branches[i];
   }
 }
 
@@ -244,13 +245,13 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
 Node without_branches(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  if (switches->count == 0) return node;
+  if (switches->branch_count == 0) return node;
   Node *replacements = own_symbols(graph);
-  for (size_t i = 0; i < switches->count; i++)
-    replacements[graph->vertices[switches->items[i].mode].left] =
-        function(graph, SIGN, switches->items[i].indicator, ZERO);
+  for (size_t i = 0; i < switches->branch_count; i++)
+    replacements[graph->vertices[switches->branches[i].mode].left] =
+        function(graph, SIGN, switches->branches[i].indicator, ZERO);
   /* An indicator may rest on branches itself, of expressions that were read before. */
-  for (size_t depth = 0; depth <= switches->count && graph_depends_on(graph, node, MODE); depth++) {
+  for (size_t depth = 0; depth <= switches->branch_count && graph_depends_on(graph, node, MODE); depth++) {
     Node before = node;
     substitute(graph, &node, 1, replacements, &node);
     if (node == before) break;

@@ -4,7 +4,7 @@
 #include "mechanics/equations.h"
 
 struct SwitchingExpressions {
-  const struct Switch **branches; /* those that the motion rests on */
+  const struct Branch **branches; /* those that the motion rests on */
   bool *holds_energy; /* of each branch: whether the state decides by it on an energy, which must not jump there */
   size_t branch_count, assignment_count;
   size_t energy_count; /* where a branch holds any: kinetic, potential, and momenta where it holds the first; else 0 */

@@ -3,13 +3,13 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-void append_switch(struct Switches *switches, struct Switch item) {
-  switches->items = make_room(switches->items, switches->count, sizeof *switches->items);
-  switches->items[switches->count++] = item;
+void append_branch(struct Switches *switches, struct Branch branch) {
+  switches->branches = make_room(switches->branches, switches->branch_count, sizeof *switches->branches);
+  switches->branches[switches->branch_count++] = branch;
 }
 
 bool has_switches(const struct Switches *switches) {
-  return switches->count + switches->contact_count + switches->friction_count > 0;
+  return switches->branch_count + switches->contact_count + switches->friction_count > 0;
 }
 
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {

@@ -7,7 +7,7 @@
 #include "passage.h"
 
 /* Its mode is the sign of its indicator, -1, 0 or 1; at a zero the mode changes. */
-struct Switch {
+struct Branch {
   Node mode, indicator;
   bool is_side;         /* of an event's expression: what comes to 0 and rests there keeps it */
   unsigned kinds;       /* of the symbols that decide on the mode, those of further modes among them */
@@ -52,8 +52,8 @@ struct Event {
 struct Switches {
   size_t first;      /* the index of the first mode: the number of parameters */
   size_t mode_count; /* of all kinds */
-  struct Switch *items;
-  size_t count;
+  struct Branch *branches;
+  size_t branch_count;
   struct Contact *contacts;
   size_t contact_count;
   struct Friction *frictions;
@@ -62,7 +62,7 @@ struct Switches {
   size_t event_count;
 };
 
-void append_switch(struct Switches *switches, struct Switch item);
+void append_branch(struct Switches *switches, struct Branch branch);
 
 /* Whether anything may happen along the motion. */
 bool has_switches(const struct Switches *switches);

@@ -106,7 +106,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, POSITIONS);
   evaluate_start_expressions(reader);
   read_expanded(reader, EXPRESSIONS);
-  undisplace_switches(reader);
+  undisplace_branches(reader);
   complete_friction_forces(reader);
   reader->model->forces.any |= reader->model->given.inputs_move;
   check_system(reader);

@@ -7,7 +7,7 @@
 #include "write/description.h"
 #include "write/statements.h"
 #include "write/switching.h"
-#include "write/tables.h"
+#include "write/instruction_tables.h"
 
 /* The runtime's files but for those of a version of FMI, and its rooms that every FMU has, NULL at the end; the build writes them. */
 extern const char *const runtime_sources[];
@@ -104,7 +104,7 @@ static void write_routines(FILE *file, const struct Program *program, const stru
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
     bool is_table = tables != NULL && (i != FUNCTION_DERIVATIVES || program->derivatives_are_table);
-    if (is_table) tables_function(file, tables, i, routine);
+    if (is_table) instruction_tables_function(file, tables, i, routine);
     else statements_function(file, program, i, "", routine);
   }
 }
@@ -120,14 +120,14 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 
 static void write_as_tables(FILE *file, const struct Program *program) {
   struct TableContext *tables = table_context_create(program);
-  tables_shared(file, tables);
+  instruction_tables_shared(file, tables);
   write_routines(file, program, tables);
-  if (program->series != NULL && program->series_is_table) tables_series(file, tables);
+  if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
   else if (program->series != NULL) statements_series(file, program);
-  if (program->output_series != NULL) tables_output_series(file, tables);
-  tables_results(file, tables);
+  if (program->output_series != NULL) instruction_tables_output_series(file, tables);
+  instruction_tables_results(file, tables);
   switching_write(file, program);
-  description_write(file, program, tables_work_count(tables));
+  description_write(file, program, instruction_tables_work_count(tables));
 }
 
 void code_write(FILE *file, const struct Program *program) {

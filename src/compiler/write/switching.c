@@ -12,7 +12,7 @@ static void write_branches(FILE *file, const struct Program *program) {
   if (switching->branch_count == 0) return;
   fputs("static const struct BranchFacts branch_facts[] = {", file);
   for (size_t i = 0; i < switching->branch_count; i++) {
-    const struct Switch *branch = switching->branches[i];
+    const struct Branch *branch = switching->branches[i];
     fprintf(file, "{%d, ", mode_index(program, branch->mode));
     write_c_string(file, branch->function);
     fprintf(file, ", %ld, %s, %s}, ", branch->line, branch->is_side ? "true" : "false",

@@ -88,7 +88,7 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
 static void collect_event(const struct Reader *reader, const struct Event *event) {
   const struct Graph *graph = reader->model->graph;
   const struct Switches *switches = &reader->model->switches;
-  Node *roots = allocate(event->assignment_count + 1 + switches->count, sizeof *roots);
+  Node *roots = allocate(event->assignment_count + 1 + switches->branch_count, sizeof *roots);
   size_t count = 0, before = 0;
   roots[count++] = event->condition;
   for (size_t i = 0; i < event->assignment_count; i++) roots[count++] = event->assignments[i].value;
@@ -97,8 +97,8 @@ static void collect_event(const struct Reader *reader, const struct Event *event
     cone_collect(graph->cone, graph, roots, count, NULL);
     before = count;
     count = first;
-    for (size_t i = 0; i < switches->count; i++)
-      if (cone_has(graph->cone, switches->items[i].mode)) roots[count++] = switches->items[i].indicator;
+    for (size_t i = 0; i < switches->branch_count; i++)
+      if (cone_has(graph->cone, switches->branches[i].mode)) roots[count++] = switches->branches[i].indicator;
   }
 }
 

@@ -241,8 +241,8 @@ void complete_friction_forces(struct Reader *reader) {
     Node force = model->unknowns.forces[friction->constraint];
     replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
   }
-  for (size_t i = 0; i < switches->count; i++)
-    substitute(graph, &switches->items[i].indicator, 1, replacements, &switches->items[i].indicator);
+  for (size_t i = 0; i < switches->branch_count; i++)
+    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
   for (size_t i = 0; i < switches->event_count; i++)
     for (size_t j = 0; j < switches->events[i].assignment_count; j++)
       substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
@@ -253,17 +253,17 @@ void complete_friction_forces(struct Reader *reader) {
 
 /* --- Branches --- */
 
-void undisplace_switches(struct Reader *reader) {
+void undisplace_branches(struct Reader *reader) {
   struct Graph *graph = reader->model->graph;
   struct Switches *switches = &reader->model->switches;
-  for (size_t i = 0; i < switches->count; i++) {
-    struct Switch *item = &switches->items[i];
-    if (!graph_depends_on(graph, item->indicator, DISPLACEMENT)) continue;
-    item->indicator = without_displacements(reader, item->line, item->function, item->indicator);
-    if (simplify_fraction(graph, item->indicator) == ZERO)
-      report_error(reader->diagnostics, item->line,
+  for (size_t i = 0; i < switches->branch_count; i++) {
+    struct Branch *branch = &switches->branches[i];
+    if (!graph_depends_on(graph, branch->indicator, DISPLACEMENT)) continue;
+    branch->indicator = without_displacements(reader, branch->line, branch->function, branch->indicator);
+    if (simplify_fraction(graph, branch->indicator) == ZERO)
+      report_error(reader->diagnostics, branch->line,
                    "%s turns where the displacements are 0, so that the force of reaction has no value there; expected "
                    "it to turn elsewhere",
-                   item->function);
+                   branch->function);
   }
 }

@@ -25,7 +25,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node);
 void read_event(struct Reader *reader, xmlNodePtr node);
 
 /* After all expressions: what decides on branches has the displacements at 0; reports what turns just there. */
-void undisplace_switches(struct Reader *reader);
+void undisplace_branches(struct Reader *reader);
 
 /* After all expressions: NAME.force of a friction, in events and outputs, is that while it slides too. */
 void complete_friction_forces(struct Reader *reader);

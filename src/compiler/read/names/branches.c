@@ -21,9 +21,9 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   unsigned kinds = graph->vertices[node].kinds;
   if (scope->switches == NULL || !graph_depends_on(graph, node, MODE)) return kinds;
   cone_collect(graph->cone, graph, &node, 1, NULL);
-  for (size_t i = 0; i < scope->switches->count; i++) {
-    const struct Switch *item = &scope->switches->items[i];
-    if (cone_has(graph->cone, item->mode)) kinds |= item->kinds;
+  for (size_t i = 0; i < scope->switches->branch_count; i++) {
+    const struct Branch *branch = &scope->switches->branches[i];
+    if (cone_has(graph->cone, branch->mode)) kinds |= branch->kinds;
   }
   if (tells_of_contacts(scope->switches, graph->cone)) kinds |= CONTACT_STATE;
   return kinds;
@@ -32,13 +32,13 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
 /* The mode of the switch of this kind with this indicator; a new one where there is none. */
 static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_side) {
   struct Switches *switches = scope->switches;
-  graph_work(scope->graph, switches->count / COMPARISONS);
-  for (size_t i = switches->count; i-- > 0;)
-    if (switches->items[i].indicator == indicator && switches->items[i].is_side == is_side)
-      return switches->items[i].mode;
+  graph_work(scope->graph, switches->branch_count / COMPARISONS);
+  for (size_t i = switches->branch_count; i-- > 0;)
+    if (switches->branches[i].indicator == indicator && switches->branches[i].is_side == is_side)
+      return switches->branches[i].mode;
   char *name = format_text("%s in line %ld", function, scope_line(scope, line));
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
-  append_switch(switches, (struct Switch){.mode = mode,
+  append_branch(switches, (struct Branch){.mode = mode,
                                           .indicator = indicator,
                                           .kinds = kinds_that_decide(scope, indicator),
                                           .is_side = is_side,

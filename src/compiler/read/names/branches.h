@@ -12,7 +12,7 @@
  */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
-/* The side of 0 on which the expression of an event is: struct Switch.is_side. */
+/* The side of 0 on which the expression of an event is: struct Branch.is_side. */
 Node side_of(struct Scope *scope, Node node, long line);
 
 /* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */

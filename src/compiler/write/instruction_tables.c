@@ -1,4 +1,4 @@
-#include "write/tables.h"
+#include "write/instruction_tables.h"
 
 #include "algebra/functions.h"
 #include "base/memory.h"
@@ -77,7 +77,7 @@ static size_t local_count(const struct Program *program) {
   return count;
 }
 
-size_t tables_work_count(const struct TableContext *context) {
+size_t instruction_tables_work_count(const struct TableContext *context) {
   const struct Program *program = context->program;
   size_t rows = row_count(program->equations);
   return local_count(program) + program->blocks.mass_count + program->blocks.side_count + rows;
@@ -98,7 +98,7 @@ static void write_blocks(FILE *file, const struct Program *program) {
   fputs(program->blocks.count == 0 ? "    {0}};\n" : "};\n", file);
 }
 
-void tables_shared(FILE *file, const struct TableContext *context) {
+void instruction_tables_shared(FILE *file, const struct TableContext *context) {
   const struct Program *program = context->program;
   fputs("static const double numbers[] = {", file);
   for (size_t i = 0; i < context->numbers.count; i++) {
@@ -182,8 +182,8 @@ static void set_base(FILE *file, const char *space, const char *source) {
   fprintf(file, "  frame.base[SPACE_%s] = %s;\n", space, source);
 }
 
-void tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
-                     const struct Routine *routine) {
+void instruction_tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
+                                 const struct Routine *routine) {
   const struct Program *program = context->program;
   const struct GeneratedFunction *text = &generated_functions[name];
   write_table(file, context, text->name, routine);
@@ -238,7 +238,7 @@ static void write_results(FILE *file, const struct TableContext *context, enum F
           text->name, text->name, text->name);
 }
 
-void tables_results(FILE *file, const struct TableContext *context) {
+void instruction_tables_results(FILE *file, const struct TableContext *context) {
   size_t count = context->program->interface->result_count;
   if (count == 0) return;
   size_t *alone = allocate(count, sizeof *alone);
@@ -277,9 +277,9 @@ static void write_limit(FILE *file, const struct TableContext *context) {
   fprintf(file, "  instructions_limit(&frame, limit_checks, %zu, limit);\n}\n\n", checks->count);
 }
 
-void tables_series(FILE *file, const struct TableContext *context) {
+void instruction_tables_series(FILE *file, const struct TableContext *context) {
   const struct SeriesProgram *series = context->program->series;
-  tables_function(file, context, FUNCTION_START, series->start);
+  instruction_tables_function(file, context, FUNCTION_START, series->start);
   write_table(file, context, "series", series->order);
   write_head(file, FUNCTION_SERIES, "", series->order->operation_count);
   begin_frame(file, false);
@@ -292,7 +292,7 @@ void tables_series(FILE *file, const struct TableContext *context) {
   if (series->limit.count > 0) write_limit(file, context);
 }
 
-void tables_output_series(FILE *file, const struct TableContext *context) {
+void instruction_tables_output_series(FILE *file, const struct TableContext *context) {
   const struct SeriesProgram *series = context->program->output_series;
   write_table(file, context, "output_start", series->start);
   write_table(file, context, "output_series", series->order);

@@ -14,20 +14,20 @@ struct TableContext {
 struct TableContext *table_context_create(const struct Program *program);
 
 /* The numbers, functions and blocks that all tables share. */
-void tables_shared(FILE *file, const struct TableContext *context);
+void instruction_tables_shared(FILE *file, const struct TableContext *context);
 
 /* The workspace that the tables need, as in struct Lagrangian. */
-size_t tables_work_count(const struct TableContext *context);
+size_t instruction_tables_work_count(const struct TableContext *context);
 
 /* A function of one routine. */
-void tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
-                     const struct Routine *routine);
+void instruction_tables_function(FILE *file, const struct TableContext *context, enum FunctionName name,
+                                 const struct Routine *routine);
 
 /* result() and result_along() */
-void tables_results(FILE *file, const struct TableContext *context);
+void instruction_tables_results(FILE *file, const struct TableContext *context);
 
 /* start(), series() and limit(). */
-void tables_series(FILE *file, const struct TableContext *context);
+void instruction_tables_series(FILE *file, const struct TableContext *context);
 
 /* output_series() */
-void tables_output_series(FILE *file, const struct TableContext *context);
+void instruction_tables_output_series(FILE *file, const struct TableContext *context);
