@@ -273,23 +273,15 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   mark_moved_states(interface, model, equations);
 }
 
-struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
-  struct Interface *interface = allocate(1, sizeof *interface);
+/* Coordinates, velocities and the work of forces, then the derivatives of each. */
+static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   size_t n = model->coordinates.count;
-  interface->output_derivative_order = output_derivative_order(model, equations);
-  interface->depends_on_time = uses_time(model, equations);
-  interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
-  if (interface->depends_on_time) append_time(interface, model);
+  struct Variable work =
+      variable_create(copy_text("nonConservativeWork"), copy_text("work of the non-conservative forces"), 0);
+  work.start = 0.0;
+  work.dimension = unit_of("J");
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
-  struct Variable work = {.name = (char *)"nonConservativeWork",
-                          .line = 0,
-                          .minimum = NAN,
-                          .maximum = NAN,
-                          .nominal = NAN,
-                          .description = (char *)"work of the non-conservative forces"};
-  const char *problem;
-  unit_parse("J", &work.dimension, &problem);
   if (equations->has_work) {
     append_list(interface, model, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
     interface->variables[interface->count - 1].entry.is_output = false;
@@ -299,15 +291,28 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
   if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
-  append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
-  append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
-  append_modes(interface, model);
+  interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
+}
+
+static void append_outputs(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   append_list(interface, model, &model->outputs, VARIABLE_RESULT, 0);
   for (size_t i = 0; i < model->outputs.count; i++)
     interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
   interface->result_count = model->outputs.count;
+}
+
+struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
+  struct Interface *interface = allocate(1, sizeof *interface);
+  interface->output_derivative_order = output_derivative_order(model, equations);
+  interface->depends_on_time = uses_time(model, equations);
+  if (interface->depends_on_time) append_time(interface, model);
+  append_states(interface, model, equations);
+  append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
+  append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_modes(interface, model);
+  append_outputs(interface, model, equations);
   append_calculated(interface, model);
-  if (n > 0) append_mechanics(interface, model, equations);
+  if (model->coordinates.count > 0) append_mechanics(interface, model, equations);
   interface->count_in_fmi2 = interface->count;
   append_indicators(interface, equations->switching);
   if (!interface->depends_on_time) append_time(interface, model);

@@ -178,22 +178,26 @@ static void fill_events(const struct Switches *switches, const struct SwitchTabl
   }
 }
 
-/* The energies come last, as many as there are. */
+static void fill_branches(const struct Model *model, const struct SwitchingExpressions *switching,
+                          const struct SwitchTable *counts, const Node *seeds, Node *values) {
+  for (size_t i = 0; i < counts->branch_count; i++) values[i] = switching->branches[i]->indicator;
+  for (size_t i = 0; i < counts->branch_count; i++)
+    values[branch_rate_place(counts, i)] = rate_of(model, values[i], seeds);
+}
+
+/* All that have a fixed place; the energies follow them, as many as there are. */
 static void append_values(const struct Model *model, const struct Equations *equations,
                           struct SwitchingExpressions *switching, struct NodeList *list) {
   const struct Switches *switches = &model->switches;
-  for (size_t i = 0; i < switches->event_count; i++)
-    switching->assignment_count += switches->events[i].assignment_count;
   const struct SwitchTable counts = {.branch_count = switching->branch_count,
                                      .contact_count = switches->contact_count,
                                      .friction_count = switches->friction_count,
                                      .event_count = switches->event_count,
                                      .assignment_count = switching->assignment_count};
   size_t count = energy_place(&counts);
-  Node *seeds = time_seeds(model, true), *values = allocate(count, sizeof *values);
-  for (size_t i = 0; i < counts.branch_count; i++) values[i] = switching->branches[i]->indicator;
-  for (size_t i = 0; i < counts.branch_count; i++)
-    values[branch_rate_place(&counts, i)] = rate_of(model, values[i], seeds);
+  Node *values = allocate(count, sizeof *values);
+  const Node *seeds = time_seeds(model, true);
+  fill_branches(model, switching, &counts, seeds, values);
   fill_contacts(model, &counts, seeds, values);
   fill_frictions(model, &counts, seeds, values);
   fill_events(switches, &counts, values);
@@ -229,6 +233,8 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   find_branches(model, &roots, switching);
   append_indicators(model, switching, &indicators);
   append_watched(model, switching, &watched);
+  for (size_t i = 0; i < model->switches.event_count; i++)
+    switching->assignment_count += model->switches.events[i].assignment_count;
   append_values(model, equations, switching, &values);
   find_forces(model, switching);
   switching->indicators = indicators.nodes;

@@ -1,5 +1,7 @@
 #include "program/series/series_program.h"
 
+#include <stdlib.h>
+
 #include "base/memory.h"
 #include "program/series/series_builder.h"
 
@@ -75,33 +77,26 @@ static Place acceleration_row(size_t coordinate) {
   return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
-/* The elements of each whole row of a block that change in time: row i has start[i] .. start[i + 1] - 1. */
-struct WholeRows {
-  size_t *start, *column;
-  Node *mass;
+/* An element of a block that changes in time. */
+struct ChangingMass {
+  struct Position at;
+  Node mass;
 };
 
-static struct WholeRows whole_rows_create(const struct SeriesBuilder *builder, const struct InertiaBlock *block) {
-  size_t count = block->count, elements = block->start[count];
-  struct WholeRows rows = {allocate(count + 1, sizeof(size_t)), allocate(2 * elements, sizeof(size_t)),
-                           allocate(2 * elements, sizeof(Node))};
-  size_t *next = allocate(count + 1, sizeof *next);
-  for (int filling = 0; filling <= 1; filling++) {
-    for (size_t i = 0; i < count; i++) {
-      for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
-        const size_t ends[] = {i, block->column[e]};
-        for (int end = 0; end < (ends[0] == ends[1] ? 1 : 2) && !is_constant_series(builder, block->mass[e]); end++) {
-          size_t place = next[ends[end]]++;
-          if (!filling) continue;
-          rows.column[place] = ends[1 - end];
-          rows.mass[place] = block->mass[e];
-        }
-      }
+/* Those of both triangles, by columns, which are the rows too. */
+static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder, const struct InertiaBlock *block,
+                                            size_t *count) {
+  struct ChangingMass *masses = allocate(2 * block->start[block->count], sizeof *masses);
+  *count = 0;
+  for (size_t i = 0; i < block->count; i++)
+    for (size_t e = block->start[i]; e < block->start[i + 1]; e++) {
+      size_t j = block->column[e];
+      if (is_constant_series(builder, block->mass[e])) continue;
+      masses[(*count)++] = (struct ChangingMass){{i, j}, block->mass[e]};
+      if (i != j) masses[(*count)++] = (struct ChangingMass){{j, i}, block->mass[e]};
     }
-    for (size_t i = 0; i < count && !filling; i++) rows.start[i + 1] = rows.start[i] + next[i];
-    for (size_t i = 0; i < count; i++) next[i] = rows.start[i];
-  }
-  return rows;
+  qsort(masses, *count, sizeof *masses, compare_positions);
+  return masses;
 }
 
 /* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
@@ -115,11 +110,12 @@ static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, si
 static void append_block(struct SeriesBuilder *builder, const struct Equations *equations,
                          const struct LoopedBlock *looped, size_t number) {
   const struct InertiaBlock *block = looped->block;
-  struct WholeRows rows = whole_rows_create(builder, block);
+  size_t mass_count;
+  const struct ChangingMass *masses = changing_masses(builder, block, &mass_count), *next = masses;
   for (size_t i = 0; i < block->count; i++) {
     Place sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
-    for (size_t e = rows.start[i]; e < rows.start[i + 1]; e++)
-      sum = append_rest(builder, sum, rows.mass[e], block->coordinates[rows.column[e]]);
+    for (; next < masses + mass_count && next->at.column == i; next++)
+      sum = append_rest(builder, sum, next->mass, block->coordinates[next->at.row]);
     for (size_t k = 0; k < block->force_count; k++) {
       Node oblique = block->oblique[k * block->count + i];
       if (!is_constant_series(builder, oblique))

@@ -60,8 +60,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
            without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
 }
 
-/* A force F along r contributes Q_i = F dr/dq_i, and the power F dr/dt; levers: of r by coordinates, or by velocities, and time. */
-static void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers) {
+void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers) {
   for (size_t i = 0; i < levers->count; i++) {
     const struct Symbol *symbol = graph_symbol_of(model->graph, levers->symbols[i]);
     struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];

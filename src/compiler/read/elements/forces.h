@@ -1,7 +1,14 @@
 /* <force>, <torque> and <gravity>. */
 #pragma once
 
+#include "algebra/differentiate.h"
 #include "read/context/attributes.h"
+
+/*
+ * Adds a force F along r: generalized forces Q_i = F dr/dq_i, and the power F dr/dt. levers: the derivatives of r by
+ * coordinates and time, or of its rate by velocities.
+ */
+void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers);
 
 void read_force(struct Reader *reader, xmlNodePtr node);
 void read_torque(struct Reader *reader, xmlNodePtr node);

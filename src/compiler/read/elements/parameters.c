@@ -99,35 +99,39 @@ static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *
 
 static const char separators[] = " \t\r\n,;";
 
+/* The parameter of a list that has this name and this value. */
+static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, const char *text) {
+  struct Variable variable = variable_of(reader, node);
+  variable.name = name;
+  const struct Given *given = given_for(reader, node, name);
+  if (is_given(given, "value"))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "'%s' is one of a list of values, to which an <include> can give a start; expected start in place of "
+                 "value",
+                 name);
+  read_value(reader, node, "values", text, &variable);
+  read_start(reader, node, given, &variable);
+  declare(reader, node, given, variable);
+}
+
 /* values="1 2 3" of m: m[1], m[2] and m[3]. */
 static void read_list(struct Reader *reader, xmlNodePtr node) {
-  char *values = attribute(node, "values"), *name = name_attribute(reader, node, "name");
+  const char *next = attribute(node, "values"), *name = name_attribute(reader, node, "name");
   if (has_attribute(node, "start") || has_attribute(node, "value"))
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "a <parameter> with values and a start or value; expected values=\"...\" alone");
-  if (name != NULL && strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
+  if (name == NULL) return;
+  if (strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the parameter '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
                  name);
   size_t count = 0;
-  const char *next = values + strspn(values, separators);
-  while (*next != '\0' && name != NULL) {
-    char *text = format_text("%.*s", (int)strcspn(next, separators), next);
-    struct Variable variable = variable_of(reader, node);
-    variable.name = format_text("%s[%zu]", name, ++count);
-    const struct Given *given = given_for(reader, node, variable.name);
-    if (is_given(given, "value"))
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "'%s' is one of a list of values, to which an <include> can give a start; expected start in place "
-                   "of value",
-                   variable.name);
-    read_value(reader, node, "values", text, &variable);
-    read_start(reader, node, given, &variable);
-    declare(reader, node, given, variable);
-    next += strlen(text);
-    next += strspn(next, separators);
+  for (next += strspn(next, separators); *next != '\0'; next += strspn(next, separators)) {
+    int length = (int)strcspn(next, separators);
+    read_listed(reader, node, format_text("%s[%zu]", name, ++count), format_text("%.*s", length, next));
+    next += length;
   }
-  if (count == 0 && name != NULL)
+  if (count == 0)
     report_error(reader->diagnostics, xmlGetLineNo(node), "the parameter '%s' has no values; expected numbers", name);
 }
 

@@ -196,6 +196,18 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
   }
 }
 
+/* Reads what friction pushes with; false after reporting an error. */
+static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
+                                 struct Friction *friction) {
+  long line = reader->model->constraints.items[friction->constraint].line;
+  friction->sliding = friction->stiction = read_friction_force(reader, node, "force", unit).node;
+  if (has_attribute(node, "stiction")) friction->stiction = read_friction_force(reader, node, "stiction", unit).node;
+  if (reader->diagnostics->errors > 0) return false;
+  check_linear(reader, line, "force", friction->sliding);
+  check_linear(reader, line, "stiction", friction->stiction);
+  return true;
+}
+
 /* Sliding, it pushes against the velocity; sticking, it is the force of the constraint velocity = 0. */
 void read_friction(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
@@ -208,26 +220,16 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
   struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
-  if (!velocity.dimension.known) unit = dimension_unknown;
-  struct Quantity sliding = read_friction_force(reader, node, "force", unit), stiction = sliding;
-  if (has_attribute(node, "stiction")) stiction = read_friction_force(reader, node, "stiction", unit);
-  if (reader->diagnostics->errors > 0) return;
-  check_linear(reader, constraint->line, "force", sliding.node);
-  check_linear(reader, constraint->line, "stiction", stiction.node);
   friction->velocity = velocity.node;
-  friction->sliding = sliding.node;
-  friction->stiction = stiction.node;
-  constraint->dimension = unit.known ? dimension_multiply(unit_of("J"), unit, -1.0) : dimension_unknown;
+  if (!read_friction_forces(reader, node, unit, friction)) return;
+  constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
   Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
   constraint->node = function(graph, GATE, sticks, velocity.node);
   check_constraint(reader, constraint);
   if (reader->diagnostics->errors > 0) return;
-  Node push = negate(graph, multiply(graph, friction->mode, sliding.node));
-  struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
-  for (size_t i = 0; i < levers.count; i++) {
-    struct Quantity *force = &model->forces.along[graph_symbol_of(graph, levers.symbols[i])->index];
-    force->node = add(graph, force->node, multiply(graph, push, levers.values[i]));
-  }
+  Node push = negate(graph, multiply(graph, friction->mode, friction->sliding));
+  const struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
+  add_virtual_work(model, push, &levers);
 }
 
 void complete_friction_forces(struct Reader *reader) {

@@ -193,37 +193,53 @@ static void skip_to_end(struct Parser *parser) {
     depth += (*parser->next == '(') - (*parser->next == ')');
 }
 
-/* sum(index, first, last, body): the body is read once for each value of the index. */
-static struct Quantity parse_repeated_sum(struct Parser *parser) {
+/* What stands before the body of sum(index, first, last, body). */
+struct SumHead {
+  char *index;
+  long first, last;
+};
+
+static char *parse_sum_index(struct Parser *parser) {
   char buffer[32];
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
     FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
          parser->place.what, found(parser, buffer));
-  char *index_name = read_identifier(parser), *index = scope_full_name(parser->scope, index_name);
+  char *name = read_identifier(parser);
   expect_character(parser, ',', "after the index of sum(index, first, last, expression)");
+  return name;
+}
+
+static struct SumHead parse_sum_head(struct Parser *parser) {
+  char *name = parse_sum_index(parser);
+  struct SumHead head = {.index = scope_full_name(parser->scope, name)};
   const char *bounds = parser->next;
-  long first = parse_whole(parser, "the first index of sum(...)");
+  head.first = parse_whole(parser, "the first index of sum(...)");
   expect_character(parser, ',', "after the first index");
-  long last = parse_whole(parser, "the last index of sum(...)");
-  if (last < first - 1 && bounds_are_numbers(bounds, parser->next))
+  head.last = parse_whole(parser, "the last index of sum(...)");
+  if (head.last < head.first - 1 && bounds_are_numbers(bounds, parser->next))
     FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
-         first, last);
+         head.first, head.last);
   expect_character(parser, ',', "after the last index");
-  if (!parser->failed && scope_find(parser->scope, index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
-         index_name);
+  if (!parser->failed && scope_find(parser->scope, head.index) != NULL)
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, name);
+  return head;
+}
+
+/* The body is read once for each value of the index. */
+static struct Quantity parse_repeated_sum(struct Parser *parser) {
+  const struct SumHead head = parse_sum_head(parser);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
-  if (first > last) skip_to_end(parser);
-  for (long i = first; !parser->failed && i <= last; i++) {
+  if (head.first > head.last) skip_to_end(parser);
+  for (long i = head.first; !parser->failed && i <= head.last; i++) {
     if (++parser->repetitions > REPETITION_LIMIT)
       FAIL(parser, "%s: sum(...) has more than %d terms", parser->place.what, REPETITION_LIMIT);
     parser->next = body;
-    scope_set_number(parser->scope, index, (double)i);
+    scope_set_number(parser->scope, head.index, (double)i);
     total = quantity_add(parser, total, parse_sum(parser));
   }
-  scope_remove(parser->scope, index);
+  scope_remove(parser->scope, head.index);
   expect_character(parser, ')', "at the end of sum(...)");
   return total;
 }
@@ -293,6 +309,27 @@ static void require_limits(struct Parser *parser) {
     FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->place.what, limit);
 }
 
+static struct Quantity parse_parentheses(struct Parser *parser) {
+  parser->next++;
+  struct Quantity value = parse_sum(parser);
+  expect_character(parser, ')', "to close a parenthesis");
+  return value;
+}
+
+/* A variable, or a call of a function or a table, whose name alone may have an index or belong to a part. */
+static struct Quantity parse_named(struct Parser *parser) {
+  char *name = read_identifier(parser);
+  const char *end = parser->next; /* an error about the name is on its line */
+  if (accept_character(parser, '(')) return parse_call(parser, name);
+  parser->next = end;
+  name = read_name_suffix(parser, name);
+  end = parser->next;
+  if (parser->failed) return nothing;
+  if (find_table(parser, name) != NULL && accept_character(parser, '(')) return parse_call(parser, name);
+  parser->next = end;
+  return look_up(parser, name);
+}
+
 static struct Quantity parse_primary(struct Parser *parser) {
   char buffer[32];
   graph_work(parser->graph, PRIMARY_WORK);
@@ -301,30 +338,11 @@ static struct Quantity parse_primary(struct Parser *parser) {
   skip_space(parser);
   char c = *parser->next;
   if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1]))) return parse_literal(parser);
-  if (c == '(') {
-    parser->next++;
-    struct Quantity value = parse_sum(parser);
-    expect_character(parser, ')', "to close a parenthesis");
-    return value;
-  }
-  if (!isalpha((unsigned char)c) && c != '_') {
-    FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->place.what, found(parser, buffer),
-         hint_for_text(parser->text, parser->next));
-    return nothing;
-  }
-  char *name = read_identifier(parser);
-  const char *end = parser->next;
-  bool call = accept_character(parser, '(');
-  if (!call) {
-    parser->next = end; /* an error about the name is on its line */
-    name = read_name_suffix(parser, name);
-    end = parser->next;
-    call = !parser->failed && find_table(parser, name) != NULL && accept_character(parser, '(');
-    if (!call) parser->next = end;
-  }
-  struct Quantity value = nothing;
-  if (!parser->failed) value = call ? parse_call(parser, name) : look_up(parser, name);
-  return value;
+  if (c == '(') return parse_parentheses(parser);
+  if (isalpha((unsigned char)c) || c == '_') return parse_named(parser);
+  FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->place.what, found(parser, buffer),
+       hint_for_text(parser->text, parser->next));
+  return nothing;
 }
 
 static struct Quantity parse_power(struct Parser *parser) {
