@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/platform.h"
+#include "interface/listing.h"
 #include "mechanics/linearize.h"
 #include "mechanics/motion.h"
 #include "output.h"

@@ -13,6 +13,7 @@
 #include "documentation.h"
 #include "mechanics/motion.h"
 #include "base/memory.h"
+#include "interface/listing.h"
 #include "model_description.h"
 #include "program/program.h"
 #include "read/reader.h"

@@ -36,8 +36,6 @@ static inline bool starts_nearby(const struct InterfaceVariable *variable) {
   return has_following_start(&variable->entry) || variable->is_moved_at_start;
 }
 
-struct Interface *interface_create(const struct Model *model, const struct Equations *equations);
-
 /* The place in the table of the variable of this kind and index, which there is. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);
 

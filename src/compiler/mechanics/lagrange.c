@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "mechanics/energies.h"
 #include "mechanics/inertial_forces.h"
+#include "mechanics/mass_matrix/inertia_derivation.h"
 #include "mechanics/reactions.h"
 #include "mechanics/switching.h"
 #include "model/time_derivative.h"

@@ -43,27 +43,6 @@ struct Inertia {
   size_t pivot_count;
 };
 
-/*
- * Blocks of M up to this size become straight-line code. Larger ones take fewer operations where their numbers are
- * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
- */
-enum { UNROLL_LIMIT = 2 };
-
-/*
- * What borders M: the rows J of count constraints, and what their forces add beside J^T; both of constraints and coordinates.
- */
-struct Border {
-  size_t count;
-  const struct Elements *jacobian, *oblique;
-};
-
-/*
- * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
- * singular everywhere or not positive at the start values; NULL then.
- */
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
-                               struct Diagnostics *diagnostics);
-
 /* The same matrix with each symbol s replaced by replacements[s], its factors and pivots too. */
 struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements);
 
@@ -75,6 +54,9 @@ void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x)
 
 /* sum += K vector */
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);
+
+/* Where the block of i and j keeps an element, in its mass; the end of that where it is not in the pattern. */
+size_t inertia_find(const struct Inertia *inertia, size_t i, size_t j);
 
 /* K_ij */
 Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);

@@ -1,0 +1,321 @@
+#include "interface/listing.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "algebra/kinks.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "interface/arrays.h"
+#include "interface/symbol_names.h"
+#include "mechanics/switching.h"
+
+static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
+                                        const char *name, const char *description) {
+  interface->variables = make_room(interface->variables, interface->count, sizeof *interface->variables);
+  if (index == 0) interface->first[kind] = interface->count;
+  struct InterfaceVariable *variable = &interface->variables[interface->count++];
+  *variable = (struct InterfaceVariable){
+      .entry = {.name = copy_text(name), .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
+      .description = description != NULL ? copy_text(description) : NULL,
+      .nominal = NAN};
+  return variable;
+}
+
+/* The names of what the node depends on. */
+static char *names_below(const struct Model *model, Node node) {
+  struct SymbolNames names = {0};
+  symbol_names_add(&names, model->graph, &node, 1);
+  return symbol_names_text(&names, model->graph);
+}
+
+static void append_list(struct Interface *interface, const struct Model *model, const struct VariableList *list,
+                        enum VariableKind kind, size_t first_index) {
+  for (size_t i = 0; i < list->count; i++) {
+    const struct Variable *source = &list->items[i];
+    struct InterfaceVariable *variable = append(interface, kind, first_index + i, source->name, source->description);
+    variable->entry.is_output = kind == VARIABLE_STATE || kind == VARIABLE_RESULT;
+    variable->entry.type = source->type;
+    variable->entry.start = source->start;
+    variable->entry.minimum = source->minimum;
+    variable->entry.maximum = source->maximum;
+    variable->unit = variable_unit(source);
+    variable->nominal = source->nominal;
+    variable->node = source->node;
+    if (!start_follows(model, source)) continue;
+    variable->start = source->start_expression;
+    variable->entry.follows_from = names_below(model, source->start_expression);
+  }
+}
+
+/* They are results, computed when they are read. */
+static void append_calculated(struct Interface *interface, const struct Model *model) {
+  for (size_t i = 0; i < model->calculated.count; i++) {
+    const struct Variable *source = &model->calculated.items[i];
+    struct InterfaceVariable *variable =
+        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+    variable->entry.follows_from = names_below(model, source->node);
+    variable->unit = variable_unit(source);
+    variable->node = source->node;
+  }
+}
+
+/* NULL where FMI has no unit of the dimension. */
+static char *unit_of_dimension(struct Dimension dimension) {
+  return dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
+}
+
+static void append_derivative(struct Interface *interface, const struct Variable *state, size_t index, Node node) {
+  char *name = format_text("der(%s)", state->name), *text = format_text("time derivative of %s", state->name);
+  struct InterfaceVariable *variable = append(interface, VARIABLE_DERIVATIVE, index, name, text);
+  variable->node = node;
+  variable->unit = unit_of_dimension(dimension_multiply(state->dimension, unit_of("s"), -1.0));
+}
+
+static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
+                          const char *description) {
+  struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
+  variable->unit = copy_text(unit);
+  variable->node = node;
+}
+
+/* Whether two components are of one thing, and both or neither rest on accelerations, which cannot always be had. */
+static bool belong_together(const struct Graph *graph, const struct InterfaceVariable *a,
+                            const struct InterfaceVariable *b) {
+  const char *end = strrchr(a->entry.name, '.');
+  return end != NULL && strncmp(a->entry.name, b->entry.name, (size_t)(end - a->entry.name) + 1) == 0 &&
+         graph_depends_on(graph, a->node, ACCELERATION) == graph_depends_on(graph, b->node, ACCELERATION);
+}
+
+static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
+  for (size_t i = 0; i < model->mechanism.places.count; i++) {
+    const struct Variable *source = &model->mechanism.places.items[i];
+    append_result(interface, source->name, source->unit, equations->places[i], source->description);
+    struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
+    variable->is_continued = i > 0 && belong_together(model->graph, variable - 1, variable);
+  }
+}
+
+static void append_reactions(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  for (size_t i = 0; i < model->reactions.count; i++) {
+    const struct Variable *source = &model->reactions.items[i];
+    struct InterfaceVariable *variable =
+        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+    variable->unit = variable_unit(source);
+    variable->node = equations->reactions[i];
+  }
+}
+
+/* That of a friction which slides belongs to no constraint. */
+static Node whole_force(const struct Model *model, size_t constraint, Node force) {
+  for (size_t i = 0; i < model->switches.friction_count; i++)
+    if (model->switches.frictions[i].constraint == constraint)
+      return friction_force(model->graph, &model->switches.frictions[i], force);
+  return force;
+}
+
+/* In the constraint's own unit, energy is force times it. */
+static void append_constraint_forces(struct Interface *interface, const struct Model *model,
+                                     const struct Equations *equations) {
+  for (size_t i = 0; i < model->constraints.count; i++) {
+    const struct Variable *constraint = &model->constraints.items[i];
+    char *name = format_text("%s.force", constraint->name);
+    const char *description = constraint->description != NULL ? constraint->description : constraint->name;
+    char *text = format_text("force of the constraint: %s", description);
+    Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
+    append_result(interface, name, "", whole_force(model, i, force), text);
+    interface->variables[interface->count - 1].unit =
+        unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
+  }
+}
+
+static void append_mode(struct Interface *interface, const struct Model *model, enum VariableKind kind, Node mode,
+                        const char *name, const char *description) {
+  size_t index = (size_t)graph_symbol_of(model->graph, mode)->index;
+  struct InterfaceVariable *variable = append(interface, kind, index, name, description);
+  variable->node = mode;
+  if (kind == VARIABLE_CONTACT) variable->entry.type = TYPE_INTEGER;
+}
+
+static void append_modes(struct Interface *interface, const struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < model->modes.count; i++) {
+    const struct Variable *mode = &model->modes.items[i];
+    append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
+    interface->variables[interface->count - 1].entry.start = mode->start;
+    interface->variables[interface->count - 1].unit = variable_unit(mode);
+  }
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    char *name = format_text("%s.closed", model->constraints.items[switches->contacts[i].constraint].name);
+    append_mode(interface, model, VARIABLE_CONTACT, switches->contacts[i].mode, name, "1 while it is closed, else 0");
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
+    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
+                "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
+  }
+}
+
+static void append_statistic(struct Interface *interface, enum Statistic statistic, const char *name,
+                             const char *description) {
+  append(interface, VARIABLE_STATISTIC, statistic, name, description)->entry.type = TYPE_INTEGER;
+}
+
+static void append_statistics(struct Interface *interface, const struct Model *model, const struct Method *method) {
+  append_statistic(interface, STATISTIC_STEPS, "solverSteps", "steps that the solver has taken");
+  if (method->evaluations != NULL)
+    append_statistic(interface, STATISTIC_DERIVATIVES, "derivativeEvaluations", method->evaluations);
+  if (method->needs_jacobian)
+    append_statistic(interface, STATISTIC_JACOBIANS, "jacobianEvaluations", "evaluations of the Jacobian matrix");
+  if (method->hands_over)
+    append_statistic(interface, STATISTIC_HANDOVERS, "solverHandovers", "handovers between the methods of the solver");
+  if (has_switches(&model->switches))
+    append_statistic(interface, STATISTIC_EVENTS, "events", "events that changed a mode or a velocity");
+}
+
+static bool uses_time(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
+  for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
+  for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
+  for (size_t i = 0; i < model->mechanism.places.count; i++)
+    uses |= graph_depends_on(graph, equations->places[i], TIME);
+  return uses;
+}
+
+/* Whether the pieces of an energy may differ where they meet, or change with something else than the coordinates. */
+static bool steps_in_time(const struct Model *model) {
+  const struct Graph *graph = model->graph;
+  bool steps = false;
+  if (!graph_depends_on(graph, model->energies.potential.node, MODE)) return false;
+  for (size_t i = 0; i < model->switches.branch_count; i++) {
+    Node indicator = model->switches.branches[i].indicator;
+    const char *function = model->switches.branches[i].function;
+    steps |= strcmp(function, "sign") == 0 || strcmp(function, "a condition") == 0;
+    steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
+             graph_depends_on(graph, indicator, INPUT);
+  }
+  return steps;
+}
+
+/* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
+static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
+  const struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  bool changes = switches->contact_count + switches->event_count > 0 || model->energies.driven ||
+                 model->given.constraint != NULL || model->linearized ||
+                 graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
+                 graph_depends_on(graph, model->energies.potential.node, TIME) || steps_in_time(model);
+  if (changes || (model->forces.any && !equations->has_work)) return "kinetic and potential energy";
+  return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
+                             : "kinetic and potential energy; constant";
+}
+
+/* Higher derivatives than the first are read from Taylor series, which end at a kink. */
+static int output_derivative_order(const struct Model *model, const struct Equations *equations) {
+  if (equations->method != NULL && equations->method->series == FIRST_TERMS) return 1;
+  if (depend_on_constraint_force(model, equations->outputs, model->outputs.count)) return 1;
+  return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
+}
+
+/* Whether a constraint of the block holds from the start; contacts are open then, and move nothing. */
+static bool is_held_at_start(const struct Model *model, const struct InertiaBlock *block) {
+  bool is_held = false;
+  for (size_t i = 0; i < block->count; i++) {
+    size_t row = block->coordinates[i];
+    if (row < model->coordinates.count) continue;
+    is_held |= !graph_depends_on(model->graph, model->constraints.items[row - model->coordinates.count].node, MODE);
+  }
+  return is_held;
+}
+
+/* Those of coordinates that stand in constraints and are not fixed. */
+static void mark_moved_states(struct Interface *interface, const struct Model *model,
+                              const struct Equations *equations) {
+  size_t n = equations->count;
+  for (size_t i = 0; i < 2 * n && equations->constraints->count > 0; i++) {
+    struct InterfaceVariable *state = &interface->variables[interface_find(interface, VARIABLE_STATE, i)];
+    state->is_moved_at_start = is_held_at_start(model, inertia_block_of(equations->inertia, i % n)) &&
+                               !model->coordinates.items[i % n].is_fixed;
+  }
+}
+
+/* What FMI 2.0 asks for by a function alone. */
+static void append_indicators(struct Interface *interface, const struct SwitchingExpressions *switching) {
+  for (size_t i = 0; switching != NULL && i < switching->indicator_count; i++) {
+    char *name = format_text("eventIndicator[%zu]", i + 1);
+    append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
+        switching->indicators[i];
+  }
+}
+
+static void append_time(struct Interface *interface, const struct Model *model) {
+  struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
+  time->unit = copy_text("s");
+  time->node = model->time;
+}
+
+/* What systems with coordinates have in addition. */
+static void append_mechanics(struct Interface *interface, const struct Model *model,
+                             const struct Equations *equations) {
+  append_places(interface, model, equations);
+  append_reactions(interface, model, equations);
+  append_constraint_forces(interface, model, equations);
+  append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
+  append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
+  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
+  for (size_t i = 0; i < interface->count; i++)
+    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
+      interface->variables[i].node = without_branches(model, interface->variables[i].node);
+  append_statistics(interface, model, equations->method);
+  mark_moved_states(interface, model, equations);
+}
+
+/* Coordinates, velocities and the work of forces, then the derivatives of each. */
+static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
+  size_t n = model->coordinates.count;
+  struct Variable work =
+      variable_create(copy_text("nonConservativeWork"), copy_text("work of the non-conservative forces"), 0);
+  work.start = 0.0;
+  work.dimension = unit_of("J");
+  append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
+  append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
+  if (equations->has_work) {
+    append_list(interface, model, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
+    interface->variables[interface->count - 1].entry.is_output = false;
+  }
+  for (size_t i = 0; i < n; i++)
+    append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
+  for (size_t i = 0; i < n; i++)
+    append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
+  if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
+  interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
+}
+
+static void append_outputs(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
+  append_list(interface, model, &model->outputs, VARIABLE_RESULT, 0);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    interface->variables[interface_find(interface, VARIABLE_RESULT, i)].node = equations->outputs[i];
+  interface->result_count = model->outputs.count;
+}
+
+struct Interface *interface_create(const struct Model *model, const struct Equations *equations) {
+  struct Interface *interface = allocate(1, sizeof *interface);
+  interface->output_derivative_order = output_derivative_order(model, equations);
+  interface->depends_on_time = uses_time(model, equations);
+  if (interface->depends_on_time) append_time(interface, model);
+  append_states(interface, model, equations);
+  append_list(interface, model, &model->inputs, VARIABLE_INPUT, 0);
+  append_list(interface, model, &model->parameters, VARIABLE_PARAMETER, 0);
+  append_modes(interface, model);
+  append_outputs(interface, model, equations);
+  append_calculated(interface, model);
+  if (model->coordinates.count > 0) append_mechanics(interface, model, equations);
+  interface->count_in_fmi2 = interface->count;
+  append_indicators(interface, equations->switching);
+  if (!interface->depends_on_time) append_time(interface, model);
+  arrays_find(interface);
+  return interface;
+}

@@ -1,0 +1,6 @@
+/* Lists the variables of an FMU. */
+#pragma once
+
+#include "interface/interface.h"
+
+struct Interface *interface_create(const struct Model *model, const struct Equations *equations);

@@ -1,0 +1,105 @@
+#include "mechanics/mass_matrix/inertia_derivation.h"
+
+#include "base/memory.h"
+#include "mechanics/mass_matrix/elimination.h"
+#include "mechanics/mass_matrix/pivots.h"
+
+/* The block of the elements from one to before another; members: its rows, ascending. */
+static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
+                         const struct Elements *elements, size_t from, size_t to) {
+  struct InertiaBlock *block = &inertia->blocks[number];
+  struct Position *local = allocate(to - from, sizeof *local);
+  for (size_t k = from; k < to; k++)
+    local[k - from] = (struct Position){inertia->place_of[elements->positions[k].row],
+                                        inertia->place_of[elements->positions[k].column]};
+  size_t late = block->count - block->constraint_count;
+  struct Elimination elimination = eliminate(graph, block->count, late, local, to - from);
+  block->start = elimination.start;
+  block->column = elimination.column;
+  block->coordinates = elimination.order;
+  for (size_t place = 0; place < block->count; place++) {
+    block->coordinates[place] = members[elimination.order[place]];
+    inertia->place_of[block->coordinates[place]] = place;
+  }
+  block->mass = allocate(block->start[block->count], sizeof(Node));
+  for (size_t k = from; k < to; k++)
+    block->mass[inertia_find(inertia, elements->positions[k].row, elements->positions[k].column)] = elements->nodes[k];
+}
+
+/* count: all rows, the last of which are those of constraints. */
+static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
+                                     struct Elements *elements) {
+  struct Components components = find_components(count, elements);
+  size_t *start = sort_by_components(elements, &components);
+  struct Inertia *inertia = allocate(1, sizeof *inertia);
+  *inertia = (struct Inertia){.count = count,
+                              .coordinate_count = count - constraint_count,
+                              .block_of = components.of,
+                              .place_of = allocate(count, sizeof(size_t))};
+  inertia->block_count = components.count;
+  inertia->blocks = allocate(components.count, sizeof *inertia->blocks);
+  size_t **members = allocate(components.count, sizeof *members);
+  for (size_t i = 0; i < count; i++) inertia->place_of[i] = inertia->blocks[components.of[i]].count++;
+  for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
+  for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
+  for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
+  for (size_t b = 0; b < components.count; b++)
+    create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
+  return inertia;
+}
+
+/* The column of a force that others follow from, which is new where there is none yet. */
+static size_t oblique_column(struct InertiaBlock *block, size_t force) {
+  for (size_t k = 0; k < block->force_count; k++)
+    if (block->forces[k] == force) return k;
+  size_t count = block->force_count++;
+  block->forces = make_room(block->forces, count, sizeof *block->forces);
+  for (size_t i = 0; i < block->count; i++) {
+    block->oblique = make_room(block->oblique, count * block->count + i, sizeof *block->oblique);
+    block->oblique[count * block->count + i] = ZERO;
+  }
+  block->forces[count] = force;
+  return count;
+}
+
+static void add_oblique(struct Inertia *inertia, const struct Elements *oblique) {
+  for (size_t k = 0; k < oblique->count; k++) {
+    size_t row = inertia->coordinate_count + oblique->positions[k].row, column = oblique->positions[k].column;
+    struct InertiaBlock *block = &inertia->blocks[inertia->block_of[row]];
+    size_t place = oblique_column(block, inertia->place_of[row]);
+    block->oblique[place * block->count + inertia->place_of[column]] = oblique->nodes[k];
+  }
+}
+
+/* The same matrix with the borders J and J^T. */
+static struct Inertia *create_bordered(const struct Graph *graph, size_t count, struct Elements *elements,
+                                       const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
+  for (size_t k = 0; k < jacobian->count; k++)
+    elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
+  struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements);
+  add_oblique(inertia, border->oblique);
+  return inertia;
+}
+
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
+                               struct Diagnostics *diagnostics) {
+  size_t count = model->coordinates.count;
+  struct Elements elements = elements_of(model, momentum);
+  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
+  bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
+  if (!is_right || border->count > 0)
+    inertia = is_right ? create_bordered(model->graph, count, &elements, border) : NULL;
+  if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
+  /* The power of drives rests on accelerations, which its derivatives need as expressions. */
+  bool power_has_accelerations =
+      (model->given.drive_count > 0 || model->given.inputs_move) && model->forces.work_line > 0;
+  bool unroll_all = power_has_accelerations || model->linearized ||
+                    (model->solver.method != NULL && model->solver.method->needs_linear);
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    struct InertiaBlock *block = &inertia->blocks[b];
+    block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);
+  }
+  pivots_factor(model->graph, inertia);
+  return inertia;
+}
