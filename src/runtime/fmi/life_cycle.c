@@ -1,9 +1,69 @@
 #include "fmi/life_cycle.h"
 
-bool is_permitted(struct Instance *instance, const struct Permission *permission, const char *function) {
-  if ((permission->kinds & IN(instance->kind)) != 0 && (permission->modes & IN(instance->situation->mode)) != 0)
-    return true;
-  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", function,
-            instance_mode_name(instance), instance->kind == KIND_MODEL_EXCHANGE ? "model exchange" : "co-simulation");
-  return false;
+#define IN(mode) (1u << (mode))
+
+/*
+ * Sets of modes. Those of one kind are never reached by instances of the other, and what a version of FMI does not have is never
+ * reached by its instances, so that one set serves all.
+ */
+enum {
+  BEFORE = IN(MODE_INSTANTIATED) | IN(MODE_INITIALIZATION),
+  AFTER = IN(MODE_TERMINATED) | IN(MODE_ERROR),
+  EXCHANGE = IN(MODE_EVENT) | IN(MODE_CONTINUOUS_TIME),
+  STEPS = IN(MODE_STEP_COMPLETE) | IN(MODE_STEP_FAILED),
+  INTERMEDIATE = IN(MODE_INTERMEDIATE_UPDATE),
+  READABLE = IN(MODE_INITIALIZATION) | EXCHANGE | STEPS | AFTER,
+  /* What would end or replace the simulation has to wait for the end of a step. */
+  BETWEEN_STEPS = BEFORE | EXCHANGE | STEPS | AFTER,
+  NEVER = 0
+};
+
+/* Sets of kinds. */
+enum {
+  FOR_EXCHANGE = 1 << KIND_MODEL_EXCHANGE,
+  FOR_STEPS = 1 << KIND_CO_SIMULATION,
+  FOR_BOTH = FOR_EXCHANGE | FOR_STEPS
+};
+
+static const struct {
+  unsigned kinds, modes;
+} permitted[FUNCTION_COUNT] = {
+    [FUNCTION_SET_DEBUG_LOGGING] = {FOR_BOTH, BETWEEN_STEPS | INTERMEDIATE},
+    [FUNCTION_SET_UP] = {FOR_BOTH, IN(MODE_INSTANTIATED)},
+    [FUNCTION_EXIT_INITIALIZATION_MODE] = {FOR_BOTH, IN(MODE_INITIALIZATION)},
+    [FUNCTION_TERMINATE] = {FOR_BOTH, EXCHANGE | STEPS},
+    [FUNCTION_RESET] = {FOR_BOTH, BETWEEN_STEPS},
+    [FUNCTION_GET_VALUE] = {FOR_BOTH, READABLE | INTERMEDIATE},
+    [FUNCTION_SET_REAL] = {FOR_BOTH, BEFORE | EXCHANGE | IN(MODE_STEP_COMPLETE)},
+    [FUNCTION_SET_DISCRETE] = {FOR_BOTH, BEFORE | IN(MODE_EVENT) | IN(MODE_STEP_COMPLETE)},
+    [FUNCTION_GET_DEPENDENCIES] = {FOR_BOTH, BETWEEN_STEPS},
+    [FUNCTION_FMU_STATE] = {FOR_BOTH, BETWEEN_STEPS},
+    [FUNCTION_GET_PARTIAL_DERIVATIVE] = {FOR_BOTH, READABLE},
+    [FUNCTION_ENTER_EVENT_MODE] = {FOR_EXCHANGE, EXCHANGE},
+    [FUNCTION_ENTER_EVENT_MODE_OF_STEPS] = {FOR_BOTH, IN(MODE_CONTINUOUS_TIME) | IN(MODE_STEP_COMPLETE)},
+    [FUNCTION_UPDATE_DISCRETE_STATES] = {FOR_BOTH, IN(MODE_EVENT)},
+    [FUNCTION_ENTER_CONTINUOUS_TIME_MODE] = {FOR_EXCHANGE, IN(MODE_EVENT)},
+    [FUNCTION_ENTER_STEP_MODE] = {FOR_STEPS, IN(MODE_EVENT)},
+    [FUNCTION_COMPLETED_INTEGRATOR_STEP] = {FOR_EXCHANGE, IN(MODE_CONTINUOUS_TIME)},
+    [FUNCTION_SET_TIME] = {FOR_EXCHANGE, EXCHANGE},
+    [FUNCTION_SET_CONTINUOUS_STATES] = {FOR_EXCHANGE, IN(MODE_CONTINUOUS_TIME)},
+    [FUNCTION_GET_CONTINUOUS] = {FOR_EXCHANGE, IN(MODE_INITIALIZATION) | EXCHANGE | AFTER},
+    [FUNCTION_GET_NOMINALS] = {FOR_EXCHANGE, IN(MODE_INSTANTIATED) | EXCHANGE | AFTER},
+    [FUNCTION_GET_COUNT] = {FOR_EXCHANGE, BETWEEN_STEPS},
+    [FUNCTION_SET_INPUT_DERIVATIVES] = {FOR_STEPS, BEFORE | IN(MODE_STEP_COMPLETE)},
+    [FUNCTION_GET_OUTPUT_DERIVATIVES] = {FOR_STEPS, STEPS | INTERMEDIATE | AFTER},
+    [FUNCTION_DO_STEP] = {FOR_STEPS, IN(MODE_STEP_COMPLETE)},
+    [FUNCTION_GET_STATUS] = {FOR_STEPS, STEPS | IN(MODE_TERMINATED)},
+    [FUNCTION_NEVER] = {FOR_BOTH, NEVER},
+};
+
+struct Instance *enter(void *component, enum Function function, const char *name) {
+  struct Instance *instance = component;
+  if (instance == NULL) return NULL;
+  if ((permitted[function].kinds & IN(instance->kind)) != 0 &&
+      (permitted[function].modes & IN(instance->situation->mode)) != 0)
+    return instance;
+  log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, instance_mode_name(instance),
+            instance->kind == KIND_MODEL_EXCHANGE ? "model exchange" : "co-simulation");
+  return NULL;
 }

@@ -1,23 +1,45 @@
-/* When an interface lets a function be called. Each interface has a table of these. */
+/* Which function of FMI may be called in which state: FMI 2.0.4, sections 3.2.3 and 4.2.4; FMI 3.0, sections 2.3, 3.2 and 4.2. */
 #ifndef LIFE_CYCLE_H
 #define LIFE_CYCLE_H
 
 #include "instance/instance.h"
 
-#define IN(mode) (1u << (mode))
-
-enum {
-  FOR_EXCHANGE = 1 << KIND_MODEL_EXCHANGE,
-  FOR_STEPS = 1 << KIND_CO_SIMULATION,
-  FOR_BOTH = FOR_EXCHANGE | FOR_STEPS
+/* What functions do, as far as it decides on when they may be called. */
+enum Function {
+  FUNCTION_SET_DEBUG_LOGGING,
+  FUNCTION_SET_UP,
+  FUNCTION_EXIT_INITIALIZATION_MODE,
+  FUNCTION_TERMINATE,
+  FUNCTION_RESET,
+  FUNCTION_GET_VALUE,
+  FUNCTION_SET_REAL,
+  FUNCTION_SET_DISCRETE,
+  FUNCTION_GET_DEPENDENCIES,
+  FUNCTION_FMU_STATE,
+  FUNCTION_GET_PARTIAL_DERIVATIVE,
+  FUNCTION_ENTER_EVENT_MODE,
+  FUNCTION_ENTER_EVENT_MODE_OF_STEPS, /* where co-simulations have one too */
+  FUNCTION_UPDATE_DISCRETE_STATES,
+  FUNCTION_ENTER_CONTINUOUS_TIME_MODE,
+  FUNCTION_ENTER_STEP_MODE,
+  FUNCTION_COMPLETED_INTEGRATOR_STEP,
+  FUNCTION_SET_TIME,
+  FUNCTION_SET_CONTINUOUS_STATES,
+  FUNCTION_GET_CONTINUOUS,
+  FUNCTION_GET_NOMINALS,
+  FUNCTION_GET_COUNT,
+  FUNCTION_SET_INPUT_DERIVATIVES,
+  FUNCTION_GET_OUTPUT_DERIVATIVES,
+  FUNCTION_DO_STEP,
+  FUNCTION_GET_STATUS,
+  FUNCTION_NEVER, /* of what no FMU declares to have */
+  FUNCTION_COUNT
 };
 
-/* The modes of one kind are never reached by instances of the other, so that one set of modes serves both. */
-struct Permission {
-  unsigned kinds, modes;
-};
-
-/* Whether the function may be called now; logs an error under its name where it may not. */
-bool is_permitted(struct Instance *instance, const struct Permission *permission, const char *function);
+/*
+ * The instance of a component, which begins with it, where the function may be called now. NULL after logging an error under
+ * its name where it may not, and NULL for a component that is NULL.
+ */
+struct Instance *enter(void *component, enum Function function, const char *name);
 
 #endif

@@ -81,6 +81,12 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
   return STATUS_DONE;
 }
 
+enum Status values_none(void *component, enum Function function, size_t count, const char *name) {
+  struct Instance *instance = enter(component, function, name);
+  if (instance == NULL) return STATUS_ERROR;
+  return count == 0 ? STATUS_DONE : log_error(instance, "%s: the FMU has no variable for this function", name);
+}
+
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {

@@ -5,7 +5,7 @@
 #ifndef VALUES_H
 #define VALUES_H
 
-#include "instance/instance.h"
+#include "fmi/life_cycle.h"
 
 enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
                        const char *function);
@@ -17,6 +17,9 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 /* Counts in full: the statistics alone. */
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,
                               const char *function);
+
+/* Of a type that no variable has: any reference is an error. */
+enum Status values_none(void *component, enum Function function, size_t count, const char *name);
 
 /* Sets all values or none. */
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,

@@ -1,6 +1,7 @@
 /* FMI for Co-Simulation (section 4.2): communication steps. */
 #include "fmi/check.h"
-#include "fmi2/fmi2_life_cycle.h"
+#include "fmi/life_cycle.h"
+#include "fmi2/fmi2_component.h"
 #include "stepping/steps.h"
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
@@ -8,11 +9,11 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
   struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
   (void)noSetFMUStatePriorToCurrentPoint;
   if (instance == NULL) return fmi2Error;
-  return fmi2_status(communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__));
+  return status_of(communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__));
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-  enter(c, FUNCTION_CANCEL_STEP, __func__);
+  enter(c, FUNCTION_NEVER, __func__);
   return fmi2Error;
 }
 

@@ -4,18 +4,16 @@
 #include <string.h>
 
 #include "fmi/log_categories.h"
-#include "fmi2/fmi2_life_cycle.h"
 
 /* The message is itself a printf format, and '#' introduces a variable in it (section 2.1.5). */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
   log_escape(message, "%#", escaped);
-  component->logger(component->environment, component->name, fmi2_status(status), log_category_of(status), escaped);
+  component->logger(component->environment, component->name, status_of(status), log_category_of(status), escaped);
 }
 
-/* Where the component's messages go. */
-static struct Log log_of(struct Component *component) {
+struct Log log_of(struct Component *component) {
   return (struct Log){
       .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
@@ -82,15 +80,4 @@ void fmi2FreeInstance(fmi2Component c) {
   instance_destroy(&component->instance);
   memory.free((void *)component->name);
   memory.free(component);
-}
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String names[]) {
-  struct Component *component = c;
-  struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
-  unsigned chosen = 0;
-  if (instance == NULL || !log_choose(instance, names, nCategories, &chosen, __func__)) return fmi2Error;
-  if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : PROBLEM_CATEGORIES;
-  else component->categories = loggingOn ? chosen : component->categories & ~chosen;
-  instance->log = log_of(component);
-  return fmi2OK;
 }

@@ -14,8 +14,11 @@ struct Component {
   unsigned categories; /* bits of the log categories that are enabled */
 };
 
+/* Where the component's messages go. */
+struct Log log_of(struct Component *component);
+
 /* The status that the caller sees. */
-static inline fmi2Status fmi2_status(enum Status status) {
+static inline fmi2Status status_of(enum Status status) {
   static const fmi2Status of[] = {[STATUS_DONE] = fmi2OK,
                                   [STATUS_WARNING] = fmi2Warning,
                                   [STATUS_DISCARD] = fmi2Discard,

@@ -2,7 +2,8 @@
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
 #include "fmi/values.h"
-#include "fmi2/fmi2_life_cycle.h"
+#include "fmi/life_cycle.h"
+#include "fmi2/fmi2_component.h"
 
 /* The instance where the function may be called with these arrays; NULL after logging where it may not. */
 static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,
@@ -33,71 +34,64 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return fmi2_status(values_get(instance, vr, nvr, value, __func__));
+  return status_of(values_get(instance, vr, nvr, value, __func__));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
+  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return fmi2_status(values_set(instance, vr, nvr, value, __func__));
+  return status_of(values_set(instance, vr, nvr, value, __func__));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return fmi2_status(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
+  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return fmi2_status(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
 }
 
 /* There are no variables of the type String. */
-static fmi2Status no_variable(fmi2Component c, enum Function function, const char *name, size_t nvr) {
-  struct Instance *instance = enter(c, function, name);
-  if (instance == NULL) return fmi2Error;
-  if (nvr == 0) return fmi2OK;
-  return fmi2_status(log_error(instance, "%s: the FMU has no variable for this function", name));
-}
-
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[]) {
   (void)vr;
   (void)value;
-  return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);
+  return status_of(values_none(c, FUNCTION_GET_VALUE, nvr, __func__));
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[]) {
   (void)vr;
   (void)value;
-  return no_variable(c, FUNCTION_SET_DISCRETE, __func__, nvr);
+  return status_of(values_none(c, FUNCTION_SET_DISCRETE, nvr, __func__));
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
                                         const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
                                         fmi2Real dvUnknown[]) {
-  struct Instance *instance = enter(c, FUNCTION_GET_DIRECTIONAL_DERIVATIVE, __func__);
+  struct Instance *instance = enter(c, FUNCTION_GET_PARTIAL_DERIVATIVE, __func__);
   if (instance == NULL || !check_array(instance, vUnknown_ref, nUnknown, __func__, "vUnknown_ref") ||
       !check_array(instance, vKnown_ref, nKnown, __func__, "vKnown_ref") ||
       !check_array(instance, dvKnown, nKnown, __func__, "dvKnown") ||
       !check_array(instance, dvUnknown, nUnknown, __func__, "dvUnknown"))
     return fmi2Error;
-  return fmi2_status(
+  return status_of(
       directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown, __func__));
 }
 
@@ -107,7 +101,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
   if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
       !check_array(instance, order, nvr, __func__, "order") || !check_array(instance, value, nvr, __func__, "value"))
     return fmi2Error;
-  return fmi2_status(values_set_input_derivatives(instance, vr, nvr, order, value, __func__));
+  return status_of(values_set_input_derivatives(instance, vr, nvr, order, value, __func__));
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
@@ -116,5 +110,5 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
       !check_array(instance, order, nvr, __func__, "order") || !check_array(instance, value, nvr, __func__, "value"))
     return fmi2Error;
-  return fmi2_status(output_derivatives(instance, vr, nvr, order, value, __func__));
+  return status_of(output_derivatives(instance, vr, nvr, order, value, __func__));
 }

@@ -2,7 +2,8 @@
 #include <string.h>
 
 #include "fmi/check.h"
-#include "fmi3/fmi3_life_cycle.h"
+#include "fmi/life_cycle.h"
+#include "fmi3/fmi3_component.h"
 #include "stepping/steps.h"
 
 /* Calls the importer back; returns when the step shall end in place of end. */
@@ -66,10 +67,10 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
       !check_array(instance, lastSuccessfulTime, 1, __func__, "lastSuccessfulTime"))
     return fmi3Error;
   if (instance->situation->waiting_event != 0)
-    return fmi3_status(log_error(instance,
-                                 "%s: the step before ended at an event; expected fmi3EnterEventMode, "
-                                 "fmi3UpdateDiscreteStates and fmi3EnterStepMode",
-                                 __func__));
+    return status_of(log_error(instance,
+                               "%s: the step before ended at an event; expected fmi3EnterEventMode, "
+                               "fmi3UpdateDiscreteStates and fmi3EnterStepMode",
+                               __func__));
   memcpy(component->before, instance->situation, situation_size());
   component->has_returned_early = false;
   observe(component);
@@ -84,7 +85,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   *terminateSimulation = fmi3False;
   *earlyReturn = component->has_returned_early || is_early;
   *lastSuccessfulTime = instance->situation->time;
-  return fmi3_status(status);
+  return status_of(status);
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) {
@@ -97,6 +98,6 @@ fmi3Status fmi3EnterStepMode(fmi3Instance c) {
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime) {
   (void)clockReference;
   (void)activationTime;
-  enter(c, FUNCTION_ACTIVATE_MODEL_PARTITION, __func__);
+  enter(c, FUNCTION_NEVER, __func__);
   return fmi3Error;
 }

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "fmi/log_categories.h"
-#include "fmi3/fmi3_life_cycle.h"
 #include "fmi3/fmi3_memory.h"
 
 /* '#' introduces a variable in a message. */
@@ -12,11 +11,10 @@ static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
   log_escape(message, "#", escaped);
-  component->logger(component->environment, fmi3_status(status), log_category_of(status), escaped);
+  component->logger(component->environment, status_of(status), log_category_of(status), escaped);
 }
 
-/* Where the component's messages go. */
-static struct Log log_of(struct Component *component) {
+struct Log log_of(struct Component *component) {
   return (struct Log){
       .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
@@ -149,16 +147,4 @@ void fmi3FreeInstance(fmi3Instance c) {
   fmi3_memory.free(component->intermediate.kept);
   for (int i = 0; i < WORKSPACE_COUNT; i++) fmi3_memory.free(component->workspaces[i].block);
   fmi3_memory.free(component);
-}
-
-fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean loggingOn, size_t nCategories,
-                               const fmi3String categories[]) {
-  struct Component *component = c;
-  struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
-  unsigned chosen = 0;
-  if (instance == NULL || !log_choose(instance, categories, nCategories, &chosen, __func__)) return fmi3Error;
-  if (nCategories == 0) chosen = ALL_CATEGORIES;
-  component->categories = loggingOn ? chosen : component->categories & ~chosen;
-  instance->log = log_of(component);
-  return fmi3OK;
 }

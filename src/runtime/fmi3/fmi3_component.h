@@ -28,8 +28,11 @@ struct Component {
   struct Workspace workspaces[WORKSPACE_COUNT];
 };
 
+/* Where the component's messages go. */
+struct Log log_of(struct Component *component);
+
 /* The status that the caller sees. */
-static inline fmi3Status fmi3_status(enum Status status) {
+static inline fmi3Status status_of(enum Status status) {
   static const fmi3Status of[] = {[STATUS_DONE] = fmi3OK,
                                   [STATUS_WARNING] = fmi3Warning,
                                   [STATUS_DISCARD] = fmi3Discard,

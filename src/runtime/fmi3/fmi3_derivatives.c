@@ -1,7 +1,8 @@
 /* Partial derivatives, derivatives of outputs by time, and dependencies (sections 2.2.9, 2.2.11 and 4.2.1). */
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
-#include "fmi3/fmi3_life_cycle.h"
+#include "fmi/life_cycle.h"
+#include "fmi3/fmi3_component.h"
 #include "fmi3/fmi3_references.h"
 
 /* Scalars that a partial derivative is asked of. */
@@ -23,49 +24,46 @@ static struct Partial enter_with_partial(fmi3Instance c, const char *name, const
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns,
                                         const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                         size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
-  struct Component *component = c;
   struct Partial partial =
       enter_with_partial(c, __func__, unknowns, nUnknowns, (struct Values){sensitivity, nSensitivity}, knowns, nKnowns,
                          (struct Values){seed, nSeed});
   if (partial.knowns == NULL) return fmi3Error;
-  return fmi3_status(directional_derivative(&component->instance, partial.unknowns, nSensitivity, partial.knowns, nSeed,
-                                            seed, sensitivity, __func__));
+  return status_of(
+      directional_derivative(c, partial.unknowns, nSensitivity, partial.knowns, nSeed, seed, sensitivity, __func__));
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns,
                                     const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                     size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
-  struct Component *component = c;
   struct Partial partial = enter_with_partial(c, __func__, unknowns, nUnknowns, (struct Values){seed, nSeed}, knowns,
                                               nKnowns, (struct Values){sensitivity, nSensitivity});
   if (partial.knowns == NULL) return fmi3Error;
-  return fmi3_status(adjoint_derivative(&component->instance, partial.unknowns, nSeed, partial.knowns, nSensitivity,
-                                        seed, sensitivity, __func__));
+  return status_of(
+      adjoint_derivative(c, partial.unknowns, nSeed, partial.knowns, nSensitivity, seed, sensitivity, __func__));
 }
 
 /* One order for each variable, of which an array has several values. */
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 orders[],
                                     fmi3Float64 values[], size_t nValues) {
-  struct Component *component = c;
   struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
   if (instance == NULL || !check_array(instance, orders, nvr, __func__, "orders")) return fmi3Error;
   const unsigned *references =
       expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues}, __func__);
-  int *order_of = reserve_workspace(component, WORKSPACE_VALUES, nValues, sizeof *order_of, __func__);
+  int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of, __func__);
   if (references == NULL || order_of == NULL) return fmi3Error;
   /* The variable begins where its value reference is met. */
   for (size_t k = 0, i = 0; k < nValues; k++) {
     if (i < nvr && references[k] == vr[i]) i++;
     order_of[k] = orders[i - 1];
   }
-  return fmi3_status(output_derivatives(instance, references, nValues, order_of, values, __func__));
+  return status_of(output_derivatives(instance, references, nValues, order_of, values, __func__));
 }
 
 /* modelDescription.xml tells of variables as a whole; providesPerElementDependencies is false. */
 static fmi3Status no_dependencies(fmi3Instance c, const char *name) {
   struct Instance *instance = enter(c, FUNCTION_GET_DEPENDENCIES, name);
   if (instance == NULL) return fmi3Error;
-  return fmi3_status(log_error(instance, "%s: expected no call, since providesPerElementDependencies is false", name));
+  return status_of(log_error(instance, "%s: expected no call, since providesPerElementDependencies is false", name));
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference valueReference,

@@ -1,12 +1,6 @@
 /* Types of which there are no variables, and clocks (sections 2.2.6 and 2.2.8). */
-#include "fmi3/fmi3_life_cycle.h"
-
-static fmi3Status no_variable(fmi3Instance c, enum Function function, const char *name, size_t nvr) {
-  struct Instance *instance = enter(c, function, name);
-  if (instance == NULL) return fmi3Error;
-  if (nvr == 0) return fmi3OK;
-  return fmi3_status(log_error(instance, "%s: the FMU has no variable for this function", name));
-}
+#include "fmi/values.h"
+#include "fmi3/fmi3_component.h"
 
 /* The functions of one type. */
 #define NO_VARIABLES(type, setter)                                                                                     \
@@ -15,7 +9,7 @@ static fmi3Status no_variable(fmi3Instance c, enum Function function, const char
     (void)vr;                                                                                                          \
     (void)values;                                                                                                      \
     (void)nValues;                                                                                                     \
-    return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);                                                          \
+    return status_of(values_none(c, FUNCTION_GET_VALUE, nvr, __func__));                                               \
   }                                                                                                                    \
   NO_SETTER(type, setter)
 #define NO_SETTER(type, function)                                                                                      \
@@ -24,10 +18,10 @@ static fmi3Status no_variable(fmi3Instance c, enum Function function, const char
     (void)vr;                                                                                                          \
     (void)values;                                                                                                      \
     (void)nValues;                                                                                                     \
-    return no_variable(c, function, __func__, nvr);                                                                    \
+    return status_of(values_none(c, function, nvr, __func__));                                                         \
   }
 
-NO_VARIABLES(Float32, FUNCTION_SET_FLOAT)
+NO_VARIABLES(Float32, FUNCTION_SET_REAL)
 NO_VARIABLES(Int8, FUNCTION_SET_DISCRETE)
 NO_VARIABLES(UInt8, FUNCTION_SET_DISCRETE)
 NO_VARIABLES(Int16, FUNCTION_SET_DISCRETE)
@@ -44,7 +38,7 @@ fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t n
   (void)valueSizes;
   (void)values;
   (void)nValues;
-  return no_variable(c, FUNCTION_GET_VALUE, __func__, nvr);
+  return status_of(values_none(c, FUNCTION_GET_VALUE, nvr, __func__));
 }
 
 fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const size_t valueSizes[],
@@ -53,7 +47,7 @@ fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t n
   (void)valueSizes;
   (void)values;
   (void)nValues;
-  return no_variable(c, FUNCTION_SET_DISCRETE, __func__, nvr);
+  return status_of(values_none(c, FUNCTION_SET_DISCRETE, nvr, __func__));
 }
 
 /* A function for clocks, with its further parameters. */
@@ -62,7 +56,7 @@ fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t n
     const void *unused[] = {__VA_ARGS__};                                                                              \
     (void)unused;                                                                                                      \
     (void)nvr;                                                                                                         \
-    enter(c, FUNCTION_CLOCK, __func__);                                                                                \
+    enter(c, FUNCTION_NEVER, __func__);                                                                                \
     return fmi3Error;                                                                                                  \
   }
 #define REFERENCES fmi3Instance c, const fmi3ValueReference vr[], size_t nvr

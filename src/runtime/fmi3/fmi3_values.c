@@ -1,7 +1,8 @@
 /* Getting and setting variables of the types that there are (sections 2.2.6 and 2.4.7). */
 #include "fmi/check.h"
 #include "fmi/values.h"
-#include "fmi3/fmi3_life_cycle.h"
+#include "fmi/life_cycle.h"
+#include "fmi3/fmi3_component.h"
 #include "fmi3/fmi3_references.h"
 
 /* The references of scalars where the function may be called with these arrays; NULL after logging where it may not. */
@@ -14,67 +15,60 @@ static const unsigned *enter_with_values(fmi3Instance c, enum Function function,
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 values[],
                           size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return fmi3_status(values_get(&component->instance, references, nValues, values, __func__));
+  return status_of(values_get(c, references, nValues, values, __func__));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 values[],
                           size_t nValues) {
-  struct Component *component = c;
-  const unsigned *references = enter_with_values(c, FUNCTION_SET_FLOAT, __func__, vr, nvr, values, nValues);
+  const unsigned *references = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return fmi3_status(values_set(&component->instance, references, nValues, values, __func__));
+  return status_of(values_set(c, references, nValues, values, __func__));
 }
 
 /* Counts of the statistics are of the type Int64. */
 fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int64 values[], size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return fmi3_status(values_get_counts(&component->instance, references, nValues, values, __func__));
+  return status_of(values_get_counts(c, references, nValues, values, __func__));
 }
 
 /* Parameters of whole numbers are of the type Int32. */
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int32 values[], size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++)
     if (references[i] < lagrangian.variable_count && lagrangian.variables[references[i]].kind == VARIABLE_STATISTIC)
-      return fmi3_status(log_error(&component->instance, "%s: '%s' is of the type Int64", __func__,
-                                   lagrangian.variables[references[i]].name));
-  return fmi3_status(values_get_whole(&component->instance, references, nValues, values, TYPE_INTEGER, __func__));
+      return status_of(
+          log_error(c, "%s: '%s' is of the type Int64", __func__, lagrangian.variables[references[i]].name));
+  return status_of(values_get_whole(c, references, nValues, values, TYPE_INTEGER, __func__));
 }
 
 fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 values[],
                         size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return fmi3_status(values_set_whole(&component->instance, references, nValues, values, TYPE_INTEGER, __func__));
+  return status_of(values_set_whole(c, references, nValues, values, TYPE_INTEGER, __func__));
 }
 
 fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Boolean values[],
                           size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  int *whole = reserve_workspace(component, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
   if (whole == NULL) return fmi3Error;
-  enum Status status = values_get_whole(&component->instance, references, nValues, whole, TYPE_BOOLEAN, __func__);
+  enum Status status = values_get_whole(c, references, nValues, whole, TYPE_BOOLEAN, __func__);
   for (size_t i = 0; i < nValues && status == STATUS_DONE; i++) values[i] = whole[i] != 0;
-  return fmi3_status(status);
+  return status_of(status);
 }
 
 fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Boolean values[],
                           size_t nValues) {
-  struct Component *component = c;
   const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  int *whole = reserve_workspace(component, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
   if (whole == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++) whole[i] = values[i];
-  return fmi3_status(values_set_whole(&component->instance, references, nValues, whole, TYPE_BOOLEAN, __func__));
+  return status_of(values_set_whole(c, references, nValues, whole, TYPE_BOOLEAN, __func__));
 }

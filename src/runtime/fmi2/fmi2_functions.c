@@ -1,0 +1,69 @@
+/*
+ * FMI 2.0 but for values and communication steps: version, experiment, initialization, end, saved states (sections 2.1.4 to 2.1.8),
+ * and model exchange (section 3.2).
+ */
+#include "fmi/life_cycle.h"
+#include "fmi2/fmi2_component.h"
+
+#define FMI(name) fmi2##name
+#define fmi2GetFMUState fmi2GetFMUstate
+#define fmi2SetFMUState fmi2SetFMUstate
+#define fmi2FreeFMUState fmi2FreeFMUstate
+#define fmi2SerializedFMUStateSize fmi2SerializedFMUstateSize
+#define fmi2SerializeFMUState fmi2SerializeFMUstate
+#define fmi2DeserializeFMUState fmi2DeSerializeFMUstate
+#define fmi2GetContinuousStateDerivatives fmi2GetDerivatives
+#define NOMINALS FUNCTION_GET_NOMINALS
+#define QUIET_CATEGORIES PROBLEM_CATEGORIES /* what goes wrong is sent without debug logging too */
+#include "fmi/shared_functions.h"
+
+const char *fmi2GetTypesPlatform(void) {
+  return "default";
+}
+
+const char *fmi2GetVersion(void) {
+  return "2.0";
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
+                               fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
+  struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
+  if (instance == NULL) return fmi2Error;
+  struct Experiment experiment = {.start_time = startTime,
+                                  .stop_time = stopTime,
+                                  .tolerance = tolerance,
+                                  .has_stop_time = stopTimeDefined != fmi2False,
+                                  .has_tolerance = toleranceDefined != fmi2False};
+  return status_of(simulation_set_up(instance, &experiment, __func__));
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+  struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
+  if (instance == NULL) return fmi2Error;
+  if (!instance->situation->experiment_defined)
+    return status_of(log_error(instance, "%s: expected fmi2SetupExperiment before it", __func__));
+  instance->situation->mode = MODE_INITIALIZATION;
+  return fmi2OK;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
+  return instance == NULL ? fmi2Error : status_of(simulation_start(instance, __func__));
+}
+
+fmi2Status fmi2EnterEventMode(fmi2Component c) {
+  struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);
+  if (instance == NULL) return fmi2Error;
+  instance->situation->mode = MODE_EVENT;
+  return fmi2OK;
+}
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
+  struct Instance *instance = enter(c, FUNCTION_UPDATE_DISCRETE_STATES, __func__);
+  if (instance == NULL || !check_array(instance, eventInfo, 1, __func__, "eventInfo")) return fmi2Error;
+  *eventInfo = (fmi2EventInfo){0};
+  bool states_changed;
+  enum Status status = exchange_update(instance, &states_changed);
+  eventInfo->valuesOfContinuousStatesChanged = states_changed;
+  return status_of(status);
+}
