@@ -50,6 +50,11 @@ const char *solver_project(struct Instance *instance, double time, double *state
   return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
 }
 
+void solver_free_memory(struct Instance *instance) {
+  instance->memory.free(instance->solver_memory);
+  instance->solver_memory = NULL;
+}
+
 bool solver_lacks_memory(const struct Instance *instance) {
   log_message(instance, STATUS_ERROR, "there is no memory for the solver");
   return false;

@@ -25,6 +25,9 @@ bool solver_take_state(struct Instance *instance, double time);
  */
 const char *solver_project(struct Instance *instance, double time, double *state);
 
+/* Solver.destroy of one whose memory is one block. */
+void solver_free_memory(struct Instance *instance);
+
 /* Logs that the solver has no memory; returns false. */
 bool solver_lacks_memory(const struct Instance *instance);
 

@@ -108,8 +108,8 @@ static void auto_destroy(struct Instance *instance) {
     instance->solver_memory = automatic->memory[i];
     if (automatic->memory[i] != NULL) solvers[i]->destroy(instance);
   }
-  instance->memory.free(automatic);
-  instance->solver_memory = NULL;
+  instance->solver_memory = automatic;
+  solver_free_memory(instance);
 }
 
 static bool auto_create(struct Instance *instance) {

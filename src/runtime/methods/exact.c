@@ -42,8 +42,7 @@ static bool could_save(const struct Situation *situation, const void *saved) {
 static void destroy(struct Instance *instance) {
   struct Exact *exact = instance->solver_memory;
   if (exact->generator != NULL) instance->memory.free(exact->generator);
-  instance->memory.free(exact);
-  instance->solver_memory = NULL;
+  solver_free_memory(instance);
 }
 
 /* Divides one block of memory among the arrays. */

@@ -86,11 +86,6 @@ static bool radau_create(struct Instance *instance) {
   return true;
 }
 
-static void radau_destroy(struct Instance *instance) {
-  instance->memory.free(instance->solver_memory);
-  instance->solver_memory = NULL;
-}
-
 double radau_tolerance(const struct Instance *instance) {
   return fmax(radau_safety * instance->situation->tolerance, 4 * DBL_EPSILON);
 }
@@ -422,7 +417,7 @@ const struct Solver solver_radau = {.name = "Radau",
                                     .saved_size = radau_saved_size,
                                     .could_save = radau_could_save,
                                     .create = radau_create,
-                                    .destroy = radau_destroy,
+                                    .destroy = solver_free_memory,
                                     .restart = radau_restart,
                                     .resume = radau_resume,
                                     .advance = radau_advance,

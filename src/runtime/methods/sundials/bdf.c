@@ -25,11 +25,4 @@ static bool create(struct Instance *instance) {
   return sundials_create(instance, sizeof(struct Bdf), configure);
 }
 
-const struct Solver solver_bdf = {.name = "CVODE",
-                                  .alternatives = BDF_ALTERNATIVES,
-                                  .run = sundials_run,
-                                  .create = create,
-                                  .destroy = sundials_destroy,
-                                  .restart = bdf_restart,
-                                  .advance = bdf_advance,
-                                  .interpolate = bdf_interpolate};
+const struct Solver solver_bdf = BDF_SOLVER("CVODE", create);

@@ -60,11 +60,4 @@ static bool create(struct Instance *instance) {
   return sundials_create(instance, sizeof(struct SparseBdf), configure);
 }
 
-const struct Solver solver_bdf_sparse = {.name = "CVODE with KLU",
-                                         .alternatives = BDF_ALTERNATIVES,
-                                         .run = sundials_run,
-                                         .create = create,
-                                         .destroy = sundials_destroy,
-                                         .restart = bdf_restart,
-                                         .advance = bdf_advance,
-                                         .interpolate = bdf_interpolate};
+const struct Solver solver_bdf_sparse = BDF_SOLVER("CVODE with KLU", create);

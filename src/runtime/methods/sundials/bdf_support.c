@@ -44,14 +44,12 @@ static int correction_to_constraints(realtype time, N_Vector state, N_Vector cor
 
 /* The estimate of the error is left as it is: an error that the projection takes away is still one of the step. */
 static bool keep_constraints(struct Instance *instance, const struct Bdf *bdf) {
-  return lagrangian.projection == NULL ||
-         (sundials_succeeded(instance, CVodeSetProjFn(bdf->cvode, correction_to_constraints), "CVodeSetProjFn") &&
-          sundials_succeeded(instance, CVodeSetProjErrEst(bdf->cvode, 0), "CVodeSetProjErrEst"));
+  return lagrangian.projection == NULL || (SUCCEEDS(instance, CVodeSetProjFn, bdf->cvode, correction_to_constraints) &&
+                                           SUCCEEDS(instance, CVodeSetProjErrEst, bdf->cvode, 0));
 }
 
 static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
-  return sundials_succeeded(instance, CVodeSVtolerances(bdf->cvode, bdf->sundials.relative, bdf->sundials.tolerance),
-                            "CVodeSVtolerances");
+  return SUCCEEDS(instance, CVodeSVtolerances, bdf->cvode, bdf->sundials.relative, bdf->sundials.tolerance);
 }
 
 bool bdf_configure(struct Instance *instance) {
@@ -60,28 +58,21 @@ bool bdf_configure(struct Instance *instance) {
   sundials_load(instance, instance->state, safety);
   bdf->jacobian = sundials_allocate(lagrangian.jacobian_pattern.count, sizeof *bdf->jacobian);
   bdf->cvode = CVodeCreate(CV_BDF, bdf->sundials.context);
-  return bdf->cvode != NULL &&
-         sundials_succeeded(instance, CVodeSetErrHandlerFn(bdf->cvode, sundials_ignore_error, NULL),
-                            "CVodeSetErrHandlerFn") &&
-         sundials_succeeded(instance,
-                            CVodeInit(bdf->cvode, sundials_right_side, instance->situation->time, bdf->sundials.state),
-                            "CVodeInit") &&
-         set_tolerances(instance, bdf) &&
-         sundials_succeeded(instance, CVodeSetUserData(bdf->cvode, instance), "CVodeSetUserData") &&
-         sundials_succeeded(instance, CVodeSetMaxNumSteps(bdf->cvode, lagrangian.max_steps), "CVodeSetMaxNumSteps") &&
-         keep_constraints(instance, bdf) &&
-         sundials_succeeded(instance, CVodeSetMaxHnilWarns(bdf->cvode, -1), "CVodeSetMaxHnilWarns") &&
-         sundials_succeeded(instance, CVodeSetLinearSolver(bdf->cvode, bdf->linear_solver, bdf->matrix),
-                            "CVodeSetLinearSolver") &&
-         sundials_succeeded(instance, CVodeSetJacFn(bdf->cvode, fill_jacobian), "CVodeSetJacFn");
+  return bdf->cvode != NULL && SUCCEEDS(instance, CVodeSetErrHandlerFn, bdf->cvode, sundials_ignore_error, NULL) &&
+         SUCCEEDS(instance, CVodeInit, bdf->cvode, sundials_right_side, instance->situation->time,
+                  bdf->sundials.state) &&
+         set_tolerances(instance, bdf) && SUCCEEDS(instance, CVodeSetUserData, bdf->cvode, instance) &&
+         SUCCEEDS(instance, CVodeSetMaxNumSteps, bdf->cvode, lagrangian.max_steps) && keep_constraints(instance, bdf) &&
+         SUCCEEDS(instance, CVodeSetMaxHnilWarns, bdf->cvode, -1) &&
+         SUCCEEDS(instance, CVodeSetLinearSolver, bdf->cvode, bdf->linear_solver, bdf->matrix) &&
+         SUCCEEDS(instance, CVodeSetJacFn, bdf->cvode, fill_jacobian);
 }
 
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   const struct Bdf *bdf = instance->solver_memory;
   (void)step;
   sundials_load(instance, state, safety);
-  return sundials_succeeded(instance, CVodeReInit(bdf->cvode, instance->situation->last_step.end, bdf->sundials.state),
-                            "CVodeReInit") &&
+  return SUCCEEDS(instance, CVodeReInit, bdf->cvode, instance->situation->last_step.end, bdf->sundials.state) &&
          set_tolerances(instance, bdf);
 }
 
@@ -120,9 +111,5 @@ const char *bdf_advance(struct Instance *instance, const struct CommunicationSte
 
 bool bdf_interpolate(struct Instance *instance, double time, double *state) {
   const struct Bdf *bdf = instance->solver_memory;
-  N_Vector inside = bdf->sundials.inside;
-  bool is_end = time == instance->situation->last_step.end;
-  if (!is_end && CVodeGetDky(bdf->cvode, time, 0, inside) < 0) return false;
-  sundials_copy(is_end ? bdf->sundials.state : inside, state);
-  return true;
+  return sundials_interpolate(instance, CVodeGetDky, bdf->cvode, time, state);
 }

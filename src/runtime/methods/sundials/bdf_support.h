@@ -7,8 +7,12 @@
 
 #include "methods/sundials/sundials_support.h"
 
-/* Where others are right instead, see struct Solver. */
-#define BDF_ALTERNATIVES "auto where inputs change often"
+/* The descriptor of a form of the matrix. */
+#define BDF_SOLVER(title, creator)                                                                                     \
+  {                                                                                                                    \
+    .name = (title), .alternatives = "auto where inputs change often", .run = sundials_run, .create = (creator),       \
+    .destroy = sundials_destroy, .restart = bdf_restart, .advance = bdf_advance, .interpolate = bdf_interpolate        \
+  }
 
 struct Bdf {
   struct Sundials sundials;

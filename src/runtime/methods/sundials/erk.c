@@ -35,20 +35,15 @@ static bool configure(struct Instance *instance) {
   erk->before = N_VClone(erk->sundials.state);
   erk->rate = N_VClone(erk->sundials.state);
   erk->arkode = ERKStepCreate(sundials_right_side, instance->situation->time, erk->sundials.state, context);
-  return erk->arkode != NULL &&
-         sundials_succeeded(instance, ERKStepSetErrHandlerFn(erk->arkode, sundials_ignore_error, NULL),
-                            "ERKStepSetErrHandlerFn") &&
-         sundials_succeeded(instance, ERKStepSetUserData(erk->arkode, instance), "ERKStepSetUserData") &&
-         sundials_succeeded(instance, ERKStepSetTableNum(erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5),
-                            "ERKStepSetTableNum") &&
-         sundials_succeeded(instance, ERKStepSetMaxNumSteps(erk->arkode, lagrangian.max_steps),
-                            "ERKStepSetMaxNumSteps") &&
-         sundials_succeeded(instance, ERKStepSetMaxStep(erk->arkode, lagrangian.max_step), "ERKStepSetMaxStep") &&
+  return erk->arkode != NULL && SUCCEEDS(instance, ERKStepSetErrHandlerFn, erk->arkode, sundials_ignore_error, NULL) &&
+         SUCCEEDS(instance, ERKStepSetUserData, erk->arkode, instance) &&
+         SUCCEEDS(instance, ERKStepSetTableNum, erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5) &&
+         SUCCEEDS(instance, ERKStepSetMaxNumSteps, erk->arkode, lagrangian.max_steps) &&
+         SUCCEEDS(instance, ERKStepSetMaxStep, erk->arkode, lagrangian.max_step) &&
          (lagrangian.projection == NULL ||
-          sundials_succeeded(instance, ERKStepSetPostprocessStepFn(erk->arkode, keep_constraints),
-                             "ERKStepSetPostprocessStepFn")) &&
-         sundials_succeeded(instance, ERKStepSetMaxHnilWarns(erk->arkode, -1), "ERKStepSetMaxHnilWarns") &&
-         sundials_succeeded(instance, ERKStepSetInterpolantDegree(erk->arkode, degree), "ERKStepSetInterpolantDegree");
+          SUCCEEDS(instance, ERKStepSetPostprocessStepFn, erk->arkode, keep_constraints)) &&
+         SUCCEEDS(instance, ERKStepSetMaxHnilWarns, erk->arkode, -1) &&
+         SUCCEEDS(instance, ERKStepSetInterpolantDegree, erk->arkode, degree);
 }
 
 static bool create(struct Instance *instance) {
@@ -58,12 +53,10 @@ static bool create(struct Instance *instance) {
 /* Starts at time and the state there with a step of this length, 0 for one that ERKStep chooses. */
 static bool start_method(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
   const struct Sundials *sundials = &erk->sundials;
-  return sundials_succeeded(instance, ERKStepReInit(erk->arkode, sundials_right_side, time, sundials->state),
-                            "ERKStepReInit") &&
-         sundials_succeeded(instance, ERKStepSVtolerances(erk->arkode, sundials->relative, sundials->tolerance),
-                            "ERKStepSVtolerances") &&
-         sundials_succeeded(instance, ERKStepSetInitStep(erk->arkode, fmin(first, end - time)), "ERKStepSetInitStep") &&
-         sundials_succeeded(instance, ERKStepSetStopTime(erk->arkode, end), "ERKStepSetStopTime");
+  return SUCCEEDS(instance, ERKStepReInit, erk->arkode, sundials_right_side, time, sundials->state) &&
+         SUCCEEDS(instance, ERKStepSVtolerances, erk->arkode, sundials->relative, sundials->tolerance) &&
+         SUCCEEDS(instance, ERKStepSetInitStep, erk->arkode, fmin(first, end - time)) &&
+         SUCCEEDS(instance, ERKStepSetStopTime, erk->arkode, end);
 }
 
 /*
@@ -146,11 +139,7 @@ static const char *advance(struct Instance *instance, const struct Communication
 
 static bool interpolate(struct Instance *instance, double time, double *state) {
   const struct Erk *erk = instance->solver_memory;
-  N_Vector inside = erk->sundials.inside;
-  bool is_end = time == instance->situation->last_step.end;
-  if (!is_end && ERKStepGetDky(erk->arkode, time, 0, inside) < 0) return false;
-  sundials_copy(is_end ? erk->sundials.state : inside, state);
-  return true;
+  return sundials_interpolate(instance, ERKStepGetDky, erk->arkode, time, state);
 }
 
 const struct Solver solver_erk = {.name = "ERKStep",

@@ -36,8 +36,15 @@ int sundials_right_side(realtype time, N_Vector state, N_Vector derivative, void
   return exists ? 0 : 1; /* recoverable: a shorter step may avoid the point */
 }
 
-void sundials_copy(N_Vector vector, double *state) {
-  memcpy(state, N_VGetArrayPointer(vector), lagrangian.state_count * sizeof(double));
+bool sundials_interpolate(struct Instance *instance,
+                          int (*evaluate)(void *memory, realtype time, int order, N_Vector y), void *memory,
+                          double time, double *state) {
+  const struct Sundials *sundials = instance->solver_memory;
+  bool is_end = time == instance->situation->last_step.end;
+  if (!is_end && evaluate(memory, time, 0, sundials->inside) < 0) return false;
+  memcpy(state, N_VGetArrayPointer(is_end ? sundials->state : sundials->inside),
+         lagrangian.state_count * sizeof(double));
+  return true;
 }
 
 double sundials_longest_step(struct Instance *instance, double time, double bound) {

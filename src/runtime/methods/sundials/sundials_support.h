@@ -28,7 +28,10 @@ void sundials_load(const struct Instance *instance, const double *state, double 
 /* d state / dt; a function for SUNDIALS, with the instance as its user data. */
 int sundials_right_side(realtype time, N_Vector state, N_Vector derivative, void *instance);
 
-void sundials_copy(N_Vector vector, double *state);
+/* Solver.interpolate, by a function of SUNDIALS that evaluates the last step of a memory of its own. */
+bool sundials_interpolate(struct Instance *instance,
+                          int (*evaluate)(void *memory, realtype time, int order, N_Vector y), void *memory,
+                          double time, double *state);
 
 /*
  * How far a step from a time and the state there may go, at most to the bound, without passing over what a function in
@@ -38,6 +41,7 @@ double sundials_longest_step(struct Instance *instance, double time, double boun
 
 /* Logs that a call of SUNDIALS failed unless flag tells success; returns whether it succeeded. */
 bool sundials_succeeded(const struct Instance *instance, int flag, const char *call);
+#define SUCCEEDS(instance, function, ...) sundials_succeeded(instance, function(__VA_ARGS__), #function)
 
 /*
  * Takes a communication step that is too short for the solver, a few units in the last place of the time, where Euler's
