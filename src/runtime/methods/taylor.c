@@ -11,7 +11,7 @@
 #include "evaluation/services.h"
 #include "instance/projection.h"
 #include "instance/snapshot.h"
-#include "methods/taylor.h"
+#include "methods/taylor_reach.h"
 
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
 enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
@@ -45,11 +45,6 @@ static bool taylor_create(struct Instance *instance) {
   taylor->derivative = taylor->term + lagrangian.state_count;
   instance->solver_memory = taylor;
   return true;
-}
-
-static void taylor_destroy(struct Instance *instance) {
-  instance->memory.free(instance->solver_memory);
-  instance->solver_memory = NULL;
 }
 
 /*
@@ -187,7 +182,7 @@ const struct Solver solver_taylor = {.name = "the Taylor series",
                                      .saved_size = taylor_saved_size,
                                      .could_save = taylor_could_save,
                                      .create = taylor_create,
-                                     .destroy = taylor_destroy,
+                                     .destroy = solver_free_memory,
                                      .restart = taylor_restart,
                                      .resume = taylor_resume,
                                      .advance = taylor_advance,

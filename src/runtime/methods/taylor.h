@@ -1,4 +1,4 @@
-/* What the files of the Taylor solver share. */
+/* The series of the Taylor solver, and their values within a step. */
 #ifndef TAYLOR_H
 #define TAYLOR_H
 
@@ -63,18 +63,5 @@ static inline double taylor_tolerance(const struct Instance *instance) {
 
 /* The order that the tolerance asks for. */
 int64_t taylor_order(const struct Instance *instance);
-
-/*
- * d state / dt at a time and at the state that instance->work holds, and the first coefficients of all series. Returns
- * what lagrangian.start returns.
- */
-int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative);
-
-/*
- * Sets the reach of the series that taylor->x holds: as long as its last coefficients promise, but no longer than the
- * functions in the equations allow (series_limit.h), and so that the polynomials were found to obey the equations of
- * motion at its end. 0 where no step can be taken.
- */
-void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step);
 
 #endif

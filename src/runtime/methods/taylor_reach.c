@@ -4,13 +4,14 @@
  * in the equations limit it (series_limit.h), and its defect is measured, the difference between x'(t) of the
  * polynomials and the right side of the equations of motion.
  */
+#include "methods/taylor_reach.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 #include "evaluation/inputs.h"
-#include "methods/taylor.h"
 
 /* A step of the promised length has a defect of about a third of the order times the tolerance. */
 static const double defect_margin = 3.0;
