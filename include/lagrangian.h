@@ -207,7 +207,7 @@ struct SwitchTable {
                         Series *w, struct SeriesLimit *limit);
   size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
   /* What decides on the modes: value[] as below. */
-  void (*values)(const struct Point *point, const double *acceleration, double *value);
+  void (*switching_values)(const struct Point *point, const double *acceleration, double *value);
 };
 
 /*
@@ -252,45 +252,118 @@ struct Projection;
 struct Solver;
 struct Switching;
 
+/*
+ * The functions below that return an int return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
+ * definite; results are then undefined.
+ */
+
+/* How far a solver may err and go. */
+struct StepFacts {
+  const double *nominal; /* state_count: scales of the absolute tolerance */
+  double tolerance;      /* relative, where the environment gives none */
+  double max_step;       /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
+  long max_steps;        /* that a solver takes by itself in one communication step; 0 where none was given */
+  struct StepWork work;
+  struct OperationCounts operations;
+  bool depends_on_time;
+};
+
+/* What methods with a Jacobian matrix take; empty for others. */
+struct ImplicitTable {
+  struct Sparsity pattern;
+  const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
+  struct LuPattern lu_pattern; /* where that is lu_sparse */
+  /* d derivatives / d state: the elements of the pattern, in its order */
+  int (*jacobian)(const struct Point *point, double *values);
+};
+
+/* Taylor series of the motion and of outputs; empty without them. */
+struct TaylorTable {
+  size_t rows, output_rows; /* of workspace for series() and output_series() */
+  /* The same as derivatives(); also fills the first coefficients in the workspace w[rows] of series(). */
+  int (*start)(const struct Point *point, double *derivative, Series *w);
+  /*
+   * Taylor coefficients x[state_count] of the state up to order, with those of the inputs given, the first two of the
+   * state, and w as start() has left it at the point.
+   */
+  void (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
+  /* Shortens a step to where the elementary functions in series() may hide nothing; NULL where there are none. */
+  void (*limit)(const struct Point *point, const Series *input, const Series *x, const Series *w,
+                struct SeriesLimit *limit);
+  /*
+   * Taylor coefficients y[results.count] up to order of the results that are outputs, from those of the inputs, and of
+   * the state up to order + 1; w[output_rows] is workspace.
+   */
+  void (*output_series)(const struct Point *point, int order, const Series *input, const Series *x, Series *w,
+                        Series *y);
+};
+
+/* Computed variables. */
+struct ResultTable {
+  size_t count;
+  const bool *uses_acceleration; /* for each */
+  /*
+   * A computed variable; acceleration holds dv/dt at the point, and the constraints' forces, where it is used.
+   * result_along: its derivative along seed, with the accelerations changing by acceleration_along; of outputs and
+   * calculated parameters alone.
+   */
+  double (*result)(const struct Point *point, const double *acceleration, size_t result);
+  double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
+                         const double *acceleration_along, size_t result);
+};
+
+/* What systems with constraints have, those of contacts and frictions among them; empty for others. */
+struct ConstraintTable {
+  size_t count, guide_count;
+  const char *const *names;
+  const char *const *inputs; /* the names of those that each holds, NULL for none; NULL without guides */
+  const struct Guide *guides;
+  const bool *coordinate_is_fixed;     /* at the start; NULL where none is */
+  const struct Projection *projection; /* projection.h */
+  /*
+   * What result() and result_along() take: acceleration[n + m], with n coordinates and m constraints, holds the
+   * accelerations and then the forces of the constraints; M a + J^T F = Q.
+   */
+  int (*accelerations)(const struct Point *point, double *acceleration);
+  int (*accelerations_along)(const struct Point *point, const struct Seed *seed, double *acceleration);
+  /*
+   * What brings a state back to the constraints, the least in the metric of M: correction[n + 3 m] holds the changes of
+   * the coordinates, how much each constraint lacks (that is, less its value), the last pivot of its row, infinite where
+   * it follows from others, and the length of its row of J. seed->state holds by how much the coordinates have been moved
+   * already. correct_velocities() does the same at the present coordinates, where constraints are linear in the
+   * velocities.
+   */
+  int (*correct_positions)(const struct Point *point, const struct Seed *seed, double *correction);
+  int (*correct_velocities)(const struct Point *point, double *correction);
+  /* The same for start values, where fixed coordinates and their velocities stay; NULL where none is fixed. */
+  int (*start_positions)(const struct Point *point, const struct Seed *seed, double *correction);
+  int (*start_velocities)(const struct Point *point, double *correction);
+  /*
+   * What impulses of contacts and frictions do while the constraints hold: impulse[n + m] has them at the places of their
+   * forces; response[2 n] holds the changes of the velocities, and then the impulses along the coordinates. A contact
+   * pushes along its gap, a friction along its velocity. NULL without contacts.
+   */
+  int (*respond)(const struct Point *point, const double *impulse, double *response);
+};
+
 struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
-  size_t variable_count, result_count;
-  size_t work_count;                      /* of Point.work */
-  size_t series_rows, output_series_rows; /* of workspace for series() and output_series() */
-  int output_derivative_order;            /* the highest by time that outputs have */
+  size_t work_count; /* of Point.work */
+  size_t variable_count, array_count;
   const struct ScalarVariable *variables;
   const struct ArrayVariable *arrays; /* ascending; NULL where there are none */
-  size_t array_count;
-  const bool *result_uses_acceleration; /* for each result */
-  const double *nominal;                /* state_count: scales of the absolute tolerance */
+  int output_derivative_order;        /* the highest by time that outputs have */
   /* For each coordinate: the parameters and coordinates on which its inertia depends, for messages. */
   const char *const *inertia_depends_on;
-  double tolerance; /* relative, where the environment gives none */
-  double max_step;  /* of the steps that a solver takes by itself, in s; INFINITY where none was given */
-  long max_steps;   /* that a solver takes by itself in one communication step; 0 where none was given */
-  struct StepWork work;
-  bool depends_on_time;
-  const struct Solver *solver;      /* NULL for a system without coordinates */
-  struct Sparsity jacobian_pattern; /* where there is a jacobian() */
-  struct OperationCounts operations;
-  const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
-  struct LuPattern lu_pattern; /* where that is lu_sparse */
-  size_t constraint_count;
-  const char *const *constraints;       /* their names */
-  const char *const *constraint_inputs; /* the names of those that each holds, NULL for none; NULL without guides */
-  const struct Guide *guides;
-  size_t guide_count;
-  const bool *coordinate_is_fixed;     /* at the start; NULL where none is */
-  const struct Projection *projection; /* projection.h; NULL without constraints */
-  const struct SwitchTable *switches;  /* NULL where nothing switches, as is */
-  const struct Switching *switching;   /* switching.h */
-
-  /*
-   * The functions below return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
-   * definite; results are then undefined. For systems with constraints, acceleration[coordinate_count +
-   * constraint_count] holds the accelerations and then the forces of the constraints; M a + J^T F = Q.
-   */
+  const struct Solver *solver; /* NULL for a system without coordinates */
+  struct StepFacts steps;
+  struct ResultTable results;
+  struct TaylorTable taylor;
+  struct ImplicitTable implicit;
+  struct ConstraintTable constraints;
+  const struct SwitchTable *switches; /* NULL where nothing switches, as is */
+  const struct Switching *switching;  /* switching.h */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
   int (*prepare)(const double *parameter, double *prepared);
@@ -304,54 +377,7 @@ struct Lagrangian {
   int (*derivatives)(const struct Point *point, double *derivative);
   /* The derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
-  /* d derivatives / d state: the elements of jacobian_pattern, in its order */
-  int (*jacobian)(const struct Point *point, double *values);
-  /*
-   * A computed variable; acceleration holds dv/dt at the point, and the constraints' forces, where it is used.
-   * result_along: its derivative along seed, with the accelerations changing by acceleration_along; of outputs and
-   * calculated parameters alone.
-   */
-  double (*result)(const struct Point *point, const double *acceleration, size_t result);
-  double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
-                         const double *acceleration_along, size_t result);
-  /* What result() and result_along() take, in systems with constraints; NULL in others. */
-  int (*accelerations)(const struct Point *point, double *acceleration);
-  int (*accelerations_along)(const struct Point *point, const struct Seed *seed, double *acceleration);
-  /*
-   * What brings a state back to the constraints, the least in the metric of M: with n coordinates and m constraints,
-   * correction[n + 3 m] holds the changes of the coordinates, how much each constraint lacks (that is, less its value),
-   * the last pivot of its row, infinite where it follows from others, and the length of its row of J. seed->state holds
-   * by how much the coordinates have been moved already. correct_velocities() does the same at the present coordinates,
-   * where constraints are linear in the velocities.
-   */
-  int (*correct_positions)(const struct Point *point, const struct Seed *seed, double *correction);
-  int (*correct_velocities)(const struct Point *point, double *correction);
-  /*
-   * What impulses of contacts and frictions do while the constraints hold: impulse[n + m] has them at the places of their
-   * forces; response[2 n] holds the changes of the velocities, and then the impulses along the coordinates. A contact
-   * pushes along its gap, a friction along its velocity. NULL without contacts.
-   */
-  int (*respond)(const struct Point *point, const double *impulse, double *response);
-  /* The same for start values, where fixed coordinates and their velocities stay; NULL where none is fixed. */
-  int (*start_positions)(const struct Point *point, const struct Seed *seed, double *correction);
-  int (*start_velocities)(const struct Point *point, double *correction);
-  /* The same as derivatives(); also fills the first coefficients in the workspace w[series_rows] of series(). */
-  int (*start)(const struct Point *point, double *derivative, Series *w);
-  /*
-   * Taylor coefficients x[state_count] of the state up to order, with those of the inputs given, the first two of the
-   * state, and w as start() has left it at the point.
-   */
-  void (*series)(const struct Point *point, int order, const Series *input, Series *x, Series *w);
-  /* Shortens a step to where the elementary functions in series() may hide nothing; NULL where there are none. */
-  void (*limit)(const struct Point *point, const Series *input, const Series *x, const Series *w,
-                struct SeriesLimit *limit);
-  /*
-   * Taylor coefficients y[result_count] up to order of the results that are outputs, from those of the inputs, and of
-   * the state up to order + 1; w[output_series_rows] is workspace.
-   */
-  void (*output_series)(const struct Point *point, int order, const Series *input, const Series *x, Series *w,
-                        Series *y);
-  /* d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
+  /* Of linear systems: d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
   void (*linear)(const double *parameter, const double *prepared, double *matrix);
 };
 

@@ -30,9 +30,9 @@ static void print(const char *name, const double *values, size_t count) {
 }
 
 static void print_jacobian(const struct Point *point) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   double *values = zeros(pattern->count, sizeof *values), *column = zeros(lagrangian.state_count, sizeof *column);
-  if (lagrangian.jacobian(point, values) != 0) exit(1);
+  if (lagrangian.implicit.jacobian(point, values) != 0) exit(1);
   for (size_t j = 0; j < lagrangian.state_count; j++) {
     for (size_t i = 0; i < lagrangian.state_count; i++) column[i] = 0.0;
     for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) column[pattern->row[k]] = values[k];
@@ -44,17 +44,17 @@ static void print_jacobian(const struct Point *point) {
 
 static void print_series(const struct Point *point) {
   size_t states = lagrangian.state_count;
-  Series *x = zeros(states, sizeof *x), *work = zeros(lagrangian.series_rows, sizeof *work);
+  Series *x = zeros(states, sizeof *x), *work = zeros(lagrangian.taylor.rows, sizeof *work);
   Series *input = zeros(lagrangian.input_count, sizeof *input);
   double *derivative = zeros(states, sizeof *derivative);
-  if (lagrangian.start(point, derivative, work) != 0) exit(1);
+  if (lagrangian.taylor.start(point, derivative, work) != 0) exit(1);
   print("start", derivative, states);
   for (size_t i = 0; i < states; i++) {
     x[i][0] = point->state[i];
     x[i][1] = derivative[i];
   }
   for (size_t i = 0; i < lagrangian.input_count; i++) input[i][0] = point->input[i];
-  lagrangian.series(point, ORDER, (const Series *)input, x, work);
+  lagrangian.taylor.series(point, ORDER, (const Series *)input, x, work);
   for (size_t i = 0; i < states; i++) print("series", x[i], ORDER + 1);
   free(x);
   free(work);
@@ -95,13 +95,13 @@ int main(void) {
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (variable->kind != VARIABLE_RESULT) continue;
-    double value = lagrangian.result(&point, derivative + n, variable->index);
+    double value = lagrangian.results.result(&point, derivative + n, variable->index);
     print(variable->name, &value, 1);
     if (!variable->is_output) continue;
-    value = lagrangian.result_along(&point, &seed, derivative + n, along + n, variable->index);
+    value = lagrangian.results.result_along(&point, &seed, derivative + n, along + n, variable->index);
     print("along", &value, 1);
   }
-  if (lagrangian.jacobian != NULL) print_jacobian(&point);
+  if (lagrangian.implicit.jacobian != NULL) print_jacobian(&point);
   else print_series(&point);
   double *const arrays[] = {at, direction, prepared, work, derivative, along};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);

@@ -26,13 +26,13 @@ static double *zeros(size_t count) {
 
 /* Element (row, j) where k is the place of the first element of column j that is not above it. */
 static double element(const double *values, size_t row, size_t j, int *k) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   if (*k == pattern->start[j + 1] || (size_t)pattern->row[*k] != row) return 0.0;
   return values[(*k)++];
 }
 
 int main(void) {
-  size_t states = lagrangian.state_count, count = lagrangian.jacobian_pattern.count;
+  size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   double *parameter = zeros(lagrangian.parameter_count), *prepared = zeros(lagrangian.prepared_count);
   double *input = zeros(lagrangian.input_count), *work = zeros(lagrangian.work_count);
   double *state = zeros(states), *along = zeros(states), *column = zeros(states), *values = zeros(count);
@@ -46,9 +46,9 @@ int main(void) {
   double largest = 0.0, difference = 0.0;
   for (int n = 0; n < POINTS; n++) {
     for (size_t i = 0; i < states; i++) state[i] = draw();
-    if (lagrangian.jacobian(&point, values) != 0) return 1;
+    if (lagrangian.implicit.jacobian(&point, values) != 0) return 1;
     for (size_t j = 0; j < states; j++) {
-      int k = lagrangian.jacobian_pattern.start[j];
+      int k = lagrangian.implicit.pattern.start[j];
       along[j] = 1.0;
       if (lagrangian.directional(&point, &seed, column) != 0) return 1;
       along[j] = 0.0;
@@ -56,7 +56,7 @@ int main(void) {
         largest = fmax(largest, fabs(column[i]));
         difference = fmax(difference, fabs(element(values, i, j, &k) - column[i]));
       }
-      if (k != lagrangian.jacobian_pattern.start[j + 1]) return 1;
+      if (k != lagrangian.implicit.pattern.start[j + 1]) return 1;
     }
   }
   printf("%zu %zu %g\n", states, count, difference / largest);

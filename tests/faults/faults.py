@@ -218,7 +218,7 @@ PLACES = [
     ("  enum Status status = evaluate_prepare(instance);\n", "  enum Status status = STATUS_DONE;\n",
      pytest("test_up_to_date", "before_each_call and Taylor"), "derivative_along_seed"),
     ("  direction.seed.time = 1.0;\n", "", pytest("test_up_to_date", "output_in_time and Erk")),
-    ("lagrangian.series(&point, order + 1, input", "lagrangian.series(&point, order, input",
+    ("lagrangian.taylor.series(&point, order + 1, input", "lagrangian.taylor.series(&point, order, input",
      pytest("test_up_to_date", "output_in_time and Taylor")),
     ("fabs(time - situation->time) > rounding", "fabs(time - situation->time) > 0.5 * size",
      pytest("test_fmi_rules", "steps_end_where_they_say and DampedPendulum", "DampedPendulum")),
@@ -288,7 +288,7 @@ PLACES = [
      pytest("test_constraints", "long_run", "PendulumCartesian")),
     ("problem = solver_project(instance, step->end, instance->state);", "problem = NULL;",
      pytest("test_constraints", "pendulum_and_its_tension", "PendulumCartesian")),
-    ("return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;",
+    ("return lagrangian.constraints.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;",
      "return false;", pytest("test_constraints", "model_exchange", "PendulumCartesian")),
     # Redundant constraints, coordinates without inertia, inputs in constraints, tables of two arguments
     ("forces[i] -= share * rest[i];", "", pytest("test_redundant", "random_states")),

@@ -35,7 +35,7 @@ int main(int count, char **words) {
   double *parameter = zeros(lagrangian.parameter_count, sizeof *parameter);
   double *prepared = zeros(lagrangian.prepared_count, sizeof *prepared);
   double *work = zeros(lagrangian.work_count, sizeof *work);
-  double *derivative = zeros(lagrangian.state_count + lagrangian.constraint_count, sizeof *derivative);
+  double *derivative = zeros(lagrangian.state_count + lagrangian.constraints.count, sizeof *derivative);
   set_point(state, parameter);
   if (lagrangian.prepare(parameter, prepared) != 0) return 1;
   const struct Point point = {0.0, state, input, parameter, prepared, work};

@@ -27,7 +27,7 @@ struct Method {
   enum SeriesUse series;
   bool needs_jacobian; /* and counts its evaluations */
   bool hands_over;     /* between methods, and counts how often */
-  bool factors;        /* matrices with a row and a column for each coordinate, by lagrangian.lu */
+  bool factors;        /* matrices with a row and a column for each coordinate, by lagrangian.implicit.lu */
   bool needs_linear;   /* solves linear systems alone, as a whole communication step */
   bool uses_library;   /* which no FMU carries in C, and which allocates by itself */
 };

@@ -209,7 +209,7 @@ static struct Routine *indicators_routine(const struct Program *program, struct 
 }
 
 static struct Routine *roundings_routine(const struct Program *program, struct Values *values) {
-  const struct SwitchingExpressions *switching = program->interface->switching;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   return targets_routine(values, switching->roundings, switching->indicator_count);
 }
 
@@ -252,84 +252,110 @@ static bool switches(const struct Program *program) {
   return program->equations->switching != NULL;
 }
 
+static bool has_series(const struct Program *program) {
+  return program->series != NULL;
+}
+
+static bool has_limit(const struct Program *program) {
+  return program->series != NULL && program->series->limit.count > 0;
+}
+
+static bool has_output_series(const struct Program *program) {
+  return program->output_series != NULL;
+}
+
+static bool has_watched_limit(const struct Program *program) {
+  return program->watched_series != NULL;
+}
+
+static bool has_results(const struct Program *program) {
+  return program->interface->result_count > 0;
+}
+
 const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_PREPARE] = {"What depends on parameters alone", "prepare", "const double *p, double *prepared",
-                          "prepared", RETURNS_STATUS, IN_WORKSPACE, NULL, prepare_routine},
+                          "prepared", RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, NULL, prepare_routine},
     [FUNCTION_INITIAL_STATE] = {"Start values that follow from parameters", "initial_state",
                                 "const struct Point *point, double *state", "state", RETURNS_NOTHING, IN_WORKSPACE,
-                                starts_follow, initial_state_routine},
+                                IN_LAGRANGIAN, starts_follow, initial_state_routine},
     [FUNCTION_INITIAL_STATE_ALONG] = {"Start values along a direction", "initial_state_along",
                                       "const struct Point *point, const struct Seed *seed, double *state", "state",
-                                      RETURNS_NOTHING, IN_WORKSPACE, starts_follow, initial_state_along_routine},
+                                      RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, starts_follow,
+                                      initial_state_along_routine},
     [FUNCTION_DERIVATIVES] = {"d state / dt", "derivatives", "const struct Point *point, double *derivative",
-                              "derivative", RETURNS_STATUS, IN_TARGET, moves, derivatives_routine},
+                              "derivative", RETURNS_STATUS, IN_TARGET, IN_LAGRANGIAN, moves, derivatives_routine},
     [FUNCTION_DIRECTIONAL] = {"d state / dt along a direction", "directional",
                               "const struct Point *point, const struct Seed *seed, double *derivative", "derivative",
-                              RETURNS_STATUS, IN_WORKSPACE, moves, directional_routine},
+                              RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, moves, directional_routine},
     [FUNCTION_JACOBIAN] = {"Jacobian matrix", "jacobian", "const struct Point *point, double *values", "values",
-                           RETURNS_STATUS, IN_WORKSPACE, has_jacobian, jacobian_routine},
+                           RETURNS_STATUS, IN_WORKSPACE, IN_IMPLICIT, has_jacobian, jacobian_routine},
     [FUNCTION_LINEAR] = {"A, B and c", "linear", "const double *p, const double *c, double *matrix", "matrix",
-                         RETURNS_NOTHING, IN_WORKSPACE, is_exact, linear_routine},
+                         RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, is_exact, linear_routine},
     [FUNCTION_ACCELERATIONS] = {"Accelerations and the forces of constraints", "accelerations",
                                 "const struct Point *point, double *acceleration", "acceleration", RETURNS_STATUS,
-                                IN_WORKSPACE, is_constrained, accelerations_routine},
+                                IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, accelerations_routine},
     [FUNCTION_ACCELERATIONS_ALONG] = {"The same along a direction", "accelerations_along",
                                       "const struct Point *point, const struct Seed *seed, double *acceleration",
-                                      "acceleration", RETURNS_STATUS, IN_WORKSPACE, is_constrained,
+                                      "acceleration", RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_constrained,
                                       accelerations_along_routine},
     [FUNCTION_CORRECT_POSITIONS] = {"What brings the coordinates back to the constraints", "correct_positions",
                                     "const struct Point *point, const struct Seed *seed, double *correction",
-                                    "correction", RETURNS_STATUS, IN_WORKSPACE, is_constrained,
+                                    "correction", RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_constrained,
                                     correct_positions_routine},
     [FUNCTION_CORRECT_VELOCITIES] = {"The same of the velocities", "correct_velocities",
                                      "const struct Point *point, double *correction", "correction", RETURNS_STATUS,
-                                     IN_WORKSPACE, is_constrained, correct_velocities_routine},
+                                     IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, correct_velocities_routine},
     [FUNCTION_RESPOND] = {"What impulses of contacts and frictions do", "respond",
                           "const struct Point *point, const double *da, double *response", "response", RETURNS_STATUS,
-                          IN_WORKSPACE, has_contacts, responses_routine},
+                          IN_WORKSPACE, IN_CONSTRAINTS, has_contacts, responses_routine},
     [FUNCTION_START_POSITIONS] = {"The same where fixed coordinates stay", "start_positions",
                                   "const struct Point *point, const struct Seed *seed, double *correction",
-                                  "correction", RETURNS_STATUS, IN_WORKSPACE, is_fixed_at_start,
+                                  "correction", RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_fixed_at_start,
                                   start_positions_routine},
     [FUNCTION_START_VELOCITIES] = {"And of the velocities", "start_velocities",
                                    "const struct Point *point, double *correction", "correction", RETURNS_STATUS,
-                                   IN_WORKSPACE, is_fixed_at_start, start_velocities_routine},
+                                   IN_WORKSPACE, IN_CONSTRAINTS, is_fixed_at_start, start_velocities_routine},
     [FUNCTION_INDICATORS] = {"What changes its sign at events", "indicators",
                              "const struct Point *point, const double *a, double *indicator", "indicator",
-                             RETURNS_NOTHING, IN_ARGUMENT, switches, indicators_routine},
+                             RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, indicators_routine},
     [FUNCTION_ROUNDINGS] = {"What rounding may make of them", "roundings",
                             "const struct Point *point, const double *a, double *uncertainty", "uncertainty",
-                            RETURNS_NOTHING, IN_ARGUMENT, switches, roundings_routine},
+                            RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, roundings_routine},
     [FUNCTION_SWITCHING_VALUES] = {"What decides on the modes", "switching_values",
                                    "const struct Point *point, const double *a, double *value", "value",
-                                   RETURNS_NOTHING, IN_ARGUMENT, switches, switching_values_routine},
+                                   RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, switching_values_routine},
     [FUNCTION_START] = {"d state / dt, and the first coefficients of all series", "start",
                         "const struct Point *point, double *derivative, Series *restrict w", "derivative",
-                        RETURNS_STATUS, IN_TARGET, NULL, NULL},
+                        RETURNS_STATUS, IN_TARGET, IN_TAYLOR, has_series, NULL},
     [FUNCTION_SERIES] =
         {"Taylor coefficients of the state up to the order", "series",
          "const struct Point *point, int order, const Series *restrict input, Series *restrict x, Series *restrict w",
-         NULL, RETURNS_NOTHING, IN_WORKSPACE, NULL, NULL},
+         NULL, RETURNS_NOTHING, IN_WORKSPACE, IN_TAYLOR, has_series, NULL},
     [FUNCTION_LIMIT] =
         {"Shortens a step to where the series hide nothing", "limit",
          "const struct Point *point, const Series *restrict input, const Series *restrict x, const Series *restrict w, "
          "struct SeriesLimit *limit",
-         NULL, RETURNS_NOTHING, IN_WORKSPACE, NULL, NULL},
+         NULL, RETURNS_NOTHING, IN_WORKSPACE, IN_TAYLOR, has_limit, NULL},
     [FUNCTION_OUTPUT_SERIES] = {"Taylor coefficients of the outputs up to the order", "output_series",
                                 "const struct Point *point, int order, const Series *restrict input, const Series "
                                 "*restrict x, Series *restrict w, Series *restrict y",
-                                NULL, RETURNS_NOTHING, IN_WORKSPACE, NULL, NULL},
+                                NULL, RETURNS_NOTHING, IN_WORKSPACE, IN_TAYLOR, has_output_series, NULL},
     [FUNCTION_WATCHED_LIMIT] =
         {"Shortens a window of time to where what events look at hides nothing", "watched_limit",
          "const struct Point *point, const double *a, const Series *restrict input, const Series *restrict x, Series "
          "*restrict w, struct SeriesLimit *limit",
-         NULL, RETURNS_NOTHING, IN_ARGUMENT, NULL, NULL},
+         NULL, RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, has_watched_limit, NULL},
     [FUNCTION_RESULT] = {"A computed variable", "result", "const struct Point *point, const double *a", NULL,
-                         RETURNS_VALUE, IN_ARGUMENT, NULL, NULL},
+                         RETURNS_VALUE, IN_ARGUMENT, IN_RESULTS, has_results, NULL},
     [FUNCTION_RESULTS] = {"Computed variables of one thing", "results",
                           "const struct Point *point, const double *a, double *value", "value", RETURNS_NOTHING,
-                          IN_ARGUMENT, NULL, NULL},
+                          IN_ARGUMENT, IN_RESULTS, has_results, NULL},
     [FUNCTION_RESULT_ALONG] = {"An output along a direction", "result_along",
                                "const struct Point *point, const struct Seed *seed, const double *a, const double *da",
-                               NULL, RETURNS_VALUE, IN_ARGUMENT, NULL, NULL},
+                               NULL, RETURNS_VALUE, IN_ARGUMENT, IN_RESULTS, has_results, NULL},
 };
+
+bool has_function(const struct Program *program, enum FunctionName name) {
+  const struct GeneratedFunction *function = &generated_functions[name];
+  return function->is_needed == NULL || function->is_needed(program);
+}

@@ -32,8 +32,9 @@ enum FunctionName {
   FUNCTION_OUTPUT_SERIES,
   FUNCTION_WATCHED_LIMIT,
   FUNCTION_RESULT,
-  FUNCTION_RESULTS,
   FUNCTION_RESULT_ALONG,
+  FIELD_COUNT,
+  FUNCTION_RESULTS = FIELD_COUNT, /* which result() calls */
   FUNCTION_COUNT
 };
 
@@ -42,18 +43,25 @@ enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
 /* Where a function finds or leaves accelerations. */
 enum Accelerations { IN_WORKSPACE, IN_TARGET, IN_ARGUMENT };
 
+/* struct Lagrangian itself, a group of it, or struct SwitchTable. */
+enum FunctionGroup { IN_LAGRANGIAN, IN_RESULTS, IN_TAYLOR, IN_IMPLICIT, IN_CONSTRAINTS, IN_SWITCHES };
+
 struct GeneratedFunction {
-  const char *comment, *name; /* the name is that of its field in struct Lagrangian too */
-  const char *arguments;      /* as declared */
-  const char *target;         /* the argument that it fills; NULL where a value is returned */
+  const char *comment, *name;
+  const char *arguments; /* as declared */
+  const char *target;    /* the argument that it fills; NULL where a value is returned */
   enum Returned returned;
   enum Accelerations accelerations;
-  /* Of those of one routine: whether a system needs it, NULL where each does, and what builds it; NULL for the others. */
-  bool (*is_needed)(const struct Program *program);
+  enum FunctionGroup group;                         /* where its field stands, which has its name */
+  bool (*is_needed)(const struct Program *program); /* by a system; NULL where each does */
+  /* Builds it, where it has one routine; NULL for the others. */
   struct Routine *(*build)(const struct Program *program, struct Values *values);
 };
 
 extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
+
+/* Of those that are not of one routine: where the program has what they consist of. */
+bool has_function(const struct Program *program, enum FunctionName name);
 
 /* A routine that computes nodes as its targets. */
 struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count);

@@ -90,8 +90,7 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   program->blocks = looped_blocks_of(expressions->equations);
   struct Values *values = values_create(expressions->model->graph, program->prepared, expressions->equations->count);
   for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
-    if (generated_functions[i].is_needed == NULL || generated_functions[i].is_needed(program))
-      program->routines[i] = generated_functions[i].build(program, values);
+    if (has_function(program, i)) program->routines[i] = generated_functions[i].build(program, values);
   create_results(program, values);
   create_series(program, values);
   choose_form(program, form);

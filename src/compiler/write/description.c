@@ -107,7 +107,7 @@ static void write_fixed(FILE *file, const struct Program *program) {
 static void write_constraint_names(FILE *file, const struct Program *program) {
   const struct VariableList *constraints = &program->model->constraints;
   if (constraints->count == 0) return;
-  if (program->routines[FUNCTION_START_POSITIONS] != NULL) write_fixed(file, program);
+  if (has_function(program, FUNCTION_START_POSITIONS)) write_fixed(file, program);
   if (has_guides(program->model)) guides_write(file, program->model);
   fputs("static const char *const constraint_names[] = {", file);
   for (size_t i = 0; i < constraints->count; i++) {
@@ -117,27 +117,29 @@ static void write_constraint_names(FILE *file, const struct Program *program) {
   fputs("};\n\n", file);
 }
 
-/* The functions first .. end - 1 of one routine, as far as the system has them. */
-static void write_fields(FILE *file, const struct Program *program, enum FunctionName first, enum FunctionName end) {
-  for (enum FunctionName i = first; i < end; i++) {
-    const char *name = generated_functions[i].name;
-    if (program->routines[i] != NULL) fprintf(file, "    .%s = %s,\n", name, name);
+void write_fields(FILE *file, const struct Program *program, enum FunctionGroup first, enum FunctionGroup last) {
+  static const char *const groups[] = {
+      [IN_LAGRANGIAN] = "",        [IN_RESULTS] = "results.",         [IN_TAYLOR] = "taylor.",
+      [IN_IMPLICIT] = "implicit.", [IN_CONSTRAINTS] = "constraints.", [IN_SWITCHES] = ""};
+  for (enum FunctionName i = 0; i < FIELD_COUNT; i++) {
+    const struct GeneratedFunction *function = &generated_functions[i];
+    if (function->group >= first && function->group <= last && has_function(program, i))
+      fprintf(file, "    .%s%s = %s,\n", groups[function->group], function->name, function->name);
   }
 }
 
 static void write_constraints(FILE *file, const struct Program *program) {
-  if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
-    fprintf(file,
-            "    .constraint_count = %zu,\n    .constraints = constraint_names,\n    .projection = &projection,\n",
-            program->model->constraints.count);
-  write_fields(file, program, FUNCTION_ACCELERATIONS, FUNCTION_START_POSITIONS);
+  if (!has_function(program, FUNCTION_ACCELERATIONS)) return;
+  fprintf(file,
+          "    .constraints.count = %zu,\n    .constraints.names = constraint_names,\n"
+          "    .constraints.projection = &projection,\n",
+          program->model->constraints.count);
   if (has_guides(program->model))
-    fputs("    .constraint_inputs = constraint_inputs,\n    .guides = guides,\n"
-          "    .guide_count = sizeof guides / sizeof *guides,\n",
+    fputs("    .constraints.inputs = constraint_inputs,\n    .constraints.guides = guides,\n"
+          "    .constraints.guide_count = sizeof guides / sizeof *guides,\n",
           file);
-  if (program->routines[FUNCTION_START_POSITIONS] != NULL)
-    fputs("    .coordinate_is_fixed = coordinate_is_fixed,\n", file);
-  write_fields(file, program, FUNCTION_START_POSITIONS, LAGRANGIAN_ROUTINES);
+  if (has_function(program, FUNCTION_START_POSITIONS))
+    fputs("    .constraints.coordinate_is_fixed = coordinate_is_fixed,\n", file);
 }
 
 static void write_counts(FILE *file, const struct Program *program, size_t work_count) {
@@ -148,33 +150,30 @@ static void write_counts(FILE *file, const struct Program *program, size_t work_
   fprintf(file, "    .parameter_count = %zu,\n    .prepared_count = %zu,\n    .variable_count = %zu,\n",
           program->model->parameters.count + program->model->switches.mode_count, program->prepared->count + scratch,
           interface->count);
-  fprintf(file, "    .result_count = %zu,\n    .work_count = %zu,\n", interface->result_count, work_count);
+  fprintf(file, "    .work_count = %zu,\n", work_count);
 }
 
-static void write_functions(FILE *file, const struct Program *program) {
+static void write_tables(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->series, *output_series = program->output_series;
-  write_fields(file, program, FUNCTION_PREPARE, FUNCTION_JACOBIAN);
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  const char *lu = program->lu;
   if (program->interface->result_count > 0)
-    fputs("    .result_uses_acceleration = result_uses_acceleration,\n    .result = result,\n"
-          "    .result_along = result_along,\n",
-          file);
-  if (series != NULL)
-    fprintf(file, "    .series_rows = %zu,\n    .start = start,\n    .series = series,\n", series->row_count);
-  if (series != NULL && series->limit.count > 0) fputs("    .limit = limit,\n", file);
-  if (output_series != NULL)
-    fprintf(file, "    .output_series_rows = %zu,\n    .output_series = output_series,\n", output_series->row_count);
-  write_fields(file, program, FUNCTION_JACOBIAN, FUNCTION_LINEAR);
-  if (program->expressions->jacobian != NULL)
-    fprintf(file, "    .jacobian_pattern = {%zu, jacobian_start, jacobian_row},\n",
-            program->expressions->jacobian->count);
-  write_fields(file, program, FUNCTION_LINEAR, FUNCTION_ACCELERATIONS);
+    fprintf(file, "    .results.count = %zu,\n    .results.uses_acceleration = result_uses_acceleration,\n",
+            program->interface->result_count);
+  if (series != NULL) fprintf(file, "    .taylor.rows = %zu,\n", series->row_count);
+  if (output_series != NULL) fprintf(file, "    .taylor.output_rows = %zu,\n", output_series->row_count);
+  if (jacobian != NULL)
+    fprintf(file, "    .implicit.pattern = {%zu, jacobian_start, jacobian_row},\n", jacobian->count);
+  if (lu != NULL) fprintf(file, "    .implicit.lu = &%s,\n", lu);
+  if (lu != NULL && jacobian->factors != NULL)
+    fputs("    .implicit.lu_pattern = {lu_place, lu_start, lu_column},\n", file);
   write_constraints(file, program);
-  if (program->routines[FUNCTION_INDICATORS] != NULL)
-    fputs("    .switches = &switches,\n    .switching = &switching,\n", file);
+  if (program->equations->switching != NULL) fputs("    .switches = &switches,\n    .switching = &switching,\n", file);
+  write_fields(file, program, IN_LAGRANGIAN, IN_CONSTRAINTS);
 }
 
 static void write_operations(FILE *file, const struct OperationCounts *counts) {
-  fprintf(file, "    .operations = {%.0f, %.0f, %.0f, %.0f, %.0f, %.0f},\n", counts->derivatives, counts->jacobian,
+  fprintf(file, "    .steps.operations = {%.0f, %.0f, %.0f, %.0f, %.0f, %.0f},\n", counts->derivatives, counts->jacobian,
           counts->series, counts->recurrences, counts->factor, counts->solve);
 }
 
@@ -189,21 +188,20 @@ static void write_lagrangian(FILE *file, const struct Program *program, size_t w
   fputs("    .variables = variables,\n", file);
   if (has_arrays) fputs("    .arrays = arrays,\n    .array_count = sizeof arrays / sizeof *arrays,\n", file);
   if (solver != NULL)
-    fprintf(file, "    .nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
+    fprintf(file,
+            "    .steps.nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
             solver);
-  fputs("    .tolerance = ", file);
+  fputs("    .steps.tolerance = ", file);
   write_c_number(file, interface_tolerance(program->model));
-  fputs(",\n    .max_step = ", file);
+  fputs(",\n    .steps.max_step = ", file);
   write_c_number(file, isnan(program->model->solver.max_step) ? INFINITY : program->model->solver.max_step);
-  fprintf(file, ",\n    .max_steps = %ld,\n    .depends_on_time = %s,\n    .output_derivative_order = %d,\n",
+  fprintf(file,
+          ",\n    .steps.max_steps = %ld,\n    .steps.depends_on_time = %s,\n    .output_derivative_order = %d,\n",
           interface_max_steps(program->model), interface->depends_on_time ? "true" : "false",
           interface->output_derivative_order);
-  if (lu != NULL) fprintf(file, "    .lu = &%s,\n", lu);
-  if (lu != NULL && program->expressions->jacobian->factors != NULL)
-    fputs("    .lu_pattern = {lu_place, lu_start, lu_column},\n", file);
-  write_functions(file, program);
+  write_tables(file, program);
   if (solver != NULL)
-    fprintf(file, "    .work = {%.0f, %.0f, %.0f},\n", program->work.evaluation, program->work.step,
+    fprintf(file, "    .steps.work = {%.0f, %.0f, %.0f},\n", program->work.evaluation, program->work.step,
             program->work.event);
   if (program->equations->method != NULL && program->equations->method->hands_over)
     write_operations(file, &program->operations);

@@ -1,6 +1,7 @@
 #include "write/switching.h"
 
 #include "write/c_text.h"
+#include "write/description.h"
 #include "write/statements.h"
 
 static int mode_index(const struct Program *program, Node mode) {
@@ -106,16 +107,14 @@ void switching_write(FILE *file, const struct Program *program) {
   fprintf(file,
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
-          "    .assignment_count = %zu,\n    .energy_count = %zu,\n    .indicators = indicators,\n"
-          "    .roundings = roundings,\n"
-          "    .values = switching_values,\n",
+          "    .assignment_count = %zu,\n    .energy_count = %zu,\n",
           switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
           switches->event_count, switching->assignment_count, switching->energy_count);
+  write_fields(file, program, IN_SWITCHES, IN_SWITCHES);
   if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
   if (program->watched_series != NULL)
     fprintf(file,
-            "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n"
-            "    .watched_limit = watched_limit,\n",
+            "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n",
             program->watched_series->row_count, program->watched_series->acceleration_row,
             program->watched_series->acceleration_count);
   if (switching->friction_varies) fputs("    .friction_varies = true,\n", file);

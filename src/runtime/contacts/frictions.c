@@ -110,12 +110,12 @@ static size_t count_redundant(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
-  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  instance->singular = lagrangian.constraints.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0) return SIZE_MAX;
-  const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraint_count;
-  const double *slope = pivot + lagrangian.constraint_count;
+  const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
+  const double *slope = pivot + lagrangian.constraints.count;
   size_t count = 0;
-  for (size_t j = 0; j < lagrangian.constraint_count; j++) count += isinf(pivot[j]) && slope[j] > 0.0;
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && slope[j] > 0.0;
   return count;
 }
 
@@ -142,7 +142,7 @@ static bool tell_frictions(struct Settlement *settlement, bool *again) {
     const struct FrictionFacts *facts = &switches->frictions[i];
     double mode = mode_of(settlement, facts->mode);
     double velocity = settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
-    bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraint_count > 1;
+    bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
     if (may_rest && !find_held(settlement, facts, &held)) return false;
     if (held) mode = 0.0;
     if (mode == mode_of(settlement, facts->told)) continue;

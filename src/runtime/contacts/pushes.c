@@ -43,7 +43,7 @@ static bool respond_to_pushes(struct Settlement *settlement, struct Pushes *push
   for (size_t row = 0; row < pushes->count; row++) {
     size_t place = n + constraint_of(pushes, settlement->switches, row);
     impulse[place] = 1.0;
-    instance->singular = lagrangian.respond(&point, impulse, response);
+    instance->singular = lagrangian.constraints.respond(&point, impulse, response);
     impulse[place] = 0.0;
     if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
     memcpy(pushes->velocities + row * n, response, n * sizeof *response);
@@ -64,7 +64,7 @@ static void find_coefficients(struct Settlement *settlement, struct Pushes *push
   size_t contacts = pushes->contact_count, n = lagrangian.coordinate_count;
   for (size_t i = 0; i <= contacts && pushes->friction_count > 0; i++) {
     if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 1.0;
-    settlement->switches->values(&point, force, value);
+    settlement->switches->switching_values(&point, force, value);
     if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 0.0;
     for (size_t f = 0; f < pushes->friction_count; f++) {
       double sliding = value[friction_place(settlement->switches, pushes->member[contacts + f], FRICTION_FORCE)];
@@ -87,7 +87,7 @@ static void find_rates(const struct Settlement *settlement, struct Pushes *pushe
 
 bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
   const struct SwitchTable *switches = settlement->switches;
-  size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraint_count;
+  size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraints.count;
   size_t values = settlement_value_count(switches), contacts = 0, frictions = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(settlement, i) ? 1 : 0;
   for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(settlement, i) ? 1 : 0;

@@ -70,28 +70,28 @@ enum Status evaluate_situation(struct Instance *instance, double *derivative) {
 }
 
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
-  if (lagrangian.accelerations == NULL) return derivative + lagrangian.coordinate_count;
-  instance->singular = lagrangian.accelerations(point, instance->acceleration);
+  if (lagrangian.constraints.accelerations == NULL) return derivative + lagrangian.coordinate_count;
+  instance->singular = lagrangian.constraints.accelerations(point, instance->acceleration);
   return instance->singular == 0 ? instance->acceleration : NULL;
 }
 
 const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
                                            const struct Seed *seed, const double *derivative_along) {
-  if (lagrangian.accelerations_along == NULL) return derivative_along + lagrangian.coordinate_count;
-  double *along = instance->acceleration + lagrangian.coordinate_count + lagrangian.constraint_count;
-  instance->singular = lagrangian.accelerations_along(point, seed, along);
+  if (lagrangian.constraints.accelerations_along == NULL) return derivative_along + lagrangian.coordinate_count;
+  double *along = instance->acceleration + lagrangian.coordinate_count + lagrangian.constraints.count;
+  instance->singular = lagrangian.constraints.accelerations_along(point, seed, along);
   return instance->singular == 0 ? along : NULL;
 }
 
 /* The result at a point whose prepared values are up to date; false where there are no accelerations that it needs. */
 static bool evaluate_result_at(struct Instance *instance, const struct Point *point, size_t result, double *value) {
   const double *acceleration = NULL;
-  if (lagrangian.result_uses_acceleration[result]) {
+  if (lagrangian.results.uses_acceleration[result]) {
     if (!evaluate_derivatives(instance, point, instance->work)) return false;
     acceleration = evaluate_accelerations(instance, point, instance->work);
     if (acceleration == NULL) return false;
   }
-  *value = lagrangian.result(point, acceleration, result);
+  *value = lagrangian.results.result(point, acceleration, result);
   return true;
 }
 
@@ -153,7 +153,8 @@ double evaluate_along(const struct ScalarVariable *variable, const struct Point 
   case VARIABLE_TIME: return seed->time;
   case VARIABLE_STATE: return seed->state[variable->index];
   case VARIABLE_DERIVATIVE: return derivative_along[variable->index];
-  case VARIABLE_RESULT: return lagrangian.result_along(point, seed, acceleration, acceleration_along, variable->index);
+  case VARIABLE_RESULT:
+    return lagrangian.results.result_along(point, seed, acceleration, acceleration_along, variable->index);
   default: return NAN;
   }
 }

@@ -15,7 +15,7 @@ static inline bool are_finite(const double *value, size_t count) {
 
 /* The size of a state, for comparisons: at least its nominal value. */
 static inline double scale_of(const double *state, size_t i) {
-  return fmax(fabs(state[i]), lagrangian.nominal[i]);
+  return fmax(fabs(state[i]), lagrangian.steps.nominal[i]);
 }
 
 /* The largest among the coordinates, or the velocities, where first is the first of them. */

@@ -13,8 +13,8 @@ static bool has_polynomial(struct Instance *instance, size_t input) {
 }
 
 void guides_begin_step(struct Instance *instance) {
-  for (size_t i = 0; i < lagrangian.guide_count; i++) {
-    const struct Guide *guide = &lagrangian.guides[i];
+  for (size_t i = 0; i < lagrangian.constraints.guide_count; i++) {
+    const struct Guide *guide = &lagrangian.constraints.guides[i];
     bool is_set = has_polynomial(instance, guide->input);
     for (size_t order = 1; order <= INPUT_ORDER && !is_set; order++) {
       size_t rate = order < guide->rates ? order : guide->rates;

@@ -30,7 +30,7 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
   struct Point point = solver_point(instance, time, state);
   instance->situation->statistics[STATISTIC_JACOBIANS]++;
-  instance->singular = lagrangian.jacobian(&point, values);
+  instance->singular = lagrangian.implicit.jacobian(&point, values);
   return instance->singular == 0;
 }
 
@@ -45,8 +45,8 @@ bool solver_take_state(struct Instance *instance, double time) {
 /* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
   static const char problem[] = "a constraint cannot be kept there";
-  if (lagrangian.projection == NULL) return NULL;
-  double moved = lagrangian.projection->project(instance, time, state);
+  if (lagrangian.constraints.projection == NULL) return NULL;
+  double moved = lagrangian.constraints.projection->project(instance, time, state);
   return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
 }
 

@@ -10,7 +10,7 @@
  */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
-/* The Jacobian there, in the order of lagrangian.jacobian_pattern; counts it. False where M is singular. */
+/* The Jacobian there, in the order of lagrangian.implicit.pattern; counts it. False where M is singular. */
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values);
 
 /* The point for generated functions at a time and state that the solver chose. */

@@ -101,7 +101,7 @@ void branches_guess(struct Instance *instance) {
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
-    if (switches->feels_forces && lagrangian.accelerations(&point, instance->acceleration) != 0) return;
+    if (switches->feels_forces && lagrangian.constraints.accelerations(&point, instance->acceleration) != 0) return;
     switches->indicators(&point, instance->acceleration, value);
     bool same = true;
     for (size_t i = 0; i < switches->branch_count; i++) {

@@ -14,9 +14,9 @@ const char constraints_not_kept[] = "the constraints cannot be kept at an event"
 const char *continuity_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
-  if (lagrangian.projection == NULL || !can_matter || settlement->occasion == AT_START) return NULL;
+  if (lagrangian.constraints.projection == NULL || !can_matter || settlement->occasion == AT_START) return NULL;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return constraints_not_kept;
-  double moved = lagrangian.projection->project(settlement->instance, settlement->time, settlement->state);
+  double moved = lagrangian.constraints.projection->project(settlement->instance, settlement->time, settlement->state);
   return isfinite(moved) ? NULL : constraints_not_kept;
 }
 
@@ -76,11 +76,11 @@ static const char *check_energy(const struct Settlement *settlement) {
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   bool may_turn = (settlement->switched != NULL || settlement->set_mode) && !settlement->jumped;
-  if (lagrangian.projection == NULL || !(may_turn || settlement->moved)) return NULL;
+  if (lagrangian.constraints.projection == NULL || !(may_turn || settlement->moved)) return NULL;
   if (evaluate_prepare(instance) != STATUS_DONE) return constraints_not_kept;
   bool starts = settlement->occasion == AT_START;
-  double moved = starts ? lagrangian.projection->drift(instance, settlement->time)
-                        : lagrangian.projection->project(instance, settlement->time, settlement->state);
+  double moved = starts ? lagrangian.constraints.projection->drift(instance, settlement->time)
+                        : lagrangian.constraints.projection->project(instance, settlement->time, settlement->state);
   if (moved <= continuity_allowed_share(settlement)) return NULL;
   enum Status status = starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
   if (settlement->set_mode || settlement->moved)

@@ -34,9 +34,9 @@ bool exchange_come_back(struct Instance *instance, struct Point *point) {
   memcpy(state, point->state, lagrangian.state_count * sizeof *state);
   point->state = state;
   /* There are none here, and none are needed where places and times end the pieces. */
-  memset(settlement.acceleration, 0, (n + lagrangian.constraint_count) * sizeof *settlement.acceleration);
+  memset(settlement.acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement.acceleration);
   for (int i = 0; i < APPROACH_LIMIT; i++) {
-    settlement.switches->values(point, settlement.acceleration, settlement.value);
+    settlement.switches->switching_values(point, settlement.acceleration, settlement.value);
     double back = time_beyond(&settlement);
     if (!(back > 0.0)) return i > 0 && back == 0.0;
     back += surplus * fmax(back, fabs(point->time));

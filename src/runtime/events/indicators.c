@@ -35,7 +35,7 @@ static bool feels_forces(const struct Instance *instance) {
 bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator) {
   struct Point point = solver_point(instance, time, state);
   if (feels_forces(instance)) {
-    instance->singular = lagrangian.accelerations(&point, instance->acceleration);
+    instance->singular = lagrangian.constraints.accelerations(&point, instance->acceleration);
     if (instance->singular != 0) return false;
   }
   lagrangian.switches->indicators(&point, instance->acceleration, indicator);
@@ -58,7 +58,7 @@ double switching_sign(const struct Instance *instance, size_t indicator) {
 double switching_round(const double *state, bool otherwise, double *rounded) {
   double distance = otherwise ? FURTHER : 1.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double size = fmax(fabs(state[i]), least_share * lagrangian.nominal[i]);
+    double size = fmax(fabs(state[i]), least_share * lagrangian.steps.nominal[i]);
     double change = distance * (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
     rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }

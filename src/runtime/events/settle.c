@@ -86,7 +86,7 @@ static const char *begin_settlement(struct Settlement *settlement) {
 
 /* Velocities that have jumped keep the constraints. */
 static const char *push(struct Settlement *settlement) {
-  bool has_to_keep = settlement->jumped && lagrangian.projection != NULL;
+  bool has_to_keep = settlement->jumped && lagrangian.constraints.projection != NULL;
   return has_to_keep && !settlement_push(settlement) ? constraints_not_kept : NULL;
 }
 

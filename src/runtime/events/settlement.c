@@ -14,12 +14,12 @@ size_t settlement_value_count(const struct SwitchTable *switches) {
 }
 
 static size_t rows_of_matrix(void) {
-  return lagrangian.coordinate_count + lagrangian.constraint_count;
+  return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
 size_t settlement_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraint_count;
+  size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraints.count;
   return switching_search_count() + 4 * settlement_value_count(switches) + switches->event_count +
          2 * indicator_count(switches) + 2 * switches->contact_count + switches->friction_count +
          switches->energy_count + rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
@@ -59,17 +59,18 @@ struct Settlement settlement_at(struct Instance *instance, double time, double *
 
 /* As the last evaluation left them. */
 static const double *accelerations_of(const struct Settlement *settlement) {
-  return lagrangian.accelerations != NULL ? settlement->acceleration
+  return lagrangian.constraints.accelerations != NULL ? settlement->acceleration
                                           : settlement->derivative + lagrangian.coordinate_count;
 }
 
 bool settlement_values(struct Settlement *settlement, const double *state, double *value) {
   struct Instance *instance = settlement->instance;
   struct Point point = solver_point(instance, settlement->time, state);
-  if (lagrangian.accelerations != NULL) instance->singular = lagrangian.accelerations(&point, settlement->acceleration);
+  if (lagrangian.constraints.accelerations != NULL)
+    instance->singular = lagrangian.constraints.accelerations(&point, settlement->acceleration);
   else instance->singular = lagrangian.derivatives(&point, settlement->derivative);
   if (instance->singular != 0) return false;
-  settlement->switches->values(&point, accelerations_of(settlement), value);
+  settlement->switches->switching_values(&point, accelerations_of(settlement), value);
   return true;
 }
 
@@ -160,7 +161,7 @@ bool settlement_push(struct Settlement *settlement) {
   double *velocity = settlement->state + lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
-  instance->singular = lagrangian.correct_velocities(&point, settlement->correction);
+  instance->singular = lagrangian.constraints.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += settlement->correction[i];
   settlement->changed = true;
@@ -173,7 +174,7 @@ bool settlement_move(struct Settlement *settlement) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
   struct Seed seed = {.state = settlement->rounded};
-  instance->singular = lagrangian.correct_positions(&point, &seed, settlement->correction);
+  instance->singular = lagrangian.constraints.correct_positions(&point, &seed, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) settlement->state[i] += settlement->correction[i];
   settlement->changed = true;

@@ -45,7 +45,8 @@ static bool sample_window(const struct Window *window) {
     if (count == 0) continue;
     struct Point point = solver_point(window->instance, time, state);
     double *acceleration = window->accelerations + (size_t)node * count;
-    if (lagrangian.accelerations == NULL || lagrangian.accelerations(&point, acceleration) != 0) return false;
+    if (lagrangian.constraints.accelerations == NULL || lagrangian.constraints.accelerations(&point, acceleration) != 0)
+      return false;
   }
   return true;
 }
@@ -69,7 +70,7 @@ static double sure_half(const struct Window *window) {
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
   bool is_resolved = sample_window(window);
   for (size_t i = 0; i < states && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->states, states, i, lagrangian.nominal[i], window->x[i]);
+    is_resolved = expand_sampled(window, window->states, states, i, lagrangian.steps.nominal[i], window->x[i]);
   for (size_t i = 0; i < forces && is_resolved; i++)
     is_resolved = expand_sampled(window, window->accelerations, forces, i, 0.0,
                                  window->work[switches->watched_acceleration_row + i]);

@@ -52,7 +52,7 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
 
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count, const char *function) {
   if (!check_states(instance, nominal, count, function)) return STATUS_ERROR;
-  if (count > 0) memcpy(nominal, lagrangian.nominal, count * sizeof *nominal);
+  if (count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
   return STATUS_DONE;
 }
 
@@ -72,8 +72,8 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 }
 
 static bool has_drifted(struct Instance *instance) {
-  if (lagrangian.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
-  return lagrangian.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
+  if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  return lagrangian.constraints.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
 }
 
 bool exchange_needs_event(struct Instance *instance) {
@@ -94,10 +94,11 @@ static enum Status settle_modes(struct Instance *instance, bool *changed) {
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
   enum Status status = settle_modes(instance, states_changed);
-  if (status != STATUS_DONE || lagrangian.projection == NULL || instance->kind == KIND_CO_SIMULATION) return status;
+  if (status != STATUS_DONE || lagrangian.constraints.projection == NULL || instance->kind == KIND_CO_SIMULATION)
+    return status;
   status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  double moved = lagrangian.projection->project(instance, instance->situation->time, instance->state);
+  double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, instance->state);
   if (!isfinite(moved))
     return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
   *states_changed |= moved > 0.0;

@@ -20,8 +20,8 @@ static size_t larger(size_t a, size_t b) {
 /* False after logging where there is no memory. Free expansion->state. */
 static bool expansion_create(struct Instance *instance, struct Expansion *expansion) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
-  size_t work = larger(lagrangian.series_rows, lagrangian.output_series_rows);
-  size_t rows = states + inputs + lagrangian.result_count + work;
+  size_t work = larger(lagrangian.taylor.rows, lagrangian.taylor.output_rows);
+  size_t rows = states + inputs + lagrangian.results.count + work;
   size_t matrix = lagrangian.linear == NULL ? 0 : states * (states + inputs + 1);
   expansion->state = instance->memory.allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
   if (expansion->state == NULL) {
@@ -30,7 +30,7 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
   }
   expansion->input = expansion->state + states;
   expansion->output = expansion->input + inputs;
-  expansion->work = expansion->output + lagrangian.result_count;
+  expansion->work = expansion->output + lagrangian.results.count;
   expansion->matrix = (double *)(expansion->work + work);
   return true;
 }
@@ -54,18 +54,18 @@ static enum Status fill_expansion(struct Instance *instance, int order, const st
   const Series *input = (const Series *)expansion->input;
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
   if (lagrangian.linear != NULL) expand_linear(instance, order + 1, expansion);
-  if (lagrangian.series != NULL) {
-    instance->singular = lagrangian.start(&point, instance->work, expansion->work);
+  if (lagrangian.taylor.series != NULL) {
+    instance->singular = lagrangian.taylor.start(&point, instance->work, expansion->work);
     if (instance->singular != 0) return discard_for_singularity(instance);
     for (size_t i = 0; i < lagrangian.state_count; i++) {
       expansion->state[i][0] = instance->state[i];
       expansion->state[i][1] = instance->work[i];
     }
-    lagrangian.series(&point, order + 1, input, expansion->state, expansion->work);
+    lagrangian.taylor.series(&point, order + 1, input, expansion->state, expansion->work);
   }
-  if (lagrangian.output_series != NULL)
-    lagrangian.output_series(&point, order, input, (const Series *)expansion->state, expansion->work,
-                             expansion->output);
+  if (lagrangian.taylor.output_series != NULL)
+    lagrangian.taylor.output_series(&point, order, input, (const Series *)expansion->state, expansion->work,
+                                    expansion->output);
   return STATUS_DONE;
 }
 

@@ -17,7 +17,7 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
   situation->stop_time_defined = experiment->has_stop_time ? 1 : 0;
   situation->time = situation->start_time = start;
   situation->stop_time = experiment->has_stop_time ? stop : 0.0;
-  situation->tolerance = experiment->has_tolerance ? tolerance : lagrangian.tolerance;
+  situation->tolerance = experiment->has_tolerance ? tolerance : lagrangian.steps.tolerance;
   return STATUS_DONE;
 }
 

@@ -32,7 +32,7 @@ void instance_reset(struct Instance *instance) {
   memset(instance->situation, 0, situation_size());
   instance->situation->mode = MODE_INSTANTIATED;
   instance->situation->kind = (int32_t)instance->kind;
-  instance->situation->tolerance = lagrangian.tolerance;
+  instance->situation->tolerance = lagrangian.steps.tolerance;
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (variable->kind == VARIABLE_STATE) instance->state[variable->index] = variable->start;
@@ -49,7 +49,7 @@ void instance_reset(struct Instance *instance) {
 
 /* Systems without constraints find them among the derivatives of the state. */
 static size_t acceleration_count(void) {
-  return lagrangian.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraint_count;
+  return lagrangian.constraints.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
 static size_t switching_work_count(void) {
@@ -91,7 +91,7 @@ static void free_shown(const struct Instance *instance) {
 
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
-  bool shows = lagrangian.projection != NULL || lagrangian.switching != NULL;
+  bool shows = lagrangian.constraints.projection != NULL || lagrangian.switching != NULL;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
   struct Situation *situation = memory->allocate(1, situation_size());
   if (shows) {

@@ -31,8 +31,8 @@ extern const struct Projection projection;
 
 /* Numbers of workspace that an instance needs for it. */
 static inline size_t projection_work_count(void) {
-  if (lagrangian.projection == NULL) return 0;
-  return lagrangian.coordinate_count + 4 * lagrangian.constraint_count + 2 * lagrangian.state_count;
+  if (lagrangian.constraints.projection == NULL) return 0;
+  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 2 * lagrangian.state_count;
 }
 
 #endif

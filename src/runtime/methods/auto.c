@@ -158,18 +158,18 @@ static bool auto_interpolate(struct Instance *instance, double time, double *sta
 }
 
 /*
- * Operations of a step of the series, see lagrangian.operations. The constants here and below were fitted to measured
+ * Operations of a step of the series, see lagrangian.steps.operations. The constants here and below were fitted to measured
  * times, 0.3 ns an operation, of systems with one to ten coordinates.
  */
 static double work_of_taylor(int64_t order) {
-  const struct OperationCounts *count = &lagrangian.operations;
+  const struct OperationCounts *count = &lagrangian.steps.operations;
   double p = (double)order, states = (double)lagrangian.state_count;
   return 380.0 + 4.0 * count->derivatives + p * (0.5 * count->series + 1.5 * states + 0.45 * p * count->recurrences);
 }
 
 /* Operations of Radau IIA for so many evaluations of the equations, and so many Jacobians with their factors. */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
-  const struct OperationCounts *count = &lagrangian.operations;
+  const struct OperationCounts *count = &lagrangian.steps.operations;
   double s = (double)stages, states = (double)lagrangian.state_count;
   double systems = 2.0 + 4.0 * (s - 1.0); /* a real one, and complex ones of four times its operations */
   double evaluation = 250.0 + count->derivatives + s * (20.0 + 5.0 * states) + systems / s * count->solve;

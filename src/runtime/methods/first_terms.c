@@ -4,8 +4,8 @@
 #include "evaluation/services.h"
 
 size_t first_terms_rows(void) {
-  if (lagrangian.limit == NULL) return 0;
-  return lagrangian.state_count + lagrangian.input_count + lagrangian.series_rows;
+  if (lagrangian.taylor.limit == NULL) return 0;
+  return lagrangian.state_count + lagrangian.input_count + lagrangian.taylor.rows;
 }
 
 /*
@@ -14,19 +14,19 @@ size_t first_terms_rows(void) {
  */
 double first_terms_step(struct Instance *instance, Series *rows, double time, const double *state, double bound) {
   enum { ORDER = 3 };
-  if (lagrangian.limit == NULL) return bound;
+  if (lagrangian.taylor.limit == NULL) return bound;
   size_t states = lagrangian.state_count;
   Series *x = rows, *input = x + states, *work = input + lagrangian.input_count;
   double *derivative = instance->work + lagrangian.input_count;
   struct Point point = solver_point(instance, time, state);
-  if (lagrangian.start(&point, derivative, work) != 0) return bound;
+  if (lagrangian.taylor.start(&point, derivative, work) != 0) return bound;
   for (size_t i = 0; i < states; i++) {
     x[i][0] = state[i];
     x[i][1] = derivative[i];
   }
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, time, input[i]);
-  lagrangian.series(&point, ORDER, (const Series *)input, x, work);
+  lagrangian.taylor.series(&point, ORDER, (const Series *)input, x, work);
   struct SeriesLimit limit = {.order = ORDER - 1, .step = bound, .crosses = true};
-  lagrangian.limit(&point, (const Series *)input, (const Series *)x, (const Series *)work, &limit);
+  lagrangian.taylor.limit(&point, (const Series *)input, (const Series *)x, (const Series *)work, &limit);
   return limit.step;
 }

@@ -37,9 +37,9 @@ struct Work {
 static struct Work work_of(const struct Instance *instance) {
   struct Work work = {.change = instance->projection_work};
   work.lack = work.change + lagrangian.coordinate_count;
-  work.pivot = work.lack + lagrangian.constraint_count;
-  work.slope = work.pivot + lagrangian.constraint_count;
-  work.moved = work.slope + lagrangian.constraint_count;
+  work.pivot = work.lack + lagrangian.constraints.count;
+  work.slope = work.pivot + lagrangian.constraints.count;
+  work.moved = work.slope + lagrangian.constraints.count;
   work.before = work.moved + lagrangian.state_count;
   work.first_slope = work.before + lagrangian.state_count;
   return work;
@@ -64,13 +64,13 @@ static bool evaluate_lack(struct Instance *instance, double time, const double *
   struct Point point = solver_point(instance, time, state);
   struct Seed seed = {.state = work.moved};
   switch (target) {
-  case POSITIONS: instance->singular = lagrangian.correct_positions(&point, &seed, work.change); break;
-  case VELOCITIES: instance->singular = lagrangian.correct_velocities(&point, work.change); break;
-  case START_POSITIONS: instance->singular = lagrangian.start_positions(&point, &seed, work.change); break;
-  case START_VELOCITIES: instance->singular = lagrangian.start_velocities(&point, work.change); break;
+  case POSITIONS: instance->singular = lagrangian.constraints.correct_positions(&point, &seed, work.change); break;
+  case VELOCITIES: instance->singular = lagrangian.constraints.correct_velocities(&point, work.change); break;
+  case START_POSITIONS: instance->singular = lagrangian.constraints.start_positions(&point, &seed, work.change); break;
+  case START_VELOCITIES: instance->singular = lagrangian.constraints.start_velocities(&point, work.change); break;
   }
   return instance->singular == 0 && are_finite(work.change, lagrangian.coordinate_count) &&
-         are_finite(work.lack, lagrangian.constraint_count);
+         are_finite(work.lack, lagrangian.constraints.count);
 }
 
 static void move_positions(const struct Work *work, double *state, double share) {
@@ -92,13 +92,13 @@ static double move_velocities(struct Instance *instance, double time, double *st
 /* Whether a constraint that follows from others holds with them: one that only did so at the start may not any more. */
 static bool others_hold(const struct Work *work, const double *state, size_t first) {
   double scale = largest_scale(state, first);
-  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && !(fabs(work->lack[j]) <= redundant_lack * work->slope[j] * scale)) return false;
   return true;
 }
 
 static bool has_redundant(const struct Work *work) {
-  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j])) return true;
   return false;
 }
@@ -140,7 +140,7 @@ static double drift(struct Instance *instance, double time) {
 /* The first constraint that has no finite value. */
 static size_t find_without_value(const struct Work *work) {
   size_t j = 0;
-  while (j + 1 < lagrangian.constraint_count && isfinite(work->lack[j])) j++;
+  while (j + 1 < lagrangian.constraints.count && isfinite(work->lack[j])) j++;
   return j;
 }
 
@@ -152,9 +152,9 @@ static double way_of(const struct Work *work, size_t constraint, double scale) {
 
 /* The constraint that lacks most; constraint_count where none lacks anything. */
 static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
-  size_t worst = lagrangian.constraint_count;
+  size_t worst = lagrangian.constraints.count;
   double scale = largest_scale(state, first), most = fulfilled;
-  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     double way = way_of(work, j, scale);
     if (way > most) {
       most = way;
@@ -216,12 +216,12 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 }
 
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
-  for (size_t j = 0; j < lagrangian.constraint_count; j++)
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* one of an open contact has no slope */
       log_message(
           instance, STATUS_DONE,
           "time %g: the constraint '%s' follows from the others; their forces are the least that carry the load",
-          instance->situation->time, lagrangian.constraints[j]);
+          instance->situation->time, lagrangian.constraints.names[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what, const char *function) {
@@ -230,7 +230,7 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return false;
   }
-  const char *name = lagrangian.constraints[constraint];
+  const char *name = lagrangian.constraints.names[constraint];
   if (!isfinite(work.lack[constraint]))
     log_error(instance, "%s: the constraint '%s' has no finite value at these start values; expected others", function,
               name);
@@ -252,14 +252,14 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   struct Work work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
   double *there = work.moved; /* which the velocities do not need */
-  if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraint_count;
-  memcpy(work.first_slope, work.slope, lagrangian.constraint_count * sizeof *work.slope);
+  if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
+  memcpy(work.first_slope, work.slope, lagrangian.constraints.count * sizeof *work.slope);
   memcpy(there, state, lagrangian.state_count * sizeof *state);
   for (size_t i = 0; i < n; i++) state[i] += (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, VELOCITIES);
   memcpy(state, there, lagrangian.state_count * sizeof *state);
-  if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraint_count;
-  while (found < lagrangian.constraint_count &&
+  if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraints.count;
+  while (found < lagrangian.constraints.count &&
          (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
     found++; /* one of an open contact has no slope anywhere */
   return found;
@@ -270,7 +270,7 @@ static bool refuse_vanishing(struct Instance *instance, size_t constraint, const
       instance,
       "%s: the constraint '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
       "motion; expected it without a square, a root or abs of the whole, or a start away from a singular position",
-      function, lagrangian.constraints[constraint]);
+      function, lagrangian.constraints.names[constraint]);
   return false;
 }
 
@@ -278,7 +278,7 @@ static bool refuse_vanishing(struct Instance *instance, size_t constraint, const
 static bool keep_fixed(struct Instance *instance, const double *before, const char *function) {
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < 2 * n; i++) {
-    if (!lagrangian.coordinate_is_fixed[i % n]) continue;
+    if (!lagrangian.constraints.coordinate_is_fixed[i % n]) continue;
     if (fabs(instance->state[i] - before[i]) > 1e-9 * scale_of(before, i)) {
       log_error(instance,
                 "%s: the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
@@ -294,18 +294,18 @@ static bool keep_fixed(struct Instance *instance, const double *before, const ch
 static bool make_consistent(struct Instance *instance, const char *function) {
   struct Work work = work_of(instance);
   double time = instance->situation->time;
-  bool keeps_fixed = lagrangian.coordinate_is_fixed != NULL;
+  bool keeps_fixed = lagrangian.constraints.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   size_t vanishing_one = find_vanishing(instance, time, instance->state);
-  if (vanishing_one < lagrangian.constraint_count) return refuse_vanishing(instance, vanishing_one, function);
-  if (lacking < lagrangian.constraint_count) {
+  if (vanishing_one < lagrangian.constraints.count) return refuse_vanishing(instance, vanishing_one, function);
+  if (lacking < lagrangian.constraints.count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
     evaluate_lack(instance, time, instance->state, POSITIONS);
     return refuse(instance, lacking, "coordinates", function);
   }
   lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
-  if (lacking < lagrangian.constraint_count) return refuse(instance, lacking, "velocities", function);
+  if (lacking < lagrangian.constraints.count) return refuse(instance, lacking, "velocities", function);
   log_redundant(instance, &work);
   if (keeps_fixed && !keep_fixed(instance, work.before, function)) return false;
   log_moves(instance, work.before, instance->situation->tolerance);
@@ -317,13 +317,14 @@ static bool has_jumped(struct Instance *instance) {
   struct Work work = work_of(instance);
   double time = instance->situation->time, scale = largest_scale(instance->state, 0);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (lagrangian.guide_count == 0 || !evaluate_lack(instance, time, instance->state, POSITIONS)) return false;
-  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
-    if (lagrangian.constraint_inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
+  if (lagrangian.constraints.guide_count == 0 || !evaluate_lack(instance, time, instance->state, POSITIONS))
+    return false;
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) {
+    if (lagrangian.constraints.inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
                 "time %g: the constraint '%s' is %g where 0 is expected: it depends on %s, and the coordinates cannot "
                 "follow a jump; expected inputs that move as their derivatives tell",
-                time, lagrangian.constraints[j], -work.lack[j], lagrangian.constraint_inputs[j]);
+                time, lagrangian.constraints.names[j], -work.lack[j], lagrangian.constraints.inputs[j]);
     return true;
   }
   return false;
@@ -336,7 +337,7 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
     log_message(instance, STATUS_DISCARD,
                 "time %g: after a parameter or an input was set, no %s near the present ones fulfil the constraint "
                 "'%s' with the others: it is %g where 0 is expected; expected values for which there are some",
-                time, what, lagrangian.constraints[constraint], -work_of(instance).lack[constraint]);
+                time, what, lagrangian.constraints.names[constraint], -work_of(instance).lack[constraint]);
 }
 
 static bool resume(struct Instance *instance) {
@@ -346,12 +347,13 @@ static bool resume(struct Instance *instance) {
   if (has_jumped(instance)) return false;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t lacking = approach_positions(instance, time, instance->state, POSITIONS);
-  if (lacking == lagrangian.constraint_count) {
+  if (lacking == lagrangian.constraints.count) {
     what = "velocities";
     lacking = approach_velocities(instance, time, instance->state, VELOCITIES);
   }
-  if (lacking == lagrangian.constraint_count) {
-    log_moves(instance, work.before, lagrangian.guide_count > 0 ? noted_move : instance->situation->tolerance);
+  if (lacking == lagrangian.constraints.count) {
+    log_moves(instance, work.before,
+              lagrangian.constraints.guide_count > 0 ? noted_move : instance->situation->tolerance);
     return true;
   }
   log_contradiction(instance, lacking, what);
@@ -365,13 +367,13 @@ static const char *weakest(struct Instance *instance, double time, const double 
   double least = INFINITY;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   if (!evaluate_lack(instance, time, state, POSITIONS)) return NULL;
-  for (size_t j = 0; j < lagrangian.constraint_count; j++) {
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     double hold = fabs(work.pivot[j]) / (work.slope[j] * work.slope[j]);
     if (!(hold < least)) continue;
     least = hold;
     found = j;
   }
-  return lagrangian.constraints[found];
+  return lagrangian.constraints.names[found];
 }
 
 const struct Projection projection = {

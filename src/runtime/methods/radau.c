@@ -317,7 +317,7 @@ static const char *begin(struct Instance *instance, struct Radau *radau, double 
   const char *problem = solver_project(instance, time, radau->state);
   if (problem != NULL) return problem;
   for (size_t k = 0; k < lagrangian.state_count; k++)
-    radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.nominal[k]);
+    radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.steps.nominal[k]);
   bool is_solvable = solver_derivatives(instance, time, radau->state, radau->first) &&
                      radau_systems_evaluate(instance, &radau->systems, time, radau->state);
   return is_solvable ? NULL : "the equations have no solution there";
@@ -334,7 +334,7 @@ static double trial_step(struct Instance *instance, struct Radau *radau, double 
     step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
     step = fmax(step, shortest_first_step * fabs(time));
   }
-  double longest = fmin(lagrangian.max_step, 2.0 * step);
+  double longest = fmin(lagrangian.steps.max_step, 2.0 * step);
   return fmin(step, first_terms_step(instance, radau->series, time, radau->state, longest));
 }
 

@@ -30,12 +30,12 @@ struct Complex {
  * q' = v, each is one for q alone: (mu^2 - mu D - K) dq = r_v + (mu - D) r_q, K = da/dq, D = da/dv; then dv = mu dq - r_q.
  */
 struct RadauSystems {
-  double *values;                        /* of the Jacobian, in the order of lagrangian.jacobian_pattern */
+  double *values;                        /* of the Jacobian, in the order of lagrangian.implicit.pattern */
   size_t *place, *diagonal;              /* of K and D's elements in the matrices, in the same order; of the diagonal */
   struct Complex mu[SYSTEM_LIMIT];       /* the first one is real, and so is its matrix */
-  double *factors[SYSTEM_LIMIT];         /* by lagrangian.lu */
+  double *factors[SYSTEM_LIMIT];         /* by lagrangian.implicit.lu */
   struct Complex *right_side, *solution; /* workspace, states */
-  double *work;                          /* for lagrangian.lu */
+  double *work;                          /* for lagrangian.implicit.lu */
 };
 
 /* Numbers of memory that radau_systems_place() divides for so many systems, and what it leaves. */

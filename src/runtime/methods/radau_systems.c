@@ -10,33 +10,34 @@ static size_t width_of(int j) {
 }
 
 size_t radau_systems_size(void) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.jacobian_pattern.count;
-  size_t factors = lagrangian.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.lu->size(COMPLEX);
+  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
+  size_t factors = lagrangian.implicit.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.implicit.lu->size(COMPLEX);
   return count + (count + n) + factors + 2 * COMPLEX * states + 2 * COMPLEX * n;
 }
 
 /* Where the elements of K and D stand in a matrix. */
 static void find_places(struct RadauSystems *systems) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
-  for (size_t i = 0; i < n; i++) systems->diagonal[i] = lagrangian.lu->place(i, i);
+  for (size_t i = 0; i < n; i++) systems->diagonal[i] = lagrangian.implicit.lu->place(i, i);
   for (size_t column = 0; column < 2 * n; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
-      if (row >= n && row < 2 * n) systems->place[e] = lagrangian.lu->place(row - n, column < n ? column : column - n);
+      if (row >= n && row < 2 * n)
+        systems->place[e] = lagrangian.implicit.lu->place(row - n, column < n ? column : column - n);
     }
   }
 }
 
 void radau_systems_place(struct RadauSystems *systems, double *memory) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.jacobian_pattern.count;
+  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   systems->values = memory;
   systems->place = (size_t *)(memory + count);
   systems->diagonal = (size_t *)(memory + 2 * count);
   memory += 2 * count + n;
   for (int j = 0; j < SYSTEM_LIMIT; j++) {
     systems->factors[j] = memory;
-    memory += lagrangian.lu->size(width_of(j));
+    memory += lagrangian.implicit.lu->size(width_of(j));
   }
   systems->right_side = (struct Complex *)memory;
   systems->solution = systems->right_side + states;
@@ -46,14 +47,14 @@ void radau_systems_place(struct RadauSystems *systems, double *memory) {
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {
   return solver_jacobian(instance, time, state, systems->values) &&
-         are_finite(systems->values, lagrangian.jacobian_pattern.count);
+         are_finite(systems->values, lagrangian.implicit.pattern.count);
 }
 
 /* mu^2 - mu D - K */
 static void fill(const struct RadauSystems *systems, size_t width, const double *mu, double *matrix) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
-  memset(matrix, 0, lagrangian.lu->size(width) * sizeof *matrix);
+  memset(matrix, 0, lagrangian.implicit.lu->size(width) * sizeof *matrix);
   for (size_t i = 0; i < n; i++) number_add_product(width, matrix + width * systems->diagonal[i], mu, mu);
   for (size_t column = 0; column < 2 * n; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
@@ -70,7 +71,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
   for (int j = 0; j <= method->stages / 2; j++) {
     systems->mu[j] = (struct Complex){method->value_real[j] / step, method->value_imaginary[j] / step};
     fill(systems, width_of(j), &systems->mu[j].real, systems->factors[j]);
-    if (!lagrangian.lu->factor(width_of(j), systems->factors[j], systems->work)) return false;
+    if (!lagrangian.implicit.lu->factor(width_of(j), systems->factors[j], systems->work)) return false;
   }
   return true;
 }
@@ -78,7 +79,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
 /* sum += the product of the Jacobian's elements in rows first .. end - 1 with x, columns from .. to - 1 */
 static void add_product(const struct RadauSystems *systems, size_t width, size_t from, size_t to, size_t first,
                         size_t end, const double *x, double sign, double *sum) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   for (size_t column = from; column < to; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
@@ -97,7 +98,7 @@ static void solve_system(const struct RadauSystems *systems, int j, size_t width
   memcpy(solution, right + width * n, width * n * sizeof *solution);
   for (size_t i = 0; i < n; i++) number_add_product(width, solution + width * i, mu, right + width * i);
   add_product(systems, width, n, 2 * n, n, 2 * n, right, -1.0, solution);
-  lagrangian.lu->solve(width, systems->factors[j], solution, systems->work);
+  lagrangian.implicit.lu->solve(width, systems->factors[j], solution, systems->work);
   double *velocity = solution + width * n, *work = velocity + width * n;
   for (size_t i = 0; i < width * n; i++) velocity[i] = -right[i];
   for (size_t i = 0; i < n; i++) number_add_product(width, velocity + width * i, mu, solution + width * i);

@@ -82,9 +82,9 @@ double stiffness_promise(const struct Taylor *taylor, int order, double toleranc
  * coordinates' scales.
  */
 static double norm_of_block(const double *jacobian, size_t from, double *sum) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
-  const double *scale = lagrangian.nominal;
+  const double *scale = lagrangian.steps.nominal;
   for (size_t i = 0; i < n; i++) sum[i] = 0.0;
   for (size_t j = 0; j < n; j++) {
     for (int e = pattern->start[from + j]; e < pattern->start[from + j + 1]; e++) {

@@ -11,7 +11,7 @@
 double stiffness_promise(const struct Taylor *taylor, int order, double tolerance);
 
 /*
- * A bound of the fastest rate of the system, in 1/s, from the elements of its Jacobian as lagrangian.jacobian() gives
+ * A bound of the fastest rate of the system, in 1/s, from the elements of its Jacobian as lagrangian.implicit.jacobian() gives
  * them; coordinate_count numbers of workspace.
  */
 double stiffness_rate(const double *jacobian, double *work);

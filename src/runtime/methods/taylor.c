@@ -31,7 +31,7 @@ static bool taylor_could_save(const struct Situation *situation, const void *sav
 }
 
 static bool taylor_create(struct Instance *instance) {
-  size_t rows = lagrangian.input_count + lagrangian.series_rows;
+  size_t rows = lagrangian.input_count + lagrangian.taylor.rows;
   size_t terms = 2 * lagrangian.state_count * sizeof(double);
   struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
   if (taylor == NULL) return solver_lacks_memory(instance);
@@ -41,7 +41,7 @@ static bool taylor_create(struct Instance *instance) {
   taylor->x = (Series *)(taylor->low + lagrangian.state_count);
   taylor->input = (Series *)(taylor + 1);
   taylor->work = taylor->input + lagrangian.input_count;
-  taylor->term = (double *)(taylor->work + lagrangian.series_rows);
+  taylor->term = (double *)(taylor->work + lagrangian.taylor.rows);
   taylor->derivative = taylor->term + lagrangian.state_count;
   instance->solver_memory = taylor;
   return true;
@@ -66,7 +66,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
   struct Point point = instance_point(instance);
   point.time = origin;
-  lagrangian.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
+  lagrangian.taylor.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
   instance->situation->statistics[STATISTIC_DERIVATIVES]++;
   taylor_choose_reach(instance, taylor, communication_step);
   taylor->span->end = origin + taylor->saved->reach;
@@ -100,7 +100,7 @@ int64_t taylor_order(const struct Instance *instance) {
 
 /* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
 static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
-  if (lagrangian.projection == NULL) return NULL;
+  if (lagrangian.constraints.projection == NULL) return NULL;
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
   const char *problem = solver_project(instance, taylor->span->start, taylor->term);
   for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];

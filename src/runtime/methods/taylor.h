@@ -24,10 +24,10 @@ struct Taylor {
   struct Span *span; /* of the last step; its start is the origin of the series */
   double *low;
   Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
-  Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.series */
+  Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.taylor.series */
   /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
   double *term, *derivative;
-  bool is_measured; /* lagrangian.start was called last for the end of the reach */
+  bool is_measured; /* lagrangian.taylor.start was called last for the end of the reach */
   bool is_limited;  /* the step is short for another reason than the size of its coefficients */
   bool crosses;     /* the step crosses a point where a function has no series */
   struct Crawl regular, crossing;
@@ -36,7 +36,7 @@ struct Taylor {
 /* The size of a state variable at the origin, or its nominal value where that is larger. */
 static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
   double size = fabs(taylor->x[i][0]);
-  return size < lagrangian.nominal[i] ? lagrangian.nominal[i] : size;
+  return size < lagrangian.steps.nominal[i] ? lagrangian.steps.nominal[i] : size;
 }
 
 /*

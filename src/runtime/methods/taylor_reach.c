@@ -99,7 +99,7 @@ int taylor_start(struct Instance *instance, const struct Taylor *taylor, double 
     evaluate_inputs(instance, time, input);
     point.input = input;
   }
-  return lagrangian.start(&point, derivative, taylor->work);
+  return lagrangian.taylor.start(&point, derivative, taylor->work);
 }
 
 /*
@@ -171,11 +171,11 @@ static double defect_over(struct Instance *instance, struct Taylor *taylor, doub
 static struct SeriesLimit limited(const struct Instance *instance, const struct Taylor *taylor, double step,
                                   bool crosses) {
   struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
-  if (lagrangian.limit == NULL) return limit;
+  if (lagrangian.taylor.limit == NULL) return limit;
   struct Point point = instance_point(instance);
   point.time = taylor->span->start;
-  lagrangian.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x, (const Series *)taylor->work,
-                   &limit);
+  lagrangian.taylor.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x,
+                          (const Series *)taylor->work, &limit);
   return limit;
 }
 
@@ -248,7 +248,7 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   if (rest < communication_step) rest = communication_step;
   rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* no shorter step ends the search from an infinite one */
   if (rest < step) step = rest;
-  if (lagrangian.max_step < step) step = lagrangian.max_step;
+  if (lagrangian.steps.max_step < step) step = lagrangian.steps.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
   instance->limited_by = limit.function;
   taylor->is_limited = limit.step < promised;

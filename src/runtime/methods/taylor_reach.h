@@ -6,7 +6,7 @@
 
 /*
  * d state / dt at a time and at the state that instance->work holds, and the first coefficients of all series. Returns
- * what lagrangian.start returns.
+ * what lagrangian.taylor.start returns.
  */
 int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative);
 

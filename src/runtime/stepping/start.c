@@ -20,7 +20,8 @@ enum Status start_find(struct Instance *instance, const char *function) {
   if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
   if (lagrangian.switching != NULL) lagrangian.switching->guess(instance);
   bool is_ready = is_prepared(instance);
-  if (is_ready && lagrangian.projection != NULL && !lagrangian.projection->make_consistent(instance, function))
+  if (is_ready && lagrangian.constraints.projection != NULL &&
+      !lagrangian.constraints.projection->make_consistent(instance, function))
     return STATUS_ERROR;
   if (is_ready && lagrangian.switching != NULL && !lagrangian.switching->start(instance, function)) return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
@@ -31,6 +32,6 @@ enum Status start_find(struct Instance *instance, const char *function) {
 bool start_step(struct Instance *instance) {
   double time = instance->situation->time;
   if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
-  if (lagrangian.projection != NULL && !lagrangian.projection->resume(instance)) return false;
+  if (lagrangian.constraints.projection != NULL && !lagrangian.constraints.projection->resume(instance)) return false;
   return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
 }

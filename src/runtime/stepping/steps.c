@@ -59,25 +59,25 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
       "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
       "maxSteps of <solver> in system.xml %s",
       lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
-      lagrangian.max_steps > 0 ? lagrangian.max_steps : (long)((double)step->count * WORK_LIMIT / work),
-      lagrangian.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
+      lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps : (long)((double)step->count * WORK_LIMIT / work),
+      lagrangian.steps.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
 }
 
 /* Operations in the communication step; before: the statistics as it began. */
 static double work_since(const struct Instance *instance, const struct CommunicationStep *step, const int64_t *before) {
   const int64_t *present = instance->situation->statistics;
-  return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.work.evaluation +
-         (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.work.event +
-         (double)step->count * lagrangian.work.step;
+  return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.steps.work.evaluation +
+         (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.steps.work.event +
+         (double)step->count * lagrangian.steps.work.step;
 }
 
 /* NULL, or why the solver gives up. */
 static const char *excess(const struct CommunicationStep *step, double work) {
-  if (lagrangian.max_steps == 0)
+  if (lagrangian.steps.max_steps == 0)
     return work < WORK_LIMIT ? NULL
                              : "it has taken as many steps within one communication step as take some 10 s; expected a "
                                "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
-  return step->count < lagrangian.max_steps
+  return step->count < lagrangian.steps.max_steps
              ? NULL
              : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
 }
@@ -136,7 +136,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
 /* Where a mechanism comes to its limit, its user looks for the part that holds it. */
 static void log_weakest(struct Instance *instance, double time) {
   const struct Switching *switcher = lagrangian.switching;
-  const char *name = lagrangian.projection->weakest(instance, time, instance->state);
+  const char *name = lagrangian.constraints.projection->weakest(instance, time, instance->state);
   if (name != NULL && (switcher == NULL || !switcher->holds_at_times(name)))
     log_message(
         instance, STATUS_DISCARD,
@@ -165,7 +165,7 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  if (lagrangian.projection != NULL && !ends_at_event) log_weakest(instance, reached);
+  if (lagrangian.constraints.projection != NULL && !ends_at_event) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;

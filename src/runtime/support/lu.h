@@ -1,6 +1,6 @@
 /*
  * Matrices with a row and a column for each coordinate, factored as L U, for implicit methods: of real or complex
- * numbers (number.h). lagc chooses what is cheaper for a system, lagrangian.lu, and an FMU links that alone.
+ * numbers (number.h). lagc chooses what is cheaper for a system, lagrangian.implicit.lu, and an FMU links that alone.
  */
 #ifndef LU_H
 #define LU_H
@@ -23,7 +23,7 @@ struct Lu {
 extern const struct Lu lu_dense;
 
 /*
- * In lagrangian.lu_pattern, whose order is fixed: pivots are those on the diagonal. Where a pivot has lost its digits,
+ * In lagrangian.implicit.lu_pattern, whose order is fixed: pivots are those on the diagonal. Where a pivot has lost its digits,
  * the matrix counts as singular, as it may be for a long step; for short ones, mu^2 in the diagonal dominates. With
  * dampers and springs, M (mu + damping + stiffness / mu) has a positive definite real part for each mu of Radau IIA,
  * and needs no other pivots (R. Mathias: Matrices with positive definite Hermitian part, SIAM Journal on Matrix

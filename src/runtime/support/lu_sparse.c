@@ -7,7 +7,7 @@ static const double smallest_pivot_share = 1e-14;
 
 /* L by rows with the inverse pivots, then U by columns: the same pattern, whose places for the diagonal stay empty. */
 static size_t element_count(void) {
-  return (size_t)lagrangian.lu_pattern.start[lagrangian.coordinate_count];
+  return (size_t)lagrangian.implicit.lu_pattern.start[lagrangian.coordinate_count];
 }
 
 static size_t sparse_size(size_t width) {
@@ -15,7 +15,7 @@ static size_t sparse_size(size_t width) {
 }
 
 static size_t sparse_place(size_t row, size_t column) {
-  const struct LuPattern *pattern = &lagrangian.lu_pattern;
+  const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
   int i = pattern->place[row], j = pattern->place[column], low = i < j ? i : j;
   int k = pattern->start[i < j ? j : i];
   while (pattern->column[k] < low) k++;
@@ -24,7 +24,7 @@ static size_t sparse_place(size_t row, size_t column) {
 
 /* sum -= a[k] x[column[k]] for each k from first to end - 1 */
 static void subtract_products(size_t width, int first, int end, double *sum, const double *a, const double *x) {
-  const int *column = lagrangian.lu_pattern.column;
+  const int *column = lagrangian.implicit.lu_pattern.column;
   if (width == REAL)
     for (int k = first; k < end; k++) number_subtract_product(REAL, sum, a + k, x + column[k]);
   else
@@ -40,7 +40,7 @@ static void copy_number(size_t width, double *to, const double *from) {
  * hold them in their places and are 0 elsewhere, before and after. False where the pivot is lost.
  */
 static bool factor_row(size_t width, size_t i, double *l, double *u, double *row, double *column) {
-  const struct LuPattern *pattern = &lagrangian.lu_pattern;
+  const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
   int first = pattern->start[i], last = pattern->start[i + 1] - 1;
   double *pivot = l + width * (size_t)last, before = number_size(width, pivot), subtracted = 0.0;
   for (int k = first; k < last; k++) {
@@ -75,7 +75,7 @@ static bool sparse_factor(size_t width, double *matrix, double *work) {
 }
 
 static void sparse_solve(size_t width, const double *factors, double *x, double *work) {
-  const struct LuPattern *pattern = &lagrangian.lu_pattern;
+  const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
   size_t n = lagrangian.coordinate_count;
   const double *u = factors + width * element_count();
   for (size_t i = 0; i < n; i++) copy_number(width, work + width * (size_t)pattern->place[i], x + width * i);

@@ -5,7 +5,7 @@
 #include "methods/sundials/bdf_support.h"
 
 static void fill(const struct Bdf *bdf, SUNMatrix matrix) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   for (size_t j = 0; j < lagrangian.state_count; j++) {
     double *column = SUNDenseMatrix_Column(matrix, (sunindextype)j);
     for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) column[pattern->row[k]] = bdf->jacobian[k];

@@ -12,7 +12,7 @@ struct SparseBdf {
 
 /* Merges the diagonal into the pattern of the Jacobian. */
 static void add_diagonal(struct SparseBdf *sparse) {
-  const struct Sparsity *pattern = &lagrangian.jacobian_pattern;
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   sunindextype count = 0;
   for (size_t j = 0; j < lagrangian.state_count; j++) {
     int k = pattern->start[j], end = pattern->start[j + 1], diagonal = (int)j;
@@ -36,7 +36,7 @@ static void fill(const struct Bdf *bdf, SUNMatrix matrix) {
   size_t states = lagrangian.state_count, count = (size_t)sparse->start[states];
   for (size_t j = 0; j <= states; j++) SUNSparseMatrix_IndexPointers(matrix)[j] = sparse->start[j];
   for (size_t k = 0; k < count; k++) SUNSparseMatrix_IndexValues(matrix)[k] = sparse->row[k];
-  for (size_t k = 0; k < lagrangian.jacobian_pattern.count; k++)
+  for (size_t k = 0; k < lagrangian.implicit.pattern.count; k++)
     SUNSparseMatrix_Data(matrix)[sparse->place[k]] = bdf->jacobian[k];
 }
 
@@ -44,7 +44,7 @@ static bool configure(struct Instance *instance) {
   struct SparseBdf *sparse = instance->solver_memory;
   struct Bdf *bdf = &sparse->bdf;
   SUNContext context = bdf->sundials.context;
-  size_t states = lagrangian.state_count, elements = lagrangian.jacobian_pattern.count;
+  size_t states = lagrangian.state_count, elements = lagrangian.implicit.pattern.count;
   sparse->start = sundials_allocate(states + 1 + (elements + states) + elements, sizeof *sparse->start);
   sparse->row = sparse->start + states + 1;
   sparse->place = sparse->row + elements + states;

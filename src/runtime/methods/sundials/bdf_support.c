@@ -44,8 +44,9 @@ static int correction_to_constraints(realtype time, N_Vector state, N_Vector cor
 
 /* The estimate of the error is left as it is: an error that the projection takes away is still one of the step. */
 static bool keep_constraints(struct Instance *instance, const struct Bdf *bdf) {
-  return lagrangian.projection == NULL || (SUCCEEDS(instance, CVodeSetProjFn, bdf->cvode, correction_to_constraints) &&
-                                           SUCCEEDS(instance, CVodeSetProjErrEst, bdf->cvode, 0));
+  return lagrangian.constraints.projection == NULL ||
+         (SUCCEEDS(instance, CVodeSetProjFn, bdf->cvode, correction_to_constraints) &&
+          SUCCEEDS(instance, CVodeSetProjErrEst, bdf->cvode, 0));
 }
 
 static bool set_tolerances(struct Instance *instance, const struct Bdf *bdf) {
@@ -56,14 +57,14 @@ bool bdf_configure(struct Instance *instance) {
   struct Bdf *bdf = instance->solver_memory;
   if (bdf->matrix == NULL || bdf->linear_solver == NULL) return false;
   sundials_load(instance, instance->state, safety);
-  bdf->jacobian = sundials_allocate(lagrangian.jacobian_pattern.count, sizeof *bdf->jacobian);
+  bdf->jacobian = sundials_allocate(lagrangian.implicit.pattern.count, sizeof *bdf->jacobian);
   bdf->cvode = CVodeCreate(CV_BDF, bdf->sundials.context);
   return bdf->cvode != NULL && SUCCEEDS(instance, CVodeSetErrHandlerFn, bdf->cvode, sundials_ignore_error, NULL) &&
          SUCCEEDS(instance, CVodeInit, bdf->cvode, sundials_right_side, instance->situation->time,
                   bdf->sundials.state) &&
          set_tolerances(instance, bdf) && SUCCEEDS(instance, CVodeSetUserData, bdf->cvode, instance) &&
-         SUCCEEDS(instance, CVodeSetMaxNumSteps, bdf->cvode, lagrangian.max_steps) && keep_constraints(instance, bdf) &&
-         SUCCEEDS(instance, CVodeSetMaxHnilWarns, bdf->cvode, -1) &&
+         SUCCEEDS(instance, CVodeSetMaxNumSteps, bdf->cvode, lagrangian.steps.max_steps) &&
+         keep_constraints(instance, bdf) && SUCCEEDS(instance, CVodeSetMaxHnilWarns, bdf->cvode, -1) &&
          SUCCEEDS(instance, CVodeSetLinearSolver, bdf->cvode, bdf->linear_solver, bdf->matrix) &&
          SUCCEEDS(instance, CVodeSetJacFn, bdf->cvode, fill_jacobian);
 }
@@ -78,8 +79,8 @@ bool bdf_restart(struct Instance *instance, const double *state, const struct Co
 
 /* Where inputs or time drive the system, a step longer than the communication step could pass over a pulse. */
 static double longest_step(const struct CommunicationStep *step) {
-  bool driven = lagrangian.input_count > 0 || lagrangian.depends_on_time;
-  return driven ? fmin(step->length, lagrangian.max_step) : lagrangian.max_step;
+  bool driven = lagrangian.input_count > 0 || lagrangian.steps.depends_on_time;
+  return driven ? fmin(step->length, lagrangian.steps.max_step) : lagrangian.steps.max_step;
 }
 
 /*
@@ -101,7 +102,7 @@ const char *bdf_advance(struct Instance *instance, const struct CommunicationSte
   double before = situation->last_step.end, time = before;
   if (sundials_tiny_step(instance, step)) return NULL;
   if (CVodeSetMaxStep(bdf->cvode, longest_step(step)) < 0) return "SUNDIALS does not take a longest step";
-  const char *problem = lagrangian.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, step->end);
+  const char *problem = lagrangian.taylor.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, step->end);
   if (problem != NULL) return problem;
   if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "no step is short enough";
   situation->last_step = (struct Span){before, time};

@@ -19,7 +19,7 @@ struct Bdf {
   void *cvode;
   SUNMatrix matrix;
   SUNLinearSolver linear_solver;
-  double *jacobian; /* the elements in lagrangian.jacobian_pattern */
+  double *jacobian; /* the elements in lagrangian.implicit.pattern */
   /* Writes them into the matrix, whose elements are 0. */
   void (*fill)(const struct Bdf *bdf, SUNMatrix matrix);
 };

@@ -38,9 +38,9 @@ static bool configure(struct Instance *instance) {
   return erk->arkode != NULL && SUCCEEDS(instance, ERKStepSetErrHandlerFn, erk->arkode, sundials_ignore_error, NULL) &&
          SUCCEEDS(instance, ERKStepSetUserData, erk->arkode, instance) &&
          SUCCEEDS(instance, ERKStepSetTableNum, erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5) &&
-         SUCCEEDS(instance, ERKStepSetMaxNumSteps, erk->arkode, lagrangian.max_steps) &&
-         SUCCEEDS(instance, ERKStepSetMaxStep, erk->arkode, lagrangian.max_step) &&
-         (lagrangian.projection == NULL ||
+         SUCCEEDS(instance, ERKStepSetMaxNumSteps, erk->arkode, lagrangian.steps.max_steps) &&
+         SUCCEEDS(instance, ERKStepSetMaxStep, erk->arkode, lagrangian.steps.max_step) &&
+         (lagrangian.constraints.projection == NULL ||
           SUCCEEDS(instance, ERKStepSetPostprocessStepFn, erk->arkode, keep_constraints)) &&
          SUCCEEDS(instance, ERKStepSetMaxHnilWarns, erk->arkode, -1) &&
          SUCCEEDS(instance, ERKStepSetInterpolantDegree, erk->arkode, degree);

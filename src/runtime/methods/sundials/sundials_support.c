@@ -28,7 +28,7 @@ void sundials_load(const struct Instance *instance, const double *state, double 
   memcpy(N_VGetArrayPointer(sundials->state), state, lagrangian.state_count * sizeof(double));
   sundials->relative = fmax(safety * instance->situation->tolerance, 10 * DBL_EPSILON);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    N_VGetArrayPointer(sundials->tolerance)[i] = sundials->relative * lagrangian.nominal[i];
+    N_VGetArrayPointer(sundials->tolerance)[i] = sundials->relative * lagrangian.steps.nominal[i];
 }
 
 int sundials_right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
