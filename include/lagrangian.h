@@ -178,6 +178,7 @@ struct SwitchTable {
   size_t energy_count;  /* of energies and momenta, where branches hold them; else 0 */
   bool feels_forces;    /* a branch turns by the force of a constraint */
   bool friction_varies; /* the force of a friction does between events */
+  bool has_sides;       /* branches that are sides */
   const struct BranchFacts *branches;
   const struct ContactFacts *contacts;
   const struct FrictionFacts *frictions;
@@ -185,12 +186,9 @@ struct SwitchTable {
   const struct AssignmentFacts *assignments;
   const struct ContactLaws *contact_laws;   /* settlement.h; NULL without contacts */
   const struct FrictionLaws *friction_laws; /* settlement.h; NULL without frictions */
-  const bool
-      *rests_on; /* of each friction, for each contact: whether it follows from its force; NULL where none does */
-  /*
-   * indicator[] of the branches, the contacts and the frictions: each changes its sign where a mode may change.
-   * acceleration as for result().
-   */
+  /* Of each friction, for each contact: whether it follows from its force; NULL where none does. */
+  const bool *rests_on;
+  /* indicator[] as below: each changes its sign where a mode may change. acceleration as for result(). */
   void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
   /*
    * What the roundings of all operations may make of the indicators of branches, of the gaps and of the velocities of
@@ -243,8 +241,17 @@ static inline size_t energy_place(const struct SwitchTable *switches) {
   return assignment_place(switches, switches->assignment_count);
 }
 
+/* indicator[] of struct SwitchTable: of the branches, the contacts and the frictions. */
+static inline size_t contact_indicator(const struct SwitchTable *switches, size_t contact) {
+  return switches->branch_count + contact;
+}
+
+static inline size_t friction_indicator(const struct SwitchTable *switches, size_t friction) {
+  return contact_indicator(switches, switches->contact_count) + friction;
+}
+
 static inline size_t indicator_count(const struct SwitchTable *switches) {
-  return switches == NULL ? 0 : switches->branch_count + switches->contact_count + switches->friction_count;
+  return switches == NULL ? 0 : friction_indicator(switches, switches->friction_count);
 }
 
 struct Lu;

@@ -97,14 +97,15 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }
 
-static void append_indicators(const struct Model *model, const struct SwitchingExpressions *switching,
-                              struct NodeList *list) {
-  const struct Switches *switches = &model->switches;
-  for (size_t i = 0; i < switching->branch_count; i++) append_node(list, switching->branches[i]->indicator);
-  for (size_t i = 0; i < switches->contact_count; i++)
-    append_node(list, indicator_of_contact(model, &switches->contacts[i]));
-  for (size_t i = 0; i < switches->friction_count; i++)
-    append_node(list, indicator_of_friction(model, &switches->frictions[i]));
+static void fill_indicators(const struct Model *model, const struct SwitchTable *counts,
+                            struct SwitchingExpressions *switching) {
+  switching->indicator_count = indicator_count(counts);
+  switching->indicators = allocate(switching->indicator_count, sizeof(Node));
+  for (size_t i = 0; i < counts->branch_count; i++) switching->indicators[i] = switching->branches[i]->indicator;
+  for (size_t i = 0; i < counts->contact_count; i++)
+    switching->indicators[contact_indicator(counts, i)] = indicator_of_contact(model, &model->switches.contacts[i]);
+  for (size_t i = 0; i < counts->friction_count; i++)
+    switching->indicators[friction_indicator(counts, i)] = indicator_of_friction(model, &model->switches.frictions[i]);
 }
 
 static void append_watched(const struct Model *model, const struct SwitchingExpressions *switching,
@@ -178,6 +179,16 @@ static void fill_events(const struct Switches *switches, const struct SwitchTabl
   }
 }
 
+static struct SwitchTable count_switches(const struct Model *model, const struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  struct SwitchTable counts = {.branch_count = switching->branch_count,
+                               .contact_count = switches->contact_count,
+                               .friction_count = switches->friction_count,
+                               .event_count = switches->event_count};
+  for (size_t i = 0; i < switches->event_count; i++) counts.assignment_count += switches->events[i].assignment_count;
+  return counts;
+}
+
 static void fill_branches(const struct Model *model, const struct SwitchingExpressions *switching,
                           const struct SwitchTable *counts, const Node *seeds, Node *values) {
   for (size_t i = 0; i < counts->branch_count; i++) values[i] = switching->branches[i]->indicator;
@@ -187,20 +198,15 @@ static void fill_branches(const struct Model *model, const struct SwitchingExpre
 
 /* All that have a fixed place; the energies follow them, as many as there are. */
 static void append_values(const struct Model *model, const struct Equations *equations,
-                          struct SwitchingExpressions *switching, struct NodeList *list) {
-  const struct Switches *switches = &model->switches;
-  const struct SwitchTable counts = {.branch_count = switching->branch_count,
-                                     .contact_count = switches->contact_count,
-                                     .friction_count = switches->friction_count,
-                                     .event_count = switches->event_count,
-                                     .assignment_count = switching->assignment_count};
-  size_t count = energy_place(&counts);
+                          const struct SwitchTable *counts, struct SwitchingExpressions *switching,
+                          struct NodeList *list) {
+  size_t count = energy_place(counts);
   Node *values = allocate(count, sizeof *values);
   const Node *seeds = time_seeds(model, true);
-  fill_branches(model, switching, &counts, seeds, values);
-  fill_contacts(model, &counts, seeds, values);
-  fill_frictions(model, &counts, seeds, values);
-  fill_events(switches, &counts, values);
+  fill_branches(model, switching, counts, seeds, values);
+  fill_contacts(model, counts, seeds, values);
+  fill_frictions(model, counts, seeds, values);
+  fill_events(&model->switches, counts, values);
   append_nodes(list, values, count);
   append_energies(model, equations, switching, list);
 }
@@ -215,8 +221,10 @@ static bool rests_on(const struct Model *model, const struct Friction *friction,
 static void find_forces(const struct Model *model, struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   bool *rests = allocate(switches->friction_count * switches->contact_count, sizeof *rests), any = false;
-  for (size_t i = 0; i < switching->branch_count; i++)
+  for (size_t i = 0; i < switching->branch_count; i++) {
     switching->feels_forces |= graph_depends_on(model->graph, switching->branches[i]->indicator, ACCELERATION);
+    switching->has_sides |= switching->branches[i]->is_side;
+  }
   for (size_t i = 0; i < switches->friction_count; i++) {
     switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding);
     for (size_t j = 0; j < switches->contact_count; j++)
@@ -228,17 +236,15 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
-  struct NodeList roots = roots_of(model, equations), indicators = {0}, watched = {0}, values = {0};
+  struct NodeList roots = roots_of(model, equations), watched = {0}, values = {0};
   find_energies(model, equations, switching);
   find_branches(model, &roots, switching);
-  append_indicators(model, switching, &indicators);
+  struct SwitchTable counts = count_switches(model, switching);
+  switching->assignment_count = counts.assignment_count;
+  fill_indicators(model, &counts, switching);
   append_watched(model, switching, &watched);
-  for (size_t i = 0; i < model->switches.event_count; i++)
-    switching->assignment_count += model->switches.events[i].assignment_count;
-  append_values(model, equations, switching, &values);
+  append_values(model, equations, &counts, switching, &values);
   find_forces(model, switching);
-  switching->indicators = indicators.nodes;
-  switching->indicator_count = indicators.count;
   switching->watched = watched.nodes;
   switching->watched_count = watched.count;
   switching->values = values.nodes;

@@ -9,8 +9,8 @@ struct SwitchingExpressions {
   size_t branch_count, assignment_count;
   size_t energy_count; /* where a branch holds any: kinetic, potential, and momenta where it holds the first; else 0 */
   /*
-   * Each changes its sign where a mode may change: of branches, then of contacts, the gap while they are open and the force
-   * while they are closed, then of frictions, the velocity while they slide and what is left of the stiction while they
+   * As indicator[] of struct SwitchTable holds them, see include/lagrangian.h: of contacts, the gap while they are open and
+   * the force while they are closed; of frictions, the velocity while they slide and what is left of the stiction while they
    * stick.
    */
   Node *indicators;
@@ -22,6 +22,7 @@ struct SwitchingExpressions {
   Node *values; /* as value[] of struct SwitchTable holds them, see include/lagrangian.h */
   size_t value_count;
   bool feels_forces;    /* some branch turns by the force of a constraint */
+  bool has_sides;       /* of expressions of events, among the branches */
   bool friction_varies; /* some friction slides with a force that is not constant */
   bool *
       rests; /* of each friction, and in it of each contact: the friction follows from its force; NULL where none does */

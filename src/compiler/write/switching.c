@@ -119,6 +119,7 @@ void switching_write(FILE *file, const struct Program *program) {
             program->watched_series->acceleration_count);
   if (switching->friction_varies) fputs("    .friction_varies = true,\n", file);
   if (switching->feels_forces) fputs("    .feels_forces = true,\n", file);
+  if (switching->has_sides) fputs("    .has_sides = true,\n", file);
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (switching->rests != NULL) fputs("    .rests_on = rests,\n", file);
   if (switches->friction_count > 0)

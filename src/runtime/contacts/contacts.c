@@ -32,7 +32,8 @@ static size_t find_impact(const struct Settlement *settlement) {
     size_t rate = contact_place(settlement->switches, i, CONTACT_RATE);
     bool is_open =
         mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0 && settlement->was_opened[i] == 0.0;
-    bool is_hit_first = is_hit(settlement, indicator_of_contact(settlement, i)) && is_open && settlement->impacts == 0;
+    bool is_hit_first =
+        is_hit(settlement, contact_indicator(settlement->switches, i)) && is_open && settlement->impacts == 0;
     bool closes = settlement->value[rate] < (is_hit_first ? 0.0 : -settlement->noise[rate]);
     if (!closes || !is_touching(settlement, i) || settlement->value[rate] >= fastest) continue;
     fastest = settlement->value[rate];
@@ -249,7 +250,7 @@ static size_t find_pulling(const struct Settlement *settlement) {
     if (mode_of(settlement, contact->mode) == 0.0) continue;
     double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
     /* An importer comes to a zero or past it, and does not tell whose. */
-    bool is_reached = is_hit(settlement, indicator_of_contact(settlement, i)) ||
+    bool is_reached = is_hit(settlement, contact_indicator(settlement->switches, i)) ||
                       (settlement->occasion == IN_EXCHANGE && force <= 0.0);
     bool parts = is_reached && settlement->was_opened[i] == 0.0 && !settlement->jumped;
     if (!(force < 0.0) && !parts) continue;

@@ -36,7 +36,7 @@ struct FrictionState {
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
-  size_t indicator = indicator_of_friction(settlement, friction);
+  size_t indicator = friction_indicator(settlement->switches, friction);
   struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
                                 .velocity = settlement->value[place],
                                 .rate = settlement->value[place + FRICTION_RATE],
@@ -97,7 +97,7 @@ static const char *act_once_on_friction(struct Settlement *settlement, bool *swi
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     double mode = friction_mode(settlement, i);
     if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
-    if (++settlement->flips[indicator_of_friction(settlement, i)] > FRICTION_FLIP_LIMIT)
+    if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT)
       return refuse_friction(settlement, i);
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
     *switched = true;

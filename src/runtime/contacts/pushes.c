@@ -9,7 +9,7 @@
 bool is_touching(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
   double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
-  return settlement->value[gap] <= noise || is_hit(settlement, indicator_of_contact(settlement, contact));
+  return settlement->value[gap] <= noise || is_hit(settlement, contact_indicator(settlement->switches, contact));
 }
 
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {

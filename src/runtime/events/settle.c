@@ -35,15 +35,9 @@ static const char *tell_friction_modes(struct Settlement *settlement, bool *agai
   return laws == NULL || laws->tell(settlement, again) ? NULL : no_accelerations;
 }
 
-static bool has_sides(const struct SwitchTable *switches) {
-  bool has = false;
-  for (size_t i = 0; i < switches->branch_count; i++) has |= switches->branches[i].is_side;
-  return has;
-}
-
 /* An importer comes to an event a little late: velocities that stick from it on are at rest before their side is asked for. */
 static const char *switch_sides(struct Settlement *settlement, bool *again) {
-  if (!has_sides(settlement->switches)) return NULL;
+  if (!settlement->switches->has_sides) return NULL;
   if (!settlement->lags) return branches_switch(settlement, true, again);
   settlement->lags = false;
   *again = true;

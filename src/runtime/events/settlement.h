@@ -82,14 +82,6 @@ bool settlement_push(struct Settlement *settlement);
 /* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
 bool settlement_move(struct Settlement *settlement);
 
-static inline size_t indicator_of_contact(const struct Settlement *settlement, size_t contact) {
-  return settlement->switches->branch_count + contact;
-}
-
-static inline size_t indicator_of_friction(const struct Settlement *settlement, size_t friction) {
-  return settlement->switches->branch_count + settlement->switches->contact_count + friction;
-}
-
 static inline bool is_hit(const struct Settlement *settlement, size_t indicator) {
   return settlement->occasion == AT_EVENT && settlement->indicator == indicator;
 }
