@@ -257,7 +257,7 @@ static inline size_t indicator_count(const struct SwitchTable *switches) {
 struct Lu;
 struct Projection;
 struct Solver;
-struct Switching;
+struct EventLaws;
 
 /*
  * The functions below that return an int return 0, or 1 + the coordinate in which the mass matrix is singular or not positive
@@ -370,7 +370,7 @@ struct Lagrangian {
   struct ImplicitTable implicit;
   struct ConstraintTable constraints;
   const struct SwitchTable *switches; /* NULL where nothing switches, as is */
-  const struct Switching *switching;  /* switching.h */
+  const struct EventLaws *event_laws; /* event_laws.h */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
   int (*prepare)(const double *parameter, double *prepared);

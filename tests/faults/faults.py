@@ -230,7 +230,7 @@ PLACES = [
     ("  situation->time = reached;", "  situation->time = step.end;", pytest("test_fmi_rules", "discard_tells", "ParticlePolar")),
     ("  memset(instance->situation, 0, situation_size());\n", "", pytest("test_state", "reset_is_a_new and Damped", "DampedPendulum")),
     ("!(tolerance > 0.0 && tolerance < 1.0)", "!(tolerance > 0.0)", pytest("test_fmi_rules", "bad_experiments", "SimplePendulum")),
-    ("  instance->situation->mode = MODE_ERROR;\n", "", pytest("test_life_cycle", "", "ParticlePolar"), "log_error"),
+    ("  instance->situation->phase = PHASE_ERROR;\n", "", pytest("test_life_cycle", "", "ParticlePolar"), "log_error"),
     ("[FUNCTION_TERMINATE] = {FOR_BOTH, EXCHANGE | STEPS}", "[FUNCTION_TERMINATE] = {FOR_BOTH, ALL}",
      pytest("test_life_cycle", "", "ParticlePolar")),
     ("    if (!isfinite(state[i]))\n", "    if (false)\n", pytest("test_up_to_date", "numbers_that_are_not_finite")),
@@ -353,7 +353,7 @@ PLACES = [
      "references[i] < lagrangian.variable_count", pytest("test_fmi3", "bad_instances", "DampedPendulum")),
     ("name == NULL || name[strspn(name, \" \\t\\r\\n\")] == '\\0'", "name == NULL", pytest("test_fmi3", "bad_instances", "DampedPendulum"),
      "can_instantiate"),
-    ("if (eventModeUsed && lagrangian.switching == NULL) {", "if (false) {", pytest("test_fmi3", "bad_instances", "DampedPendulum")),
+    ("if (eventModeUsed && lagrangian.event_laws == NULL) {", "if (false) {", pytest("test_fmi3", "bad_instances", "DampedPendulum")),
     # Frames, tables and code in tables
     ("return vector_add(graph, derivative_of(scope, velocity), turning);", "(void)turning; return derivative_of(scope, velocity);",
      pytest("test_frames", "told_of_an_arm")),

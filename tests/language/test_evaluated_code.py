@@ -65,7 +65,7 @@ def program(method, form, folder):
     name = {"taylor": "taylor", "bdf": "bdf"}[method]
     stub = folder / "solver.c"  # the functions are called without their solver
     stub.write_text(f"struct Solver {{ int unused; }};\nextern const struct Solver solver_{name};\nconst struct Solver solver_{name} = {{0}};\n"
-                    "struct Switching { int unused; };\nextern const struct Switching switching;\nconst struct Switching switching = {0};\n")
+                    "struct EventLaws { int unused; };\nextern const struct EventLaws event_laws;\nconst struct EventLaws event_laws = {0};\n")
     subprocess.run(["gcc", *flags, *sources, stub, BUILD / "libsolvers.a", "-lm", "-o", folder / "evaluate"], check=True)
     return folder / "evaluate"
 

@@ -168,7 +168,8 @@ static void write_tables(FILE *file, const struct Program *program) {
   if (lu != NULL && jacobian->factors != NULL)
     fputs("    .implicit.lu_pattern = {lu_place, lu_start, lu_column},\n", file);
   write_constraints(file, program);
-  if (program->equations->switching != NULL) fputs("    .switches = &switches,\n    .switching = &switching,\n", file);
+  if (program->equations->switching != NULL)
+    fputs("    .switches = &switches,\n    .event_laws = &event_laws,\n", file);
   write_fields(file, program, IN_LAGRANGIAN, IN_CONSTRAINTS);
 }
 

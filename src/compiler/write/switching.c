@@ -96,7 +96,7 @@ void switching_write(FILE *file, const struct Program *program) {
   const struct SwitchingExpressions *switching = program->equations->switching;
   if (switching == NULL) return;
   const struct Switches *switches = &program->model->switches;
-  fputs("extern const struct Switching switching;\n\n", file);
+  fputs("extern const struct EventLaws event_laws;\n\n", file);
   for (enum FunctionName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
     statements_function(file, program, i, "", program->routines[i]);
   if (program->watched_series != NULL) statements_watched_limit(file, program);

@@ -199,7 +199,7 @@ static bool open_parting(struct Settlement *settlement) {
   return opens;
 }
 
-static bool release(struct Settlement *settlement) {
+static bool part(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   open_lifted(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
@@ -308,4 +308,4 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
 }
 
 const struct ContactLaws contact_laws = {
-    .act = act_once, .settle_forces = contact_forces_settle, .release = release, .check_gaps = check_gaps};
+    .act = act_once, .settle_forces = contact_forces_settle, .part = part, .check_gaps = check_gaps};

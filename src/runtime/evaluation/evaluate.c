@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "instance/initial_state.h"
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
 const char *evaluate_state_name(size_t state) {
   for (size_t i = 0; i < lagrangian.variable_count; i++)
@@ -37,8 +37,8 @@ enum Status discard_for_singularity(struct Instance *instance) {
 }
 
 enum Status evaluate_prepare(struct Instance *instance) {
-  if (lagrangian.switching != NULL && is_before_start(instance) && !instance->modes_stay) {
-    lagrangian.switching->guess(instance);
+  if (lagrangian.event_laws != NULL && is_before_start(instance) && !instance->modes_stay) {
+    lagrangian.event_laws->guess(instance);
     instance->prepared_is_stale = true;
   }
   if (!instance->prepared_is_stale) return STATUS_DONE;
@@ -57,7 +57,7 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
 /* For a point without a value: the end of the piece beyond which an importer tries it. False for none. */
 static bool come_back(struct Instance *instance, struct Point *point) {
   bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
-  return tries && lagrangian.switching != NULL && lagrangian.switching->come_back(instance, point);
+  return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->come_back(instance, point);
 }
 
 enum Status evaluate_situation(struct Instance *instance, double *derivative) {
@@ -118,7 +118,7 @@ static enum Status evaluate_state_derivative(struct Instance *instance, size_t s
 
 static enum Status evaluate_indicator(struct Instance *instance, size_t index, double *value) {
   double *indicator = instance->switching_work;
-  if (!lagrangian.switching->indicators(instance, indicator)) return discard_for_singularity(instance);
+  if (!lagrangian.event_laws->indicators(instance, indicator)) return discard_for_singularity(instance);
   *value = indicator[index];
   return STATUS_DONE;
 }

@@ -36,7 +36,7 @@ bool solver_jacobian(struct Instance *instance, double time, const double *state
 
 bool solver_take_state(struct Instance *instance, double time) {
   const struct Span *last = &instance->situation->last_step;
-  bool is_at_event = lagrangian.switching != NULL && last->start == last->end && last->end == time;
+  bool is_at_event = lagrangian.event_laws != NULL && last->start == last->end && last->end == time;
   if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
   else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
   return are_finite(instance->state, lagrangian.state_count);

@@ -5,9 +5,9 @@
 #ifndef EXCHANGE_H
 #define EXCHANGE_H
 
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
-/* The functions of these names in struct Switching. */
+/* The functions of these names in struct EventLaws. */
 bool exchange_come_back(struct Instance *instance, struct Point *point);
 bool exchange_indicators(struct Instance *instance, double *value);
 bool exchange_is_due(struct Instance *instance);

@@ -2,7 +2,7 @@
 #ifndef INDICATORS_H
 #define INDICATORS_H
 
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
 /* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
 bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator);

@@ -44,14 +44,14 @@ bool switching_start(struct Instance *instance, const char *function) {
   return problem == NULL;
 }
 
-bool switching_release(struct Instance *instance, double time) {
+bool switching_part_contacts(struct Instance *instance, double time) {
   const struct ContactLaws *laws = lagrangian.switches->contact_laws;
   if (laws == NULL) return true;
   struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  return !settlement_evaluate(&settlement) || laws->release(&settlement); /* what has no values is told by others */
+  return !settlement_evaluate(&settlement) || laws->part(&settlement); /* what has no values is told by others */
 }
 
-bool switching_resume(struct Instance *instance, double time) {
+bool switching_settle_change(struct Instance *instance, double time) {
   const char *problem = modes_at(instance, time, instance->state, AT_CHANGE, 0);
   if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
   return problem == NULL;

@@ -2,12 +2,12 @@
 #ifndef PASSING_H
 #define PASSING_H
 
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
-/* The functions of the same names in struct Switching. */
+/* The functions of the same names in struct EventLaws. */
 bool switching_start(struct Instance *instance, const char *function);
-bool switching_release(struct Instance *instance, double time);
-bool switching_resume(struct Instance *instance, double time);
+bool switching_part_contacts(struct Instance *instance, double time);
+bool switching_settle_change(struct Instance *instance, double time);
 const char *switching_check(struct Instance *instance, double time);
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
                        const struct EventProgress *progress);

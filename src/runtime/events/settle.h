@@ -6,9 +6,9 @@
 #ifndef SETTLE_H
 #define SETTLE_H
 
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
-/* As in struct Switching. */
+/* As in struct EventLaws. */
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed);
 

@@ -2,7 +2,7 @@
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
 struct Settlement {
   struct Instance *instance;
@@ -45,7 +45,7 @@ struct ContactLaws {
    */
   const char *(*settle_forces)(struct Settlement *settlement, bool *again);
   /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
-  bool (*release)(struct Settlement *settlement);
+  bool (*part)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
 };

@@ -6,7 +6,7 @@
 #include "evaluation/evaluate.h"
 #include "fmi/check.h"
 #include "instance/projection.h"
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 #include "stepping/reading.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
@@ -65,7 +65,7 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
   if (count == 0) return STATUS_DONE;
   if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
   reading_begin(instance, function);
-  bool has_values = lagrangian.switching->indicators(instance, indicator);
+  bool has_values = lagrangian.event_laws->indicators(instance, indicator);
   enum Status status = has_values ? STATUS_DONE : discard_for_singularity(instance);
   reading_end(instance);
   return status;
@@ -77,17 +77,16 @@ static bool has_drifted(struct Instance *instance) {
 }
 
 bool exchange_needs_event(struct Instance *instance) {
-  return has_drifted(instance) || (lagrangian.switching != NULL && lagrangian.switching->is_due(instance));
+  return has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
 }
 
 /* Brings the modes into agreement with the state. */
 static enum Status settle_modes(struct Instance *instance, bool *changed) {
-  const struct Switching *switcher = lagrangian.switching;
-  if (switcher == NULL) return STATUS_DONE;
-  const char *problem =
-      instance->kind == KIND_CO_SIMULATION
-          ? switcher->update(instance, changed)
-          : switcher->settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, changed);
+  const struct EventLaws *laws = lagrangian.event_laws;
+  if (laws == NULL) return STATUS_DONE;
+  const char *problem = instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed)
+                                                             : laws->settle(instance, instance->situation->time,
+                                                                            instance->state, IN_EXCHANGE, 0, changed);
   return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
 }
 

@@ -43,7 +43,7 @@ FMI(Status) FMI(Reset)(void *c) {
 FMI(Status) FMI(EnterContinuousTimeMode)(void *c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__);
   if (instance == NULL) return FMI(Error);
-  instance->situation->mode = MODE_CONTINUOUS_TIME;
+  instance->situation->phase = PHASE_CONTINUOUS_TIME;
   return FMI(OK);
 }
 

@@ -23,13 +23,13 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
 
 enum Status simulation_start(struct Instance *instance, const char *function) {
   if (start_find(instance, function) != STATUS_DONE) return STATUS_ERROR;
-  instance->situation->mode = instance->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP_COMPLETE;
+  instance->situation->phase = instance->kind == KIND_MODEL_EXCHANGE ? PHASE_EVENT : PHASE_STEP_COMPLETE;
   instance->situation->changed = CHANGED_COURSE;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);
   return STATUS_DONE;
 }
 
 void simulation_terminate(struct Instance *instance) {
-  instance->situation->mode = MODE_TERMINATED;
+  instance->situation->phase = PHASE_TERMINATED;
   log_message(instance, STATUS_DONE, "terminated at time %g", instance->situation->time);
 }

@@ -91,7 +91,7 @@ enum Status values_none(void *component, enum Function function, size_t count, c
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
-  case VARIABLE_PARAMETER: return instance->situation->mode != MODE_CONTINUOUS_TIME;
+  case VARIABLE_PARAMETER: return instance->situation->phase != PHASE_CONTINUOUS_TIME;
   case VARIABLE_MODE:
   case VARIABLE_STATE: return is_before_start(instance);
   default: return false;
@@ -113,7 +113,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable, function);
   if (!is_settable(instance, variable))
     return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
-                     instance_mode_name(instance));
+                     instance_phase_name(instance));
   if (!isfinite(value))
     return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
                      value);

@@ -42,7 +42,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   if (instance == NULL) return fmi2Error;
   if (!instance->situation->experiment_defined)
     return status_of(log_error(instance, "%s: expected fmi2SetupExperiment before it", __func__));
-  instance->situation->mode = MODE_INITIALIZATION;
+  instance->situation->phase = PHASE_INITIALIZATION;
   return fmi2OK;
 }
 
@@ -54,7 +54,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);
   if (instance == NULL) return fmi2Error;
-  instance->situation->mode = MODE_EVENT;
+  instance->situation->phase = PHASE_EVENT;
   return fmi2OK;
 }
 

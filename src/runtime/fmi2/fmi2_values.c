@@ -20,7 +20,7 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
  * it once.
  */
 static void tell_early_reading(struct Instance *instance, const fmi2ValueReference vr[], size_t nvr) {
-  if (instance->situation->mode != MODE_INITIALIZATION || instance->told_early_reading) return;
+  if (instance->situation->phase != PHASE_INITIALIZATION || instance->told_early_reading) return;
   for (size_t i = 0; i < nvr && !instance->told_early_reading; i++) {
     if (vr[i] >= lagrangian.variable_count || is_unknown(&lagrangian.variables[vr[i]])) continue;
     log_message(instance, STATUS_WARNING,

@@ -26,9 +26,9 @@ static double update(void *receiver, double time, double end) {
 static void update_at_end(struct Component *component) {
   struct Situation *situation = component->instance.situation;
   if (component->intermediate_update == NULL) return;
-  situation->mode = MODE_INTERMEDIATE_UPDATE;
+  situation->phase = PHASE_INTERMEDIATE_UPDATE;
   call_back(component, situation->time, situation->time);
-  if (situation->mode == MODE_INTERMEDIATE_UPDATE) situation->mode = MODE_STEP_COMPLETE;
+  if (situation->phase == PHASE_INTERMEDIATE_UPDATE) situation->phase = PHASE_STEP_COMPLETE;
 }
 
 /* Observes the steps of an instance whose importer wants to know of them. */
@@ -47,7 +47,7 @@ static void observe(struct Component *component) {
 static enum Status end_part_of_step(struct Component *component, double start) {
   struct Situation *situation = component->instance.situation;
   if (component->early_return_allowed && situation->time > start) {
-    situation->mode = MODE_STEP_COMPLETE;
+    situation->phase = PHASE_STEP_COMPLETE;
     component->has_returned_early = true;
     return STATUS_DONE;
   }
@@ -76,9 +76,9 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   observe(component);
   enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__);
   if (status == STATUS_DISCARD) status = end_part_of_step(component, currentCommunicationPoint);
-  if (status == STATUS_DONE && instance->situation->mode == MODE_STEP_COMPLETE) update_at_end(component);
+  if (status == STATUS_DONE && instance->situation->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* What went wrong in the callback was logged. */
-  if (instance->situation->mode == MODE_ERROR) status = STATUS_ERROR;
+  if (instance->situation->phase == PHASE_ERROR) status = STATUS_ERROR;
   bool is_at_event = status == STATUS_DONE && instance->situation->waiting_event != 0;
   bool is_early = is_at_event && instance->situation->time < currentCommunicationPoint + communicationStepSize;
   *eventHandlingNeeded = is_at_event;
@@ -91,7 +91,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
 fmi3Status fmi3EnterStepMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
   if (instance == NULL) return fmi3Error;
-  instance->situation->mode = MODE_STEP_COMPLETE;
+  instance->situation->phase = PHASE_STEP_COMPLETE;
   return fmi3OK;
 }
 

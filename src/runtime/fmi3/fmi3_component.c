@@ -107,7 +107,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
   if (!can_instantiate(&log, instanceName, instantiationToken, __func__) ||
       !can_be_intermediate(&log, requiredIntermediateVariables, nRequiredIntermediateVariables, __func__))
     return NULL;
-  if (eventModeUsed && lagrangian.switching == NULL) {
+  if (eventModeUsed && lagrangian.event_laws == NULL) {
     log_write(&log, STATUS_ERROR,
               "%s: eventModeUsed is true; expected false, since the system has no events (no hasEventMode)", __func__);
     return NULL;

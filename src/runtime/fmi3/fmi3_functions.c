@@ -24,7 +24,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
                                   .has_stop_time = stopTimeDefined,
                                   .has_tolerance = toleranceDefined};
   enum Status status = simulation_set_up(instance, &experiment, __func__);
-  if (status == STATUS_DONE) instance->situation->mode = MODE_INITIALIZATION;
+  if (status == STATUS_DONE) instance->situation->phase = PHASE_INITIALIZATION;
   return status_of(status);
 }
 
@@ -32,7 +32,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
   if (instance == NULL) return fmi3Error;
   enum Status status = simulation_start(instance, __func__);
-  if (status == STATUS_DONE && instance->uses_event_mode) instance->situation->mode = MODE_EVENT;
+  if (status == STATUS_DONE && instance->uses_event_mode) instance->situation->phase = PHASE_EVENT;
   return status_of(status);
 }
 
@@ -54,8 +54,8 @@ fmi3Status fmi3EnterEventMode(fmi3Instance c) {
     return status_of(log_error(instance,
                                "%s is not allowed in the state '%s' of an instance that was made with eventModeUsed "
                                "false; expected true",
-                               __func__, instance_mode_name(instance)));
-  instance->situation->mode = MODE_EVENT;
+                               __func__, instance_phase_name(instance)));
+  instance->situation->phase = PHASE_EVENT;
   return fmi3OK;
 }
 

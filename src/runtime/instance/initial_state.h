@@ -9,7 +9,7 @@
 
 /* Whether the simulation has not begun. */
 static inline bool is_before_start(const struct Instance *instance) {
-  return instance->situation->mode == MODE_INSTANTIATED || instance->situation->mode == MODE_INITIALIZATION;
+  return instance->situation->phase == PHASE_INSTANTIATED || instance->situation->phase == PHASE_INITIALIZATION;
 }
 
 /* The state was set, and keeps its value until the next reset. */

@@ -5,7 +5,7 @@
 #include "instance/initial_state.h"
 #include "instance/projection.h"
 #include "instance/solver.h"
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
 static size_t set_count(void) {
   return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
@@ -30,7 +30,7 @@ uint64_t situation_checksum(const void *situation) {
 
 void instance_reset(struct Instance *instance) {
   memset(instance->situation, 0, situation_size());
-  instance->situation->mode = MODE_INSTANTIATED;
+  instance->situation->phase = PHASE_INSTANTIATED;
   instance->situation->kind = (int32_t)instance->kind;
   instance->situation->tolerance = lagrangian.steps.tolerance;
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
@@ -53,7 +53,7 @@ static size_t acceleration_count(void) {
 }
 
 static size_t switching_work_count(void) {
-  return lagrangian.switching != NULL ? lagrangian.switching->work_count() + 2 * lagrangian.state_count : 0;
+  return lagrangian.event_laws != NULL ? lagrangian.event_laws->work_count() + 2 * lagrangian.state_count : 0;
 }
 
 static size_t evaluation_count(void) {
@@ -79,8 +79,8 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
-  if (lagrangian.switching != NULL)
-    instance->event_state = instance->switching_work + lagrangian.switching->work_count();
+  if (lagrangian.event_laws != NULL)
+    instance->event_state = instance->switching_work + lagrangian.event_laws->work_count();
   instance->work = instance->acceleration + 2 * acceleration_count();
 }
 
@@ -91,7 +91,7 @@ static void free_shown(const struct Instance *instance) {
 
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
-  bool shows = lagrangian.constraints.projection != NULL || lagrangian.switching != NULL;
+  bool shows = lagrangian.constraints.projection != NULL || lagrangian.event_laws != NULL;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
   struct Situation *situation = memory->allocate(1, situation_size());
   if (shows) {
@@ -124,17 +124,17 @@ void instance_restore(struct Instance *instance, const void *situation) {
   instance->told_singularity = 0;
 }
 
-const char *instance_mode_name(const struct Instance *instance) {
-  static const char *const names[MODE_COUNT] = {
-      [MODE_INSTANTIATED] = "instantiated",
-      [MODE_INITIALIZATION] = "initialization mode",
-      [MODE_EVENT] = "event mode",
-      [MODE_CONTINUOUS_TIME] = "continuous-time mode",
-      [MODE_STEP_COMPLETE] = "step complete",
-      [MODE_STEP_FAILED] = "step failed",
-      [MODE_TERMINATED] = "terminated",
-      [MODE_ERROR] = "error",
-      [MODE_INTERMEDIATE_UPDATE] = "intermediate update mode",
+const char *instance_phase_name(const struct Instance *instance) {
+  static const char *const names[PHASE_COUNT] = {
+      [PHASE_INSTANTIATED] = "instantiated",
+      [PHASE_INITIALIZATION] = "initialization mode",
+      [PHASE_EVENT] = "event mode",
+      [PHASE_CONTINUOUS_TIME] = "continuous-time mode",
+      [PHASE_STEP_COMPLETE] = "step complete",
+      [PHASE_STEP_FAILED] = "step failed",
+      [PHASE_TERMINATED] = "terminated",
+      [PHASE_ERROR] = "error",
+      [PHASE_INTERMEDIATE_UPDATE] = "intermediate update mode",
   };
-  return names[instance->situation->mode];
+  return names[instance->situation->phase];
 }

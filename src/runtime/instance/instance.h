@@ -13,17 +13,17 @@ enum { INPUT_ORDER = 3 }; /* the highest input derivative; an input is a polynom
 enum Kind { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
 
 /* Where an instance stands in its life. */
-enum Mode {
-  MODE_INSTANTIATED,
-  MODE_INITIALIZATION,
-  MODE_EVENT,
-  MODE_CONTINUOUS_TIME,
-  MODE_STEP_COMPLETE,
-  MODE_STEP_FAILED,
-  MODE_TERMINATED,
-  MODE_ERROR,
-  MODE_INTERMEDIATE_UPDATE, /* within a communication step, while values of it are told */
-  MODE_COUNT
+enum Phase {
+  PHASE_INSTANTIATED,
+  PHASE_INITIALIZATION,
+  PHASE_EVENT,
+  PHASE_CONTINUOUS_TIME,
+  PHASE_STEP_COMPLETE,
+  PHASE_STEP_FAILED,
+  PHASE_TERMINATED,
+  PHASE_ERROR,
+  PHASE_INTERMEDIATE_UPDATE, /* within a communication step, while values of it are told */
+  PHASE_COUNT
 };
 
 /*
@@ -43,8 +43,8 @@ struct Span {
  * were set (1, else 0), and what the solver keeps.
  */
 struct Situation {
-  int32_t mode; /* enum Mode */
-  int32_t kind; /* enum Kind */
+  int32_t phase; /* enum Phase */
+  int32_t kind;  /* enum Kind */
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the step to come */
   int32_t changed;               /* enum Change: what was, since the last step */
@@ -124,8 +124,8 @@ static inline struct Point instance_point(const struct Instance *instance) {
                         .work = instance->point_work};
 }
 
-/* The mode as messages name it. */
-const char *instance_mode_name(const struct Instance *instance);
+/* The phase as messages name it. */
+const char *instance_phase_name(const struct Instance *instance);
 
 /* Bytes of the situation of this system. */
 size_t situation_size(void);

@@ -31,6 +31,6 @@ enum Status log_error(struct Instance *instance, const char *format, ...) {
   va_start(arguments, format);
   write_arguments(&instance->log, STATUS_ERROR, format, arguments);
   va_end(arguments);
-  instance->situation->mode = MODE_ERROR;
+  instance->situation->phase = PHASE_ERROR;
   return STATUS_ERROR;
 }

@@ -22,7 +22,7 @@ struct Projection {
    * The same with the state at the begin of a step, after parameters or inputs were set. False after logging as what
    * discards the step why the constraints cannot be fulfilled; the state is then as it was.
    */
-  bool (*resume)(struct Instance *instance);
+  bool (*follow_change)(struct Instance *instance);
   /* The name of the constraint that has least hold on a state, as at the limit of a mechanism; NULL where unknown. */
   const char *(*weakest)(struct Instance *instance, double time, const double *state);
 };

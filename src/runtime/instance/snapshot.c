@@ -45,12 +45,12 @@ bool snapshot_is_finite(const void *numbers, size_t count) {
   return true;
 }
 
-/* Whether such an instance can come to the mode. */
-static bool has_mode(const struct Instance *instance, int32_t mode) {
-  bool of_exchange = mode == MODE_EVENT || mode == MODE_CONTINUOUS_TIME;
-  bool of_steps = mode == MODE_STEP_COMPLETE || mode == MODE_STEP_FAILED;
-  if (mode == MODE_EVENT && instance->uses_event_mode) return true;
-  return mode >= 0 && mode < MODE_INTERMEDIATE_UPDATE &&
+/* Whether such an instance can come to the phase. */
+static bool has_phase(const struct Instance *instance, int32_t phase) {
+  bool of_exchange = phase == PHASE_EVENT || phase == PHASE_CONTINUOUS_TIME;
+  bool of_steps = phase == PHASE_STEP_COMPLETE || phase == PHASE_STEP_FAILED;
+  if (phase == PHASE_EVENT && instance->uses_event_mode) return true;
+  return phase >= 0 && phase < PHASE_INTERMEDIATE_UPDATE &&
          !(instance->kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
 }
 
@@ -62,9 +62,9 @@ static bool can_wait(const struct Instance *instance, const struct Situation *fi
 }
 
 /* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
-static bool may_lack_state(int32_t mode) {
+static bool may_lack_state(int32_t phase) {
   return lagrangian.initial_state != NULL &&
-         (mode == MODE_INSTANTIATED || mode == MODE_INITIALIZATION || mode == MODE_ERROR);
+         (phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR);
 }
 
 /* Whether each of the numbers is 0 or 1. */
@@ -127,11 +127,11 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
-  return has_mode(instance, fixed->mode) && are_choices(fixed) && can_wait(instance, fixed) &&
+  return has_phase(instance, fixed->phase) && are_choices(fixed) && can_wait(instance, fixed) &&
          snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
-         (may_lack_state(fixed->mode) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
+         (may_lack_state(fixed->phase) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
          snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
          are_modes(situation + parameters) &&

@@ -340,7 +340,7 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
                 time, what, lagrangian.constraints.names[constraint], -work_of(instance).lack[constraint]);
 }
 
-static bool resume(struct Instance *instance) {
+static bool follow_change(struct Instance *instance) {
   struct Work work = work_of(instance);
   double time = instance->situation->time;
   const char *what = "coordinates";
@@ -376,5 +376,8 @@ static const char *weakest(struct Instance *instance, double time, const double 
   return lagrangian.constraints.names[found];
 }
 
-const struct Projection projection = {
-    .project = project, .drift = drift, .make_consistent = make_consistent, .resume = resume, .weakest = weakest};
+const struct Projection projection = {.project = project,
+                                      .drift = drift,
+                                      .make_consistent = make_consistent,
+                                      .follow_change = follow_change,
+                                      .weakest = weakest};

@@ -11,7 +11,7 @@ static bool move_to(struct Instance *instance, double time) {
   if (!solver_take_state(instance, time) || solver_project(instance, time, instance->state) != NULL) return false;
   evaluate_advance_inputs(instance, time); /* from the time of the situation */
   instance->situation->time = time;
-  instance->situation->mode = MODE_INTERMEDIATE_UPDATE;
+  instance->situation->phase = PHASE_INTERMEDIATE_UPDATE;
   return true;
 }
 
@@ -22,11 +22,11 @@ void intermediate_observe(struct Instance *instance, struct CommunicationStep *s
   memcpy(intermediate->kept, instance->situation, situation_size());
   bool has_values = move_to(instance, time);
   if (has_values) end = intermediate->update(intermediate->receiver, time, end);
-  bool failed = instance->situation->mode == MODE_ERROR;
+  bool failed = instance->situation->phase == PHASE_ERROR;
   memcpy(instance->situation, intermediate->kept, situation_size());
   instance->singular = singular;
   if (failed) {
-    instance->situation->mode = MODE_ERROR;
+    instance->situation->phase = PHASE_ERROR;
     end = time;
   }
   if (!(end < step->end)) return;

@@ -9,8 +9,9 @@
 static bool may_differ(const struct Instance *instance) {
   const struct Situation *situation = instance->situation;
   if (instance->shown == NULL) return false; /* nothing moves what was set */
-  if (situation->mode == MODE_INITIALIZATION) return true;
-  return lagrangian.switching != NULL && situation->mode == MODE_STEP_COMPLETE && situation->changed == CHANGED_VALUES;
+  if (situation->phase == PHASE_INITIALIZATION) return true;
+  return lagrangian.event_laws != NULL && situation->phase == PHASE_STEP_COMPLETE &&
+         situation->changed == CHANGED_VALUES;
 }
 
 static void exchange_situations(struct Instance *instance) {
@@ -40,7 +41,7 @@ static void find_silently(struct Instance *instance, const char *function) {
   char reason[MESSAGE_LENGTH] = "";
   struct Log log = instance->log;
   uint64_t told_singularity = instance->told_singularity;
-  bool starts = instance->situation->mode == MODE_INITIALIZATION;
+  bool starts = instance->situation->phase == PHASE_INITIALIZATION;
   instance->log = (struct Log){keep_message, reason, 1u << STATUS_DISCARD | 1u << STATUS_ERROR};
   if (starts) instance->shown_is_found = start_find(instance, function) == STATUS_DONE;
   else instance->shown_is_found = evaluate_prepare(instance) == STATUS_DONE && start_step(instance);
@@ -65,10 +66,10 @@ void reading_begin(struct Instance *instance, const char *function) {
 
 void reading_end(struct Instance *instance) {
   if (!instance->is_reading) return;
-  bool failed = instance->situation->mode == MODE_ERROR;
+  bool failed = instance->situation->phase == PHASE_ERROR;
   exchange_situations(instance);
   instance->is_reading = instance->modes_stay = false;
   if (!failed) return;
-  instance->shown->mode = instance->situation->mode;
-  instance->situation->mode = MODE_ERROR;
+  instance->shown->phase = instance->situation->phase;
+  instance->situation->phase = PHASE_ERROR;
 }

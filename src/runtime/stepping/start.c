@@ -3,7 +3,7 @@
 #include "evaluation/evaluate.h"
 #include "instance/initial_state.h"
 #include "instance/projection.h"
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 
 static bool is_prepared(struct Instance *instance) {
   instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
@@ -18,12 +18,13 @@ static bool has_accelerations(struct Instance *instance) {
 
 enum Status start_find(struct Instance *instance, const char *function) {
   if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
-  if (lagrangian.switching != NULL) lagrangian.switching->guess(instance);
+  if (lagrangian.event_laws != NULL) lagrangian.event_laws->guess(instance);
   bool is_ready = is_prepared(instance);
   if (is_ready && lagrangian.constraints.projection != NULL &&
       !lagrangian.constraints.projection->make_consistent(instance, function))
     return STATUS_ERROR;
-  if (is_ready && lagrangian.switching != NULL && !lagrangian.switching->start(instance, function)) return STATUS_ERROR;
+  if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance, function))
+    return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
   log_singularity(instance, STATUS_ERROR, instance->situation->time);
   return log_error(instance, "%s: the system has no acceleration at its start values", function);
@@ -31,7 +32,8 @@ enum Status start_find(struct Instance *instance, const char *function) {
 
 bool start_step(struct Instance *instance) {
   double time = instance->situation->time;
-  if (lagrangian.switching != NULL && !lagrangian.switching->release(instance, time)) return false;
-  if (lagrangian.constraints.projection != NULL && !lagrangian.constraints.projection->resume(instance)) return false;
-  return lagrangian.switching == NULL || lagrangian.switching->resume(instance, time);
+  if (lagrangian.event_laws != NULL && !lagrangian.event_laws->part_contacts(instance, time)) return false;
+  if (lagrangian.constraints.projection != NULL && !lagrangian.constraints.projection->follow_change(instance))
+    return false;
+  return lagrangian.event_laws == NULL || lagrangian.event_laws->settle_change(instance, time);
 }

@@ -10,7 +10,7 @@
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 #include "instance/projection.h"
-#include "instance/switching.h"
+#include "instance/event_laws.h"
 #include "stepping/start.h"
 
 enum StepResult {
@@ -93,7 +93,7 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
                               const struct EventProgress *progress, struct Cost *cost) {
   double work = work_since(instance, step, cost->before);
   const char *problem = excess(step, work);
-  if (problem != NULL && lagrangian.switching != NULL) lagrangian.switching->explain(instance, step, progress);
+  if (problem != NULL && lagrangian.event_laws != NULL) lagrangian.event_laws->explain(instance, step, progress);
   if (problem != NULL) return problem;
   bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
   if (is_slow && !cost->is_told) warn_of_slowness(instance, step, work);
@@ -104,22 +104,22 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
 /* One step of the solver, or one past a zero that it cannot reach. NULL, or the reason why there is none. */
 static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
                                 struct EventProgress *progress) {
-  const struct Switching *switcher = lagrangian.switching;
+  const struct EventLaws *laws = lagrangian.event_laws;
   const char *problem = lagrangian.solver->advance(instance, step);
-  if (problem == NULL || switcher == NULL) return problem;
-  return switcher->pass_barrier(instance, step, problem, progress);
+  if (problem == NULL || laws == NULL) return problem;
+  return laws->pass_barrier(instance, step, problem, progress);
 }
 
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
   const struct Span *last = &instance->situation->last_step;
-  const struct Switching *switcher = lagrangian.switching;
+  const struct EventLaws *laws = lagrangian.event_laws;
   struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
   struct Cost cost = {.is_told = false};
   memcpy(cost.before, instance->situation->statistics, sizeof cost.before);
   int resting = 0;
   for (;; step->count++) {
-    const char *problem = switcher != NULL ? switcher->pass(instance, step, &progress) : NULL;
+    const char *problem = laws != NULL ? laws->pass(instance, step, &progress) : NULL;
     *ends_at_event = problem != NULL;
     if (problem != NULL) return problem;
     bool is_inside = last->end > step->start && last->end < step->end;
@@ -135,9 +135,9 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
 
 /* Where a mechanism comes to its limit, its user looks for the part that holds it. */
 static void log_weakest(struct Instance *instance, double time) {
-  const struct Switching *switcher = lagrangian.switching;
+  const struct EventLaws *laws = lagrangian.event_laws;
   const char *name = lagrangian.constraints.projection->weakest(instance, time, instance->state);
-  if (name != NULL && (switcher == NULL || !switcher->holds_at_times(name)))
+  if (name != NULL && (laws == NULL || !laws->holds_at_times(name)))
     log_message(
         instance, STATUS_DISCARD,
         "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "
@@ -186,7 +186,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
-    if (problem == NULL && lagrangian.switching != NULL) law = lagrangian.switching->check(instance, step->end);
+    if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
     if (problem == NULL && law == NULL) return STEP_DONE;
   }
   *reached = problem != NULL ? last->end : last->start;
@@ -276,6 +276,6 @@ enum Status communication_step(struct Instance *instance, double time, double si
   situation->input_derivatives_set = 0;
   situation->time = reached;
   if (result == STEP_DONE) return STATUS_DONE;
-  situation->mode = MODE_STEP_FAILED;
+  situation->phase = PHASE_STEP_FAILED;
   return STATUS_DISCARD;
 }

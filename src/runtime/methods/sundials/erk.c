@@ -30,7 +30,7 @@ static int keep_constraints(realtype time, N_Vector state, void *data) {
 static bool configure(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
   /* The motion goes on from a state inside of a step where it switches; else such a state is only told. */
-  int degree = lagrangian.switching != NULL ? 5 : 3;
+  int degree = lagrangian.event_laws != NULL ? 5 : 3;
   SUNContext context = erk->sundials.context;
   erk->before = N_VClone(erk->sundials.state);
   erk->rate = N_VClone(erk->sundials.state);

@@ -2,8 +2,8 @@
  * Switches a system: finds where a mode may change, and the modes, velocities and states behind an event. FMUs that do not
  * switch do not hold it.
  */
-#ifndef SWITCHING_H
-#define SWITCHING_H
+#ifndef EVENT_LAWS_H
+#define EVENT_LAWS_H
 
 #include "instance/instance.h"
 
@@ -29,7 +29,7 @@ struct EventProgress {
   size_t indicator; /* whose zero the last one was */
 };
 
-struct Switching {
+struct EventLaws {
   /* Numbers of workspace that an instance needs. */
   size_t (*work_count)(void);
   /*
@@ -47,9 +47,9 @@ struct Switching {
    * Opens contacts that a parameter, an input or a state has moved apart; false after logging why the step is discarded,
    * as bodies that stand in one another.
    */
-  bool (*release)(struct Instance *instance, double time);
+  bool (*part_contacts)(struct Instance *instance, double time);
   /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
-  bool (*resume)(struct Instance *instance, double time);
+  bool (*settle_change)(struct Instance *instance, double time);
   /*
    * The modes and the state behind the event that ended a step, or after a parameter, an input or a state was set; changed
    * tells whether anything was. NULL, or the reason why the motion cannot go on.
@@ -78,6 +78,6 @@ struct Switching {
   bool (*is_due)(struct Instance *instance);
 };
 
-extern const struct Switching switching;
+extern const struct EventLaws event_laws;
 
 #endif

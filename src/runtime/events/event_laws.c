@@ -1,0 +1,33 @@
+#include "instance/event_laws.h"
+
+#include <string.h>
+
+#include "events/branches.h"
+#include "events/exchange.h"
+#include "events/passing.h"
+#include "events/settle.h"
+#include "events/settlement.h"
+
+static bool holds_at_times(const char *constraint) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_held = false;
+  for (size_t i = 0; i < switches->contact_count; i++) is_held |= strcmp(switches->contacts[i].name, constraint) == 0;
+  for (size_t i = 0; i < switches->friction_count; i++) is_held |= strcmp(switches->frictions[i].name, constraint) == 0;
+  return is_held;
+}
+
+const struct EventLaws event_laws = {.work_count = settlement_work_count,
+                                     .settle = settle,
+                                     .guess = branches_guess,
+                                     .start = switching_start,
+                                     .part_contacts = switching_part_contacts,
+                                     .settle_change = switching_settle_change,
+                                     .update = switching_update,
+                                     .pass = switching_pass,
+                                     .pass_barrier = switching_pass_barrier,
+                                     .explain = switching_explain,
+                                     .holds_at_times = holds_at_times,
+                                     .check = switching_check,
+                                     .come_back = exchange_come_back,
+                                     .indicators = exchange_indicators,
+                                     .is_due = exchange_is_due};
