@@ -17,41 +17,47 @@ static const double shortest_slip = 1e-4;
 
 static const char neither[] = "a friction changes to and fro there without end";
 
-/* Where a contact gives no force, as of mu = 0, nothing sticks. */
-static double frictionless_mode(const struct Settlement *settlement, size_t place, double mode, bool is_moving) {
-  double velocity = settlement->value[place], rate = settlement->value[place + FRICTION_RATE];
-  double next = is_moving ? velocity : fabs(rate) > settlement->noise[place + FRICTION_RATE] ? rate : mode;
-  return next < 0.0 ? -1.0 : 1.0;
-}
-
 /* What decides on the mode of a friction. */
 struct FrictionState {
   double mode, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
+  double noise, noise_of_rate;                  /* what rounding may make of velocity and rate */
   bool is_hit;                                  /* its zero was found, or its limit reached */
   bool is_first;                                /* it has not switched in this settlement */
   bool may_jump;                                /* velocities have jumped, or the simulation starts */
   bool is_moving;                               /* by more than rounding */
+  bool has_no_force;                            /* the contact that it rests on gives none, as of mu = 0 */
 };
 
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
   size_t indicator = friction_indicator(settlement->switches, friction);
+  const double *value = &settlement->value[place], *noise = &settlement->noise[place];
   struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
-                                .velocity = settlement->value[place],
-                                .rate = settlement->value[place + FRICTION_RATE],
-                                .stiction = settlement->value[place + FRICTION_STICTION],
+                                .velocity = value[FRICTION_VELOCITY],
+                                .rate = value[FRICTION_RATE],
+                                .stiction = value[FRICTION_STICTION],
+                                .noise = noise[FRICTION_VELOCITY],
+                                .noise_of_rate = noise[FRICTION_RATE],
                                 .is_hit = is_hit(settlement, indicator),
                                 .is_first = settlement->flips[indicator] == 0.0,
                                 .may_jump = settlement->jumped || settlement->occasion == AT_START};
   if (state.mode == 0.0) state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
+  state.has_no_force = settlement->switches->rests_on != NULL && state.stiction == 0.0 && value[FRICTION_FORCE] == 0.0;
   /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
-  double noise = settlement->noise[place] +
-                 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
+  double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
-  state.is_moving = fabs(state.velocity) > noise && (state.may_jump || !is_at_zero);
+  state.is_moving = fabs(state.velocity) > state.noise + noise_in_time && (state.may_jump || !is_at_zero);
   return state;
+}
+
+/* Of one without force: nothing sticks. */
+static double mode_without_force(const struct FrictionState *state) {
+  double next = state->is_moving                           ? state->velocity
+                : fabs(state->rate) > state->noise_of_rate ? state->rate
+                                                           : state->mode;
+  return next < 0.0 ? -1.0 : 1.0;
 }
 
 /* Of one that sticks. */
@@ -63,24 +69,21 @@ static double mode_from_rest(const struct Settlement *settlement, const struct F
 }
 
 /* Of one that slides, at a velocity that has not jumped. */
-static double mode_from_sliding(const struct Settlement *settlement, size_t place, const struct FrictionState *state) {
+static double mode_from_sliding(const struct Settlement *settlement, const struct FrictionState *state) {
   bool turns = state->mode * state->velocity < 0.0 || state->is_hit;
   if (state->is_moving && !turns) return state->mode;
   if (settlement->occasion == AT_START && state->is_first) return 0.0;
-  double least = -settlement->noise[place + FRICTION_RATE] - settlement->noise[place] / shortest_slip;
-  bool leaves = !state->is_moving && state->mode * state->rate >= least && (!turns || !state->is_first);
+  double least_rate = -state->noise_of_rate - state->noise / shortest_slip;
+  bool leaves = !state->is_moving && state->mode * state->rate >= least_rate && (!turns || !state->is_first);
   return leaves ? state->mode : 0.0;
 }
 
 /* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
 static double friction_mode(const struct Settlement *settlement, size_t friction) {
-  size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
   struct FrictionState state = friction_state(settlement, friction);
-  bool is_absent = settlement->switches->rests_on != NULL && state.stiction == 0.0 &&
-                   settlement->value[place + FRICTION_FORCE] == 0.0;
-  if (is_absent) return frictionless_mode(settlement, place, state.mode, state.is_moving);
+  if (state.has_no_force) return mode_without_force(&state);
   if (state.is_moving && state.may_jump) return state.velocity > 0.0 ? 1.0 : -1.0;
-  return state.mode == 0.0 ? mode_from_rest(settlement, &state) : mode_from_sliding(settlement, place, &state);
+  return state.mode == 0.0 ? mode_from_rest(settlement, &state) : mode_from_sliding(settlement, &state);
 }
 
 static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {

@@ -4,6 +4,7 @@
  * made on every machine and after a saved state. The series begin; where their coefficients promise that an implicit
  * method gets further, that is tried, and stays as long as it does.
  */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -74,14 +75,16 @@ static bool are_possible_counts(const struct Choice *choice) {
          choice->crosses <= 1;
 }
 
-/* Not NaN, which no comparison holds of. */
+/* Not NaN, of which no comparison holds. */
+static bool is_up_to(double number, double largest) {
+  return number >= 0.0 && number <= largest;
+}
+
 static bool are_possible_numbers(const struct Choice *choice) {
-  bool is_work = choice->work >= 0.0 && choice->work <= LARGEST_WORK;
-  bool is_trial_work = choice->trial_work >= 0.0 && choice->trial_work <= LARGEST_WORK;
-  bool are_speeds = choice->last_speed >= 0.0 && choice->taylor_speed >= 0.0;
-  bool are_rates = choice->taylor_rate >= 0.0 && choice->rate >= 0.0;
-  bool is_step = choice->promised_step >= 0.0 && isfinite(choice->promised_step);
-  return isfinite(choice->begin) && is_work && is_trial_work && are_speeds && are_rates && is_step;
+  return isfinite(choice->begin) && is_up_to(choice->work, LARGEST_WORK) &&
+         is_up_to(choice->trial_work, LARGEST_WORK) && is_up_to(choice->promised_step, DBL_MAX) &&
+         is_up_to(choice->last_speed, INFINITY) && is_up_to(choice->taylor_speed, INFINITY) &&
+         is_up_to(choice->taylor_rate, INFINITY) && is_up_to(choice->rate, INFINITY);
 }
 
 static bool auto_could_save(const struct Situation *situation, const void *saved) {

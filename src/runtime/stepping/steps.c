@@ -63,9 +63,18 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
       lagrangian.steps.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
 }
 
-/* Operations in the communication step; before: the statistics as it began. */
-static double work_since(const struct Instance *instance, const struct CommunicationStep *step, const int64_t *before) {
-  const int64_t *present = instance->situation->statistics;
+/* What is known on the way through a communication step. */
+struct Course {
+  struct EventProgress progress;
+  int64_t before[STATISTIC_COUNT]; /* the statistics as it began */
+  bool is_told;                    /* that it is slow */
+  int resting;                     /* the last steps, which were too short to change the time */
+};
+
+/* Operations in the communication step. */
+static double work_in_step(const struct Instance *instance, const struct CommunicationStep *step,
+                           const struct Course *course) {
+  const int64_t *present = instance->situation->statistics, *before = course->before;
   return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.steps.work.evaluation +
          (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.steps.work.event +
          (double)step->count * lagrangian.steps.work.step;
@@ -82,54 +91,56 @@ static const char *excess(const struct CommunicationStep *step, double work) {
              : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
 }
 
-/* What a communication step has cost; before: the statistics as it began. */
-struct Cost {
-  int64_t before[STATISTIC_COUNT];
-  bool is_told; /* that it is slow */
-};
-
 /* NULL, or why the solver gives up. */
-static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step,
-                              const struct EventProgress *progress, struct Cost *cost) {
-  double work = work_since(instance, step, cost->before);
+static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step, struct Course *course) {
+  double work = work_in_step(instance, step, course);
   const char *problem = excess(step, work);
-  if (problem != NULL && lagrangian.event_laws != NULL) lagrangian.event_laws->explain(instance, step, progress);
+  if (problem != NULL && lagrangian.event_laws != NULL)
+    lagrangian.event_laws->explain(instance, step, &course->progress);
   if (problem != NULL) return problem;
   bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
-  if (is_slow && !cost->is_told) warn_of_slowness(instance, step, work);
-  cost->is_told |= is_slow;
+  if (is_slow && !course->is_told) warn_of_slowness(instance, step, work);
+  course->is_told |= is_slow;
   return NULL;
 }
 
 /* One step of the solver, or one past a zero that it cannot reach. NULL, or the reason why there is none. */
-static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
-                                struct EventProgress *progress) {
+static const char *advance_once(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
   const struct EventLaws *laws = lagrangian.event_laws;
-  const char *problem = lagrangian.solver->advance(instance, step);
-  if (problem == NULL || laws == NULL) return problem;
-  return laws->pass_barrier(instance, step, problem, progress);
+  const struct Span *last = &instance->situation->last_step;
+  const char *problem = check_cost(instance, step, course);
+  if (problem != NULL) return problem;
+  problem = lagrangian.solver->advance(instance, step);
+  if (problem != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, problem, &course->progress);
+  if (problem != NULL) return problem;
+  step->count++;
+  course->resting = solver_rests(last->start, last->end - last->start) ? course->resting + 1 : 0;
+  return course->resting < RESTING_STEP_LIMIT ? NULL : solver_resting;
+}
+
+/* Goes through the first event in the solver's last step, which then ends there. NULL, or the reason why the motion does. */
+static const char *pass_events(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
+  return lagrangian.event_laws != NULL ? lagrangian.event_laws->pass(instance, step, &course->progress) : NULL;
+}
+
+static void tell_observer(struct Instance *instance, struct CommunicationStep *step) {
+  double time = instance->situation->last_step.end;
+  bool is_inside = time > step->start && time < step->end;
+  if (instance->observe != NULL && is_inside) instance->observe(instance, step, time);
 }
 
 /* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
-  const struct Span *last = &instance->situation->last_step;
-  const struct EventLaws *laws = lagrangian.event_laws;
-  struct EventProgress progress = {.searched = step->start, .gathered = instance->situation->gathered};
-  struct Cost cost = {.is_told = false};
-  memcpy(cost.before, instance->situation->statistics, sizeof cost.before);
-  int resting = 0;
-  for (;; step->count++) {
-    const char *problem = laws != NULL ? laws->pass(instance, step, &progress) : NULL;
+  struct Course course = {.progress = {.searched = step->start, .gathered = instance->situation->gathered}};
+  memcpy(course.before, instance->situation->statistics, sizeof course.before);
+  for (;;) {
+    const char *problem = pass_events(instance, step, &course);
     *ends_at_event = problem != NULL;
     if (problem != NULL) return problem;
-    bool is_inside = last->end > step->start && last->end < step->end;
-    if (instance->observe != NULL && is_inside) instance->observe(instance, step, last->end);
-    if (last->end >= step->end) return NULL;
-    problem = check_cost(instance, step, &progress, &cost);
-    if (problem == NULL) problem = advance_once(instance, step, &progress);
+    tell_observer(instance, step);
+    if (instance->situation->last_step.end >= step->end) return NULL;
+    problem = advance_once(instance, step, &course);
     if (problem != NULL) return problem;
-    resting = solver_rests(last->start, last->end - last->start) ? resting + 1 : 0;
-    if (resting == RESTING_STEP_LIMIT) return solver_resting;
   }
 }
 

@@ -60,14 +60,26 @@ static void take_least_forces(const struct Frame *frame, size_t number) {
 
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
 
-/* The instructions of a run; R, A, B and C are the result and the operands. */
+/*
+ * Ends a case: does the same for all count instructions of a run, of so many words each, which name the result R and the
+ * operands A, B and C in their spaces. Of series, these are coefficients k, and ROW_R the whole row.
+ */
 #define EACH(size, ...)                                                                                                \
   for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                              \
   break
-
 #define R r[code[0]]
 #define A a[code[1]]
 #define B b[code[2]]
+#define C c[code[3]]
+#define ROW_R (row_r + code[0])
+#define ROW_A (row_a + code[1])
+#define ROW_B (row_b + code[2])
+#define ROW_C (row_c + code[3])
+
+/* Of the operand with this number, 0 for the result, in all instructions of a run. */
+static inline uint32_t space_of_operand(uint32_t spaces, int number) {
+  return spaces >> number * SPACE_BITS & SPACE_MASK;
+}
 
 int instructions_run(const struct Frame *frame, const uint32_t *code) {
   double *const *base = frame->base;
@@ -75,8 +87,8 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
     uint32_t count = code[1], spaces = code[2];
-    double *r = base[spaces & SPACE_MASK];
-    const double *a = base[spaces >> SPACE_BITS & SPACE_MASK], *b = base[spaces >> 2 * SPACE_BITS & SPACE_MASK];
+    double *r = base[space_of_operand(spaces, 0)];
+    const double *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
     switch (opcode) {
     case COPY: EACH(2, R = A);
@@ -122,21 +134,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
   }
 }
 
-#undef R
-#undef A
-#undef B
-
-/* Coefficients k, and whole rows. */
-#define R r[code[0]]
-#define A a[code[1]]
-#define B b[code[2]]
-#define C c[code[3]]
-#define ROW_R (row_r + code[0])
-#define ROW_A (row_a + code[1])
-#define ROW_B (row_b + code[2])
-#define ROW_C (row_c + code[3])
-
-/* With code of its own for each order. */
+/* The same with code of its own for each order. */
 #define EACH_OF_ORDER(size, order, ...)                                                                                \
   case (order): {                                                                                                      \
     enum { K = (order) };                                                                                              \
@@ -177,8 +175,8 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
     uint32_t count = code[1], spaces = code[2];
-    const uint32_t space_r = spaces & SPACE_MASK, space_a = spaces >> SPACE_BITS & SPACE_MASK;
-    const uint32_t space_b = spaces >> 2 * SPACE_BITS & SPACE_MASK, space_c = spaces >> 3 * SPACE_BITS & SPACE_MASK;
+    const uint32_t space_r = space_of_operand(spaces, 0), space_a = space_of_operand(spaces, 1);
+    const uint32_t space_b = space_of_operand(spaces, 2), space_c = space_of_operand(spaces, 3);
     double *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);
     const double *const row_a = base[space_a], *const a = row_a + (space_a >= SPACE_ROW ? k : 0);
     const double *const row_b = base[space_b], *const b = row_b + (space_b >= SPACE_ROW ? k : 0);
