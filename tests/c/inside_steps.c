@@ -55,9 +55,7 @@ int main(int count, char **words) {
   double end = count == 2 ? strtod(words[1], NULL) : 0.0;
   struct Instance instance;
   if (!(end > 0.0) || !instance_create(&instance, KIND_CO_SIMULATION, &memory, &log)) return 2;
-  if (simulation_set_up(&instance, &experiment, "test") != STATUS_DONE ||
-      simulation_start(&instance, "test") != STATUS_DONE)
-    return 1;
+  if (simulation_set_up(&instance, &experiment) != STATUS_DONE || simulation_start(&instance) != STATUS_DONE) return 1;
   struct Task task = {&instance, end, 1};
   if (solver->run == NULL) go(&task);
   else if (!solver->run(&instance, go, &task)) return 1;

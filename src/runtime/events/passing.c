@@ -36,11 +36,11 @@ static const char *modes_at(struct Instance *instance, double time, double *stat
   return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
 }
 
-bool switching_start(struct Instance *instance, const char *function) {
+bool switching_start(struct Instance *instance) {
   instance->modes_stay = true;
   const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
   instance->modes_stay = false;
-  if (problem != NULL) log_error(instance, "%s: %s, at the start values", function, problem);
+  if (problem != NULL) refuse_call(instance, "%s, at the start values", problem);
   return problem == NULL;
 }
 

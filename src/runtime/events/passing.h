@@ -5,7 +5,7 @@
 #include "instance/event_laws.h"
 
 /* The functions of the same names in struct EventLaws. */
-bool switching_start(struct Instance *instance, const char *function);
+bool switching_start(struct Instance *instance);
 bool switching_part_contacts(struct Instance *instance, double time);
 bool switching_settle_change(struct Instance *instance, double time);
 const char *switching_check(struct Instance *instance, double time);

@@ -41,36 +41,33 @@ static enum Status follow(struct Instance *instance, const struct Point *point, 
 }
 
 static enum Status set_seed(struct Instance *instance, struct Direction *direction,
-                            const struct ScalarVariable *variable, double value, const char *function) {
+                            const struct ScalarVariable *variable, double value) {
   if (!isfinite(value))
-    return log_error(instance, "%s: the seed of '%s' is %g; expected a finite number", function, variable->name, value);
+    return refuse_call(instance, "the seed of '%s' is %g; expected a finite number", variable->name, value);
   switch (variable->kind) {
   case VARIABLE_TIME: direction->seed.time = value; return STATUS_DONE;
   case VARIABLE_STATE: direction->state[variable->index] = value; return STATUS_DONE;
   case VARIABLE_INPUT: direction->input[variable->index] = value; return STATUS_DONE;
   case VARIABLE_PARAMETER: direction->parameter[variable->index] = value; return STATUS_DONE;
-  default:
-    return log_error(instance, "%s: '%s' is no known; expected a state, an input or a parameter", function,
-                     variable->name);
+  default: return refuse_call(instance, "'%s' is no known; expected a state, an input or a parameter", variable->name);
   }
 }
 
-static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable,
-                                 const char *function) {
+static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable) {
   if (is_unknown(variable)) return STATUS_DONE;
-  return log_error(instance, "%s: '%s' is no unknown; expected an output or a state derivative", function,
-                   variable->name);
+  return refuse_call(instance, "'%s' is no unknown; expected an output or a state derivative", variable->name);
 }
 
 /* Reads the unknowns' derivatives along the direction. */
 static enum Status read_along(struct Instance *instance, const struct Point *point, const struct Direction *direction,
-                              const unsigned *reference, size_t count, double *value, const char *function) {
+                              const unsigned *reference, size_t count, double *value) {
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
     double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
                                        direction->acceleration, direction->acceleration_along);
     if (!isfinite(derivative)) {
-      log_message(instance, STATUS_DISCARD, "%s: the derivative of '%s' is not finite here", function, variable->name);
+      log_message(instance, STATUS_DISCARD, "%s: the derivative of '%s' is not finite here", instance->function,
+                  variable->name);
       return STATUS_DISCARD;
     }
     value[i] = derivative;
@@ -79,42 +76,37 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
 }
 
 static enum Status derivative_along_seed(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                         const unsigned *known, size_t known_count, const double *seed, double *value,
-                                         const char *function) {
+                                         const unsigned *known, size_t known_count, const double *seed, double *value) {
   struct Direction direction = direction_create(instance);
   for (size_t i = 0; i < known_count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL, function);
-    if (variable == NULL || set_seed(instance, &direction, variable, seed[i], function) != STATUS_DONE)
-      return STATUS_ERROR;
+    const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL);
+    if (variable == NULL || set_seed(instance, &direction, variable, seed[i]) != STATUS_DONE) return STATUS_ERROR;
   }
   for (size_t i = 0; i < unknown_count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL, function);
-    if (variable == NULL || check_unknown(instance, variable, function) != STATUS_DONE) return STATUS_ERROR;
+    const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL);
+    if (variable == NULL || check_unknown(instance, variable) != STATUS_DONE) return STATUS_ERROR;
   }
   initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
   enum Status status = evaluate_prepare(instance);
   struct Point point = instance_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
-  return read_along(instance, &point, &direction, unknown, unknown_count, value, function);
+  return read_along(instance, &point, &direction, unknown, unknown_count, value);
 }
 
 enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                   const unsigned *known, size_t known_count, const double *seed, double *value,
-                                   const char *function) {
-  reading_begin(instance, function);
-  enum Status status =
-      derivative_along_seed(instance, unknown, unknown_count, known, known_count, seed, value, function);
+                                   const unsigned *known, size_t known_count, const double *seed, double *value) {
+  reading_begin(instance);
+  enum Status status = derivative_along_seed(instance, unknown, unknown_count, known, known_count, seed, value);
   reading_end(instance);
   return status;
 }
 
 /* The derivatives of all unknowns by one known, each times its seed, in the workspace column[unknown_count]. */
 static enum Status weighted_column(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                   unsigned known, const double *seed, double *column, double *value,
-                                   const char *function) {
+                                   unsigned known, const double *seed, double *column, double *value) {
   const double one = 1.0;
-  enum Status status = directional_derivative(instance, unknown, unknown_count, &known, 1, &one, column, function);
+  enum Status status = directional_derivative(instance, unknown, unknown_count, &known, 1, &one, column);
   double sum = 0.0;
   for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++) sum += seed[i] * column[i];
   if (status == STATUS_DONE) *value = sum;
@@ -122,22 +114,19 @@ static enum Status weighted_column(struct Instance *instance, const unsigned *un
 }
 
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                               const unsigned *known, size_t known_count, const double *seed, double *value,
-                               const char *function) {
+                               const unsigned *known, size_t known_count, const double *seed, double *value) {
   for (size_t i = 0; i < unknown_count; i++)
-    if (!isfinite(seed[i]))
-      return log_error(instance, "%s: seed %zu is %g; expected a finite number", function, i + 1, seed[i]);
+    if (!isfinite(seed[i])) return refuse_call(instance, "seed %zu is %g; expected a finite number", i + 1, seed[i]);
   double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
-  if (column == NULL) return log_error(instance, "%s: there is no memory for the derivatives", function);
+  if (column == NULL) return refuse_call(instance, "there is no memory for the derivatives");
   enum Status status = STATUS_DONE;
   for (size_t j = 0; j < known_count && status == STATUS_DONE; j++)
-    status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j], function);
+    status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j]);
   instance->memory.free(column);
   return status;
 }
 
-enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
-                                const char *function) {
+enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value) {
   struct Point point = instance_point(instance);
   struct Direction direction = direction_create(instance);
   direction.seed.time = 1.0;
@@ -146,5 +135,5 @@ enum Status derivatives_in_time(struct Instance *instance, const unsigned *refer
     return discard_for_singularity(instance);
   enum Status status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
-  return read_along(instance, &point, &direction, reference, count, value, function);
+  return read_along(instance, &point, &direction, reference, count, value);
 }

@@ -1,4 +1,4 @@
-/* Derivatives of variables; messages come under the name of the function that the caller called. */
+/* Derivatives of variables. */
 #ifndef DERIVATIVES_H
 #define DERIVATIVES_H
 
@@ -6,23 +6,20 @@
 
 /* value = d unknown / d known * seed */
 enum Status directional_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                                   const unsigned *known, size_t known_count, const double *seed, double *value,
-                                   const char *function);
+                                   const unsigned *known, size_t known_count, const double *seed, double *value);
 
 /*
  * value = seed^T * d unknown / d known, one directional derivative for each known: the cost grows with their number, not
  * with that of the unknowns.
  */
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                               const unsigned *known, size_t known_count, const double *seed, double *value,
-                               const char *function);
+                               const unsigned *known, size_t known_count, const double *seed, double *value);
 
 /* The first derivatives of outputs by time, with those of the inputs; prepared values are up to date. */
-enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value,
-                                const char *function);
+enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value);
 
 /* The derivatives of outputs by time, each of its order. */
 enum Status output_derivatives(struct Instance *instance, const unsigned *reference, size_t count, const int *order,
-                               double *value, const char *function);
+                               double *value);
 
 #endif

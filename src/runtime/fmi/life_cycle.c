@@ -60,6 +60,7 @@ static const struct {
 struct Instance *enter(void *component, enum Function function, const char *name) {
   struct Instance *instance = component;
   if (instance == NULL) return NULL;
+  instance->function = name;
   if ((permitted[function].kinds & IN(instance->kind)) != 0 &&
       (permitted[function].phases & IN(instance->situation->phase)) != 0)
     return instance;

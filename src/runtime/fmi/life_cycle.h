@@ -37,8 +37,8 @@ enum Function {
 };
 
 /*
- * The instance of a component, which begins with it, where the function may be called now. NULL after logging an error under
- * its name where it may not, and NULL for a component that is NULL.
+ * The instance of a component, which begins with it, where the function may be called now; messages come under its name from
+ * here on. NULL after logging an error where it may not, and NULL for a component that is NULL.
  */
 struct Instance *enter(void *component, enum Function function, const char *name);
 

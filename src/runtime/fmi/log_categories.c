@@ -45,13 +45,12 @@ static int category_named(const char *name) {
   return category;
 }
 
-bool log_choose(struct Instance *instance, const char *const *names, size_t count, unsigned *chosen,
-                const char *function) {
-  if (!check_array(instance, names, count, function, "categories")) return false;
+bool log_choose(struct Instance *instance, const char *const *names, size_t count, unsigned *chosen) {
+  if (!check_array(instance, names, count, "categories")) return false;
   for (size_t i = 0; i < count; i++) {
     int category = category_named(names[i]);
     if (category == CATEGORY_COUNT) {
-      log_error(instance, "%s: there is no log category '%s'", function, names[i] != NULL ? names[i] : "NULL");
+      refuse_call(instance, "there is no log category '%s'", names[i] != NULL ? names[i] : "NULL");
       return false;
     }
     *chosen |= 1u << category;

@@ -17,8 +17,7 @@ const char *log_category_of(enum Status status);
 unsigned log_wanted(bool has_logger, unsigned categories);
 
 /* Adds the categories with these names to a set. False after logging a name that there is not. */
-bool log_choose(struct Instance *instance, const char *const *names, size_t count, unsigned *chosen,
-                const char *function);
+bool log_choose(struct Instance *instance, const char *const *names, size_t count, unsigned *chosen);
 
 /* Copies a message with each of the escaped characters doubled; copy[2 * MESSAGE_LENGTH]. */
 void log_escape(const char *message, const char *escaped, char *copy);

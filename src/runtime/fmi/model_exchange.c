@@ -9,62 +9,58 @@
 #include "instance/event_laws.h"
 #include "stepping/reading.h"
 
-enum Status exchange_set_time(struct Instance *instance, double time, const char *function) {
-  if (!isfinite(time)) return log_error(instance, "%s: the time is %g; expected a finite number", function, time);
+enum Status exchange_set_time(struct Instance *instance, double time) {
+  if (!isfinite(time)) return refuse_call(instance, "the time is %g; expected a finite number", time);
   instance->situation->time = time;
   return STATUS_DONE;
 }
 
 /* Whether an array of states has their number. */
-static bool check_states(struct Instance *instance, const void *array, size_t count, const char *function) {
-  if (count == lagrangian.state_count) return check_array(instance, array, count, function, "the array");
-  log_error(instance, "%s: %zu elements; expected %zu, the number of states", function, count, lagrangian.state_count);
+static bool check_states(struct Instance *instance, const void *array, size_t count) {
+  if (count == lagrangian.state_count) return check_array(instance, array, count, "the array");
+  refuse_call(instance, "%zu elements; expected %zu, the number of states", count, lagrangian.state_count);
   return false;
 }
 
-enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count, const char *function) {
-  if (!check_states(instance, state, count, function)) return STATUS_ERROR;
+enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count) {
+  if (!check_states(instance, state, count)) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(state[i]))
-      return log_error(instance, "%s: state %zu is %g; expected a finite number", function, i + 1, state[i]);
+    if (!isfinite(state[i])) return refuse_call(instance, "state %zu is %g; expected a finite number", i + 1, state[i]);
   if (count > 0) memcpy(instance->state, state, count * sizeof *state);
   return STATUS_DONE;
 }
 
-enum Status exchange_get_states(struct Instance *instance, double *state, size_t count, const char *function) {
-  if (!check_states(instance, state, count, function)) return STATUS_ERROR;
-  reading_begin(instance, function);
+enum Status exchange_get_states(struct Instance *instance, double *state, size_t count) {
+  if (!check_states(instance, state, count)) return STATUS_ERROR;
+  reading_begin(instance);
   if (count > 0) memcpy(state, instance->state, count * sizeof *state);
   reading_end(instance);
   return STATUS_DONE;
 }
 
-enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count,
-                                     const char *function) {
-  if (!check_states(instance, derivative, count, function)) return STATUS_ERROR;
+enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count) {
+  if (!check_states(instance, derivative, count)) return STATUS_ERROR;
   if (count == 0) return STATUS_DONE;
-  reading_begin(instance, function);
+  reading_begin(instance);
   enum Status status = evaluate_situation(instance, instance->work);
   if (status == STATUS_DONE) memcpy(derivative, instance->work, count * sizeof *derivative);
   reading_end(instance);
   return status;
 }
 
-enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count, const char *function) {
-  if (!check_states(instance, nominal, count, function)) return STATUS_ERROR;
+enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count) {
+  if (!check_states(instance, nominal, count)) return STATUS_ERROR;
   if (count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
   return STATUS_DONE;
 }
 
-enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count,
-                                          const char *function) {
+enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count) {
   size_t expected = indicator_count(lagrangian.switches);
   if (count != expected)
-    return log_error(instance, "%s: %zu elements; expected %zu, the number of event indicators", function, count,
-                     expected);
+    return refuse_call(instance, "%zu elements; expected %zu, the number of event indicators", count, expected);
   if (count == 0) return STATUS_DONE;
-  if (!check_array(instance, indicator, count, function, "the array")) return STATUS_ERROR;
-  reading_begin(instance, function);
+  if (!check_array(instance, indicator, count, "the array")) return STATUS_ERROR;
+  reading_begin(instance);
   bool has_values = lagrangian.event_laws->indicators(instance, indicator);
   enum Status status = has_values ? STATUS_DONE : discard_for_singularity(instance);
   reading_end(instance);

@@ -1,23 +1,22 @@
 /*
- * What an importer that integrates asks for; in FMI 3.0 events also in co-simulation. In an event modes may change, and a state that drifted from the constraints is
- * brought back. Messages come under the name of the function that the caller called.
+ * What an importer that integrates asks for; in FMI 3.0 events also in co-simulation. In an event modes may change, and a state
+ * that drifted from the constraints is brought back.
  */
 #ifndef MODEL_EXCHANGE_H
 #define MODEL_EXCHANGE_H
 
 #include "instance/instance.h"
 
-enum Status exchange_set_time(struct Instance *instance, double time, const char *function);
+enum Status exchange_set_time(struct Instance *instance, double time);
 
 /* Arrays have state_count elements; another count is an error. */
-enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count, const char *function);
-enum Status exchange_get_states(struct Instance *instance, double *state, size_t count, const char *function);
-enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count, const char *function);
-enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count, const char *function);
+enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count);
+enum Status exchange_get_states(struct Instance *instance, double *state, size_t count);
+enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count);
+enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count);
 
 /* The array has an element for each event indicator; another count is an error. */
-enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count,
-                                          const char *function);
+enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count);
 
 /* Whether an event is needed: the state has drifted from the constraints by more than the tolerance, or a mode must change. */
 bool exchange_needs_event(struct Instance *instance);

@@ -70,13 +70,12 @@ static enum Status fill_expansion(struct Instance *instance, int order, const st
 }
 
 static enum Status read_derivative(struct Instance *instance, const struct Expansion *expansion,
-                                   const struct ScalarVariable *variable, int order, double *value,
-                                   const char *function) {
+                                   const struct ScalarVariable *variable, int order, double *value) {
   Series *rows = variable->kind == VARIABLE_STATE ? expansion->state : expansion->output;
   double derivative = rows[variable->index][order];
   for (int k = 2; k <= order; k++) derivative *= k;
   if (!isfinite(derivative)) {
-    log_message(instance, STATUS_DISCARD, "%s: the derivative %d of '%s' is not finite here", function, order,
+    log_message(instance, STATUS_DISCARD, "%s: the derivative %d of '%s' is not finite here", instance->function, order,
                 variable->name);
     return STATUS_DISCARD;
   }
@@ -85,38 +84,36 @@ static enum Status read_derivative(struct Instance *instance, const struct Expan
 }
 
 static enum Status read_from_series(struct Instance *instance, const unsigned *reference, size_t count,
-                                    const int *order, double *value, const char *function) {
+                                    const int *order, double *value) {
   struct Expansion expansion;
   int highest = 0;
   for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
   if (!expansion_create(instance, &expansion)) return STATUS_ERROR;
   enum Status status = fill_expansion(instance, highest, &expansion);
   for (size_t i = 0; i < count && status == STATUS_DONE; i++)
-    status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i], function);
+    status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i]);
   instance->memory.free(expansion.state);
   return status;
 }
 
-static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order,
-                                           const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
+static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
-  if (!variable->is_output) return log_error(instance, "%s: '%s' is no output", function, variable->name);
+  if (!variable->is_output) return refuse_call(instance, "'%s' is no output", variable->name);
   if (order >= 1 && order <= lagrangian.output_derivative_order) return STATUS_DONE;
-  return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", function, order,
-                   variable->name, lagrangian.output_derivative_order);
+  return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
+                     lagrangian.output_derivative_order);
 }
 
 enum Status output_derivatives(struct Instance *instance, const unsigned *reference, size_t count, const int *order,
-                               double *value, const char *function) {
+                               double *value) {
   for (size_t i = 0; i < count; i++)
-    if (check_output_derivative(instance, reference[i], order[i], function) != STATUS_DONE) return STATUS_ERROR;
-  reading_begin(instance, function);
+    if (check_output_derivative(instance, reference[i], order[i]) != STATUS_DONE) return STATUS_ERROR;
+  reading_begin(instance);
   enum Status status = evaluate_prepare(instance);
   if (status == STATUS_DONE)
-    status = lagrangian.output_derivative_order == 1
-                 ? derivatives_in_time(instance, reference, count, value, function)
-                 : read_from_series(instance, reference, count, order, value, function);
+    status = lagrangian.output_derivative_order == 1 ? derivatives_in_time(instance, reference, count, value)
+                                                     : read_from_series(instance, reference, count, order, value);
   reading_end(instance);
   return status;
 }

@@ -6,29 +6,27 @@
 #include "instance/snapshot.h"
 
 /* Gives the caller's state memory where it has none. */
-static bool allocate(struct Instance *instance, void **state, const char *function) {
+static bool allocate(struct Instance *instance, void **state) {
   if (*state == NULL) *state = instance->memory.allocate(1, snapshot_size());
-  if (*state == NULL) log_error(instance, "%s: allocateMemory returned no memory", function);
+  if (*state == NULL) refuse_call(instance, "allocateMemory returned no memory");
   return *state != NULL;
 }
 
 /* Whether the bytes can be restored; logs an error where they cannot. */
-static bool check_state(struct Instance *instance, const void *block, size_t size, const char *function) {
+static bool check_state(struct Instance *instance, const void *block, size_t size) {
   const char *fault = snapshot_fault(instance, block, size);
-  if (fault != NULL) log_error(instance, "%s: the bytes of the state cannot be used: %s", function, fault);
+  if (fault != NULL) refuse_call(instance, "the bytes of the state cannot be used: %s", fault);
   return fault == NULL;
 }
 
-enum Status saved_state_get(struct Instance *instance, void **state, const char *function) {
-  if (!check_array(instance, state, 1, function, "FMUstate") || !allocate(instance, state, function))
-    return STATUS_ERROR;
+enum Status saved_state_get(struct Instance *instance, void **state) {
+  if (!check_array(instance, state, 1, "FMUstate") || !allocate(instance, state)) return STATUS_ERROR;
   snapshot_take(instance, *state);
   return STATUS_DONE;
 }
 
-enum Status saved_state_set(struct Instance *instance, const void *state, const char *function) {
-  if (!check_array(instance, state, 1, function, "FMUstate") ||
-      !check_state(instance, state, snapshot_size(), function))
+enum Status saved_state_set(struct Instance *instance, const void *state) {
+  if (!check_array(instance, state, 1, "FMUstate") || !check_state(instance, state, snapshot_size()))
     return STATUS_ERROR;
   snapshot_restore(instance, state);
   return STATUS_DONE;
@@ -41,29 +39,23 @@ enum Status saved_state_free(struct Instance *instance, void **state) {
   return STATUS_DONE;
 }
 
-enum Status saved_state_size(struct Instance *instance, const void *state, size_t *size, const char *function) {
-  if (!check_array(instance, state, 1, function, "FMUstate") || !check_array(instance, size, 1, function, "size"))
-    return STATUS_ERROR;
+enum Status saved_state_size(struct Instance *instance, const void *state, size_t *size) {
+  if (!check_array(instance, state, 1, "FMUstate") || !check_array(instance, size, 1, "size")) return STATUS_ERROR;
   *size = snapshot_size();
   return STATUS_DONE;
 }
 
-enum Status saved_state_write(struct Instance *instance, const void *state, void *bytes, size_t size,
-                              const char *function) {
-  if (!check_array(instance, state, 1, function, "FMUstate") ||
-      !check_array(instance, bytes, 1, function, "serializedState"))
+enum Status saved_state_write(struct Instance *instance, const void *state, void *bytes, size_t size) {
+  if (!check_array(instance, state, 1, "FMUstate") || !check_array(instance, bytes, 1, "serializedState"))
     return STATUS_ERROR;
-  if (size < snapshot_size())
-    return log_error(instance, "%s: the size is %zu; expected %zu", function, size, snapshot_size());
+  if (size < snapshot_size()) return refuse_call(instance, "the size is %zu; expected %zu", size, snapshot_size());
   memcpy(bytes, state, snapshot_size());
   return STATUS_DONE;
 }
 
-enum Status saved_state_read(struct Instance *instance, const void *bytes, size_t size, void **state,
-                             const char *function) {
-  if (!check_array(instance, bytes, size, function, "serializedState") ||
-      !check_array(instance, state, 1, function, "FMUstate") || !check_state(instance, bytes, size, function) ||
-      !allocate(instance, state, function))
+enum Status saved_state_read(struct Instance *instance, const void *bytes, size_t size, void **state) {
+  if (!check_array(instance, bytes, size, "serializedState") || !check_array(instance, state, 1, "FMUstate") ||
+      !check_state(instance, bytes, size) || !allocate(instance, state))
     return STATUS_ERROR;
   memcpy(*state, bytes, snapshot_size());
   return STATUS_DONE;

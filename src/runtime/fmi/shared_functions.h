@@ -19,7 +19,7 @@ FMI(Status) FMI(SetDebugLogging)(void *c, FMI(Boolean) loggingOn, size_t nCatego
   struct Component *component = c;
   struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
   unsigned chosen = 0;
-  if (instance == NULL || !log_choose(instance, names, nCategories, &chosen, __func__)) return FMI(Error);
+  if (instance == NULL || !log_choose(instance, names, nCategories, &chosen)) return FMI(Error);
   if (nCategories == 0) component->categories = loggingOn ? ALL_CATEGORIES : QUIET_CATEGORIES;
   else component->categories = loggingOn ? chosen : component->categories & ~chosen;
   instance->log = log_of(component);
@@ -51,12 +51,12 @@ FMI(Status) FMI(EnterContinuousTimeMode)(void *c) {
 
 FMI(Status) FMI(GetFMUState)(void *c, void **state) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_get(instance, state, __func__));
+  return instance == NULL ? FMI(Error) : status_of(saved_state_get(instance, state));
 }
 
 FMI(Status) FMI(SetFMUState)(void *c, void *state) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_set(instance, state, __func__));
+  return instance == NULL ? FMI(Error) : status_of(saved_state_set(instance, state));
 }
 
 FMI(Status) FMI(FreeFMUState)(void *c, void **state) {
@@ -66,17 +66,17 @@ FMI(Status) FMI(FreeFMUState)(void *c, void **state) {
 
 FMI(Status) FMI(SerializedFMUStateSize)(void *c, void *state, size_t *size) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_size(instance, state, size, __func__));
+  return instance == NULL ? FMI(Error) : status_of(saved_state_size(instance, state, size));
 }
 
 FMI(Status) FMI(SerializeFMUState)(void *c, void *state, FMI(Byte) bytes[], size_t size) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_write(instance, state, bytes, size, __func__));
+  return instance == NULL ? FMI(Error) : status_of(saved_state_write(instance, state, bytes, size));
 }
 
 FMI(Status) FMI(DeserializeFMUState)(void *c, const FMI(Byte) bytes[], size_t size, void **state) {
   struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_read(instance, bytes, size, state, __func__));
+  return instance == NULL ? FMI(Error) : status_of(saved_state_read(instance, bytes, size, state));
 }
 
 /* --- Model exchange ------------------------------------------------------------------------------------------------ */
@@ -87,8 +87,8 @@ FMI(CompletedIntegratorStep)
  FMI(Boolean) * terminateSimulation) {
   struct Instance *instance = enter(c, FUNCTION_COMPLETED_INTEGRATOR_STEP, __func__);
   (void)noSetFMUStatePriorToCurrentPoint;
-  if (instance == NULL || !check_array(instance, enterEventMode, 1, __func__, "enterEventMode") ||
-      !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation"))
+  if (instance == NULL || !check_array(instance, enterEventMode, 1, "enterEventMode") ||
+      !check_array(instance, terminateSimulation, 1, "terminateSimulation"))
     return FMI(Error);
   *enterEventMode = exchange_needs_event(instance);
   *terminateSimulation = FMI(False);
@@ -97,33 +97,32 @@ FMI(CompletedIntegratorStep)
 
 FMI(Status) FMI(SetTime)(void *c, double time) {
   struct Instance *instance = enter(c, FUNCTION_SET_TIME, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_set_time(instance, time, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_set_time(instance, time));
 }
 
 FMI(Status) FMI(SetContinuousStates)(void *c, const double states[], size_t count) {
   struct Instance *instance = enter(c, FUNCTION_SET_CONTINUOUS_STATES, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_set_states(instance, states, count, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_set_states(instance, states, count));
 }
 
 FMI(Status) FMI(GetContinuousStates)(void *c, double states[], size_t count) {
   struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_states(instance, states, count, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_get_states(instance, states, count));
 }
 
 FMI(Status) FMI(GetContinuousStateDerivatives)(void *c, double derivatives[], size_t count) {
   struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_derivatives(instance, derivatives, count, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_get_derivatives(instance, derivatives, count));
 }
 
 FMI(Status) FMI(GetNominalsOfContinuousStates)(void *c, double nominals[], size_t count) {
   struct Instance *instance = enter(c, NOMINALS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_nominals(instance, nominals, count, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_get_nominals(instance, nominals, count));
 }
 
 FMI(Status) FMI(GetEventIndicators)(void *c, double indicators[], size_t count) {
   struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error)
-                          : status_of(exchange_get_event_indicators(instance, indicators, count, __func__));
+  return instance == NULL ? FMI(Error) : status_of(exchange_get_event_indicators(instance, indicators, count));
 }
 
 #endif

@@ -4,14 +4,13 @@
 
 #include "stepping/start.h"
 
-enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function) {
+enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
-  if (!isfinite(start)) return log_error(instance, "%s: startTime is %g; expected a finite number", function, start);
+  if (!isfinite(start)) return refuse_call(instance, "startTime is %g; expected a finite number", start);
   if (experiment->has_stop_time && !(stop >= start && isfinite(stop)))
-    return log_error(instance, "%s: stopTime is %g; expected a finite number from startTime %g on", function, stop,
-                     start);
+    return refuse_call(instance, "stopTime is %g; expected a finite number from startTime %g on", stop, start);
   if (experiment->has_tolerance && !(tolerance > 0.0 && tolerance < 1.0))
-    return log_error(instance, "%s: tolerance is %g; expected one between 0 and 1", function, tolerance);
+    return refuse_call(instance, "tolerance is %g; expected one between 0 and 1", tolerance);
   struct Situation *situation = instance->situation;
   situation->experiment_defined = 1;
   situation->stop_time_defined = experiment->has_stop_time ? 1 : 0;
@@ -21,8 +20,8 @@ enum Status simulation_set_up(struct Instance *instance, const struct Experiment
   return STATUS_DONE;
 }
 
-enum Status simulation_start(struct Instance *instance, const char *function) {
-  if (start_find(instance, function) != STATUS_DONE) return STATUS_ERROR;
+enum Status simulation_start(struct Instance *instance) {
+  if (start_find(instance) != STATUS_DONE) return STATUS_ERROR;
   instance->situation->phase = instance->kind == KIND_MODEL_EXCHANGE ? PHASE_EVENT : PHASE_STEP_COMPLETE;
   instance->situation->changed = CHANGED_COURSE;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);

@@ -1,4 +1,4 @@
-/* A simulation's beginning and end; messages come under the name of the function that the caller called. */
+/* A simulation's beginning and end. */
 #ifndef SIMULATION_H
 #define SIMULATION_H
 
@@ -10,10 +10,10 @@ struct Experiment {
   bool has_stop_time, has_tolerance;
 };
 
-enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment, const char *function);
+enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment);
 
 /* Ends the initialization: an error where the accelerations do not exist. */
-enum Status simulation_start(struct Instance *instance, const char *function);
+enum Status simulation_start(struct Instance *instance);
 
 void simulation_terminate(struct Instance *instance);
 

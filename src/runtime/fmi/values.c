@@ -21,34 +21,32 @@ static bool follows_start(unsigned reference) {
 }
 
 /* Lets the variables be read, up to reading_end(). */
-static void begin_reading(struct Instance *instance, const unsigned *reference, size_t count, const char *function) {
+static void begin_reading(struct Instance *instance, const unsigned *reference, size_t count) {
   bool any = false;
   for (size_t i = 0; i < count; i++) any |= follows_start(reference[i]);
-  if (any) reading_begin(instance, function);
+  if (any) reading_begin(instance);
 }
 
-static enum Status get_values(struct Instance *instance, const unsigned *reference, size_t count, double *value,
-                              const char *function) {
+static enum Status get_values(struct Instance *instance, const unsigned *reference, size_t count, double *value) {
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < count; i++)
-    if (check_reference(instance, reference[i], TYPE_REAL, function) == NULL) return STATUS_ERROR;
+    if (check_reference(instance, reference[i], TYPE_REAL) == NULL) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++)
     status = worse(status, evaluate_variable(instance, &lagrangian.variables[reference[i]], &value[i]));
   return status;
 }
 
-enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value,
-                       const char *function) {
-  begin_reading(instance, reference, count, function);
-  enum Status status = get_values(instance, reference, count, value, function);
+enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value) {
+  begin_reading(instance, reference, count);
+  enum Status status = get_values(instance, reference, count, value);
   reading_end(instance);
   return status;
 }
 
 static enum Status get_whole_values(struct Instance *instance, const unsigned *reference, size_t count, int *value,
-                                    enum VariableType type, const char *function) {
+                                    enum VariableType type) {
   for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], type, function);
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], type);
     if (variable == NULL) return STATUS_ERROR;
     bool is_contact = variable->kind == VARIABLE_CONTACT;
     if (is_contact) evaluate_prepare(instance); /* before the start it follows from the state */
@@ -62,20 +60,18 @@ static enum Status get_whole_values(struct Instance *instance, const unsigned *r
 }
 
 enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
-                             enum VariableType type, const char *function) {
-  begin_reading(instance, reference, count, function);
-  enum Status status = get_whole_values(instance, reference, count, value, type, function);
+                             enum VariableType type) {
+  begin_reading(instance, reference, count);
+  enum Status status = get_whole_values(instance, reference, count, value, type);
   reading_end(instance);
   return status;
 }
 
-enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value,
-                              const char *function) {
+enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value) {
   for (size_t i = 0; i < count; i++) {
-    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER, function);
+    const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER);
     if (variable == NULL) return STATUS_ERROR;
-    if (variable->kind != VARIABLE_STATISTIC)
-      return log_error(instance, "%s: '%s' is no count", function, variable->name);
+    if (variable->kind != VARIABLE_STATISTIC) return refuse_call(instance, "'%s' is no count", variable->name);
     value[i] = instance->situation->statistics[variable->index];
   }
   return STATUS_DONE;
@@ -84,7 +80,7 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
 enum Status values_none(void *component, enum Function function, size_t count, const char *name) {
   struct Instance *instance = enter(component, function, name);
   if (instance == NULL) return STATUS_ERROR;
-  return count == 0 ? STATUS_DONE : log_error(instance, "%s: the FMU has no variable for this function", name);
+  return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variable for this function");
 }
 
 /* Whether this kind of variable may be set now. */
@@ -98,31 +94,27 @@ static bool is_settable(const struct Instance *instance, const struct ScalarVari
   }
 }
 
-static enum Status refuse_calculated(struct Instance *instance, const struct ScalarVariable *variable,
-                                     const char *function) {
+static enum Status refuse_calculated(struct Instance *instance, const struct ScalarVariable *variable) {
   if (*variable->follows_from == '\0')
-    return log_error(instance, "%s: '%s' is calculated and cannot be set", function, variable->name);
-  return log_error(instance, "%s: '%s' is calculated from other parameters (%s) and cannot be set; set those instead",
-                   function, variable->name, variable->follows_from);
+    return refuse_call(instance, "'%s' is calculated and cannot be set", variable->name);
+  return refuse_call(instance, "'%s' is calculated from other parameters (%s) and cannot be set; set those instead",
+                     variable->name, variable->follows_from);
 }
 
-static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type,
-                               const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, type, function);
+static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, type);
   if (variable == NULL) return STATUS_ERROR;
-  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable, function);
+  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable);
   if (!is_settable(instance, variable))
-    return log_error(instance, "%s: '%s' cannot be set in the state '%s'", function, variable->name,
-                     instance_phase_name(instance));
+    return refuse_call(instance, "'%s' cannot be set in the state '%s'", variable->name, instance_phase_name(instance));
   if (!isfinite(value))
-    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
-                     value);
+    return refuse_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
-    return log_error(instance, "%s: the value for '%s' is %g; expected true or false, which are 1 and 0", function,
-                     variable->name, value);
+    return refuse_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
+                       value);
   if (value < variable->minimum || value > variable->maximum)
-    return log_error(instance, "%s: %g for '%s' is outside its range from %g to %g", function, value, variable->name,
-                     variable->minimum, variable->maximum);
+    return refuse_call(instance, "%g for '%s' is outside its range from %g to %g", value, variable->name,
+                       variable->minimum, variable->maximum);
   return STATUS_DONE;
 }
 
@@ -145,43 +137,39 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 
-enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value,
-                       const char *function) {
+enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value) {
   for (size_t i = 0; i < count; i++)
-    if (check_value(instance, reference[i], value[i], TYPE_REAL, function) != STATUS_DONE) return STATUS_ERROR;
+    if (check_value(instance, reference[i], value[i], TYPE_REAL) != STATUS_DONE) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
   if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
 }
 
 enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
-                             enum VariableType type, const char *function) {
+                             enum VariableType type) {
   for (size_t i = 0; i < count; i++)
-    if (check_value(instance, reference[i], value[i], type, function) != STATUS_DONE) return STATUS_ERROR;
+    if (check_value(instance, reference[i], value[i], type) != STATUS_DONE) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
   if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
 }
 
-static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value,
-                                          const char *function) {
-  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL, function);
+static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value) {
+  const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
-  if (variable->kind != VARIABLE_INPUT) return log_error(instance, "%s: '%s' is no input", function, variable->name);
+  if (variable->kind != VARIABLE_INPUT) return refuse_call(instance, "'%s' is no input", variable->name);
   if (order < 1 || order > INPUT_ORDER)
-    return log_error(instance, "%s: the order %d for '%s' is out of range; expected 1 to %d", function, order,
-                     variable->name, INPUT_ORDER);
+    return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
+                       INPUT_ORDER);
   if (!isfinite(value))
-    return log_error(instance, "%s: the value for '%s' is %g; expected a finite number", function, variable->name,
-                     value);
+    return refuse_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
   return STATUS_DONE;
 }
 
 enum Status values_set_input_derivatives(struct Instance *instance, const unsigned *reference, size_t count,
-                                         const int *order, const double *value, const char *function) {
+                                         const int *order, const double *value) {
   for (size_t i = 0; i < count; i++)
-    if (check_input_derivative(instance, reference[i], order[i], value[i], function) != STATUS_DONE)
-      return STATUS_ERROR;
+    if (check_input_derivative(instance, reference[i], order[i], value[i]) != STATUS_DONE) return STATUS_ERROR;
   size_t inputs = lagrangian.input_count;
   if (!instance->situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * inputs * sizeof *instance->input_derivatives);

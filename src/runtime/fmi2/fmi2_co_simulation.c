@@ -9,7 +9,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
   struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
   (void)noSetFMUStatePriorToCurrentPoint;
   if (instance == NULL) return fmi2Error;
-  return status_of(communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__));
+  return status_of(communication_step(instance, currentCommunicationPoint, communicationStepSize));
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
@@ -34,7 +34,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *va
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value) {
   if (s != fmi2LastSuccessfulTime) return unknown_status(c, __func__);
   struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
-  if (instance == NULL || !check_array(instance, value, 1, __func__, "value")) return fmi2Error;
+  if (instance == NULL || !check_array(instance, value, 1, "value")) return fmi2Error;
   *value = instance->situation->time;
   return fmi2OK;
 }
@@ -48,7 +48,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Int
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value) {
   if (s != fmi2Terminated) return unknown_status(c, __func__);
   struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
-  if (instance == NULL || !check_array(instance, value, 1, __func__, "value")) return fmi2Error;
+  if (instance == NULL || !check_array(instance, value, 1, "value")) return fmi2Error;
   *value = fmi2False;
   return fmi2OK;
 }

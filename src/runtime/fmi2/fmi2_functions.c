@@ -34,21 +34,21 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                   .tolerance = tolerance,
                                   .has_stop_time = stopTimeDefined != fmi2False,
                                   .has_tolerance = toleranceDefined != fmi2False};
-  return status_of(simulation_set_up(instance, &experiment, __func__));
+  return status_of(simulation_set_up(instance, &experiment));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
   if (instance == NULL) return fmi2Error;
   if (!instance->situation->experiment_defined)
-    return status_of(log_error(instance, "%s: expected fmi2SetupExperiment before it", __func__));
+    return status_of(refuse_call(instance, "expected fmi2SetupExperiment before it"));
   instance->situation->phase = PHASE_INITIALIZATION;
   return fmi2OK;
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
-  return instance == NULL ? fmi2Error : status_of(simulation_start(instance, __func__));
+  return instance == NULL ? fmi2Error : status_of(simulation_start(instance));
 }
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
@@ -60,7 +60,7 @@ fmi2Status fmi2EnterEventMode(fmi2Component c) {
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
   struct Instance *instance = enter(c, FUNCTION_UPDATE_DISCRETE_STATES, __func__);
-  if (instance == NULL || !check_array(instance, eventInfo, 1, __func__, "eventInfo")) return fmi2Error;
+  if (instance == NULL || !check_array(instance, eventInfo, 1, "eventInfo")) return fmi2Error;
   *eventInfo = (fmi2EventInfo){0};
   bool states_changed;
   enum Status status = exchange_update(instance, &states_changed);

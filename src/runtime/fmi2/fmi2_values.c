@@ -9,8 +9,8 @@
 static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,
                                           const fmi2ValueReference vr[], size_t nvr, const void *value) {
   struct Instance *instance = enter(c, function, name);
-  bool are_right = instance != NULL && check_array(instance, vr, nvr, name, "vr") &&
-                   check_array(instance, value, nvr, name, "value");
+  bool are_right =
+      instance != NULL && check_array(instance, vr, nvr, "vr") && check_array(instance, value, nvr, "value");
   return are_right ? instance : NULL;
 }
 
@@ -34,39 +34,39 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return status_of(values_get(instance, vr, nvr, value, __func__));
+  return status_of(values_get(instance, vr, nvr, value));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
+  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set(instance, vr, nvr, value, __func__));
+  return status_of(values_set(instance, vr, nvr, value));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
   tell_early_reading(instance, vr, nvr);
-  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+  return status_of(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER, __func__));
+  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN, __func__));
+  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN));
 }
 
 /* There are no variables of the type String. */
@@ -86,29 +86,27 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
                                         fmi2Real dvUnknown[]) {
   struct Instance *instance = enter(c, FUNCTION_GET_PARTIAL_DERIVATIVE, __func__);
-  if (instance == NULL || !check_array(instance, vUnknown_ref, nUnknown, __func__, "vUnknown_ref") ||
-      !check_array(instance, vKnown_ref, nKnown, __func__, "vKnown_ref") ||
-      !check_array(instance, dvKnown, nKnown, __func__, "dvKnown") ||
-      !check_array(instance, dvUnknown, nUnknown, __func__, "dvUnknown"))
+  if (instance == NULL || !check_array(instance, vUnknown_ref, nUnknown, "vUnknown_ref") ||
+      !check_array(instance, vKnown_ref, nKnown, "vKnown_ref") || !check_array(instance, dvKnown, nKnown, "dvKnown") ||
+      !check_array(instance, dvUnknown, nUnknown, "dvUnknown"))
     return fmi2Error;
-  return status_of(
-      directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown, __func__));
+  return status_of(directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[]) {
   struct Instance *instance = enter(c, FUNCTION_SET_INPUT_DERIVATIVES, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, order, nvr, __func__, "order") || !check_array(instance, value, nvr, __func__, "value"))
+  if (instance == NULL || !check_array(instance, vr, nvr, "vr") || !check_array(instance, order, nvr, "order") ||
+      !check_array(instance, value, nvr, "value"))
     return fmi2Error;
-  return status_of(values_set_input_derivatives(instance, vr, nvr, order, value, __func__));
+  return status_of(values_set_input_derivatives(instance, vr, nvr, order, value));
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                         const fmi2Integer order[], fmi2Real value[]) {
   struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, __func__, "vr") ||
-      !check_array(instance, order, nvr, __func__, "order") || !check_array(instance, value, nvr, __func__, "value"))
+  if (instance == NULL || !check_array(instance, vr, nvr, "vr") || !check_array(instance, order, nvr, "order") ||
+      !check_array(instance, value, nvr, "value"))
     return fmi2Error;
-  return status_of(output_derivatives(instance, vr, nvr, order, value, __func__));
+  return status_of(output_derivatives(instance, vr, nvr, order, value));
 }

@@ -11,8 +11,10 @@ static double call_back(struct Component *component, double time, double end) {
   bool can_return_early = component->early_return_allowed && time < end;
   fmi3Boolean requested = fmi3False;
   fmi3Float64 requested_time = time;
+  const char *function = component->instance.function; /* the importer may call others */
   component->intermediate_update(component->environment, time, fmi3False, fmi3True, fmi3True, can_return_early,
                                  &requested, &requested_time);
+  component->instance.function = function;
   if (!can_return_early || !requested || !(requested_time < end)) return end;
   component->has_returned_early = true;
   return requested_time;
@@ -61,20 +63,18 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   struct Component *component = c;
   struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
   (void)noSetFMUStatePriorToCurrentPoint;
-  if (instance == NULL || !check_array(instance, eventHandlingNeeded, 1, __func__, "eventHandlingNeeded") ||
-      !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation") ||
-      !check_array(instance, earlyReturn, 1, __func__, "earlyReturn") ||
-      !check_array(instance, lastSuccessfulTime, 1, __func__, "lastSuccessfulTime"))
+  if (instance == NULL || !check_array(instance, eventHandlingNeeded, 1, "eventHandlingNeeded") ||
+      !check_array(instance, terminateSimulation, 1, "terminateSimulation") ||
+      !check_array(instance, earlyReturn, 1, "earlyReturn") ||
+      !check_array(instance, lastSuccessfulTime, 1, "lastSuccessfulTime"))
     return fmi3Error;
   if (instance->situation->waiting_event != 0)
-    return status_of(log_error(instance,
-                               "%s: the step before ended at an event; expected fmi3EnterEventMode, "
-                               "fmi3UpdateDiscreteStates and fmi3EnterStepMode",
-                               __func__));
+    return status_of(refuse_call(instance, "the step before ended at an event; expected fmi3EnterEventMode, "
+                                           "fmi3UpdateDiscreteStates and fmi3EnterStepMode"));
   memcpy(component->before, instance->situation, situation_size());
   component->has_returned_early = false;
   observe(component);
-  enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize, __func__);
+  enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize);
   if (status == STATUS_DISCARD) status = end_part_of_step(component, currentCommunicationPoint);
   if (status == STATUS_DONE && instance->situation->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* What went wrong in the callback was logged. */

@@ -15,9 +15,8 @@ static struct Partial enter_with_partial(fmi3Instance c, const char *name, const
                                          size_t nKnowns, struct Values of_knowns) {
   struct Partial partial = {NULL, NULL};
   if (enter(c, FUNCTION_GET_PARTIAL_DERIVATIVE, name) == NULL) return partial;
-  partial.unknowns = expand_references(c, WORKSPACE_REFERENCES, unknowns, nUnknowns, of_unknowns, name);
-  if (partial.unknowns != NULL)
-    partial.knowns = expand_references(c, WORKSPACE_KNOWNS, knowns, nKnowns, of_knowns, name);
+  partial.unknowns = expand_references(c, WORKSPACE_REFERENCES, unknowns, nUnknowns, of_unknowns);
+  if (partial.unknowns != NULL) partial.knowns = expand_references(c, WORKSPACE_KNOWNS, knowns, nKnowns, of_knowns);
   return partial;
 }
 
@@ -28,8 +27,7 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
       enter_with_partial(c, __func__, unknowns, nUnknowns, (struct Values){sensitivity, nSensitivity}, knowns, nKnowns,
                          (struct Values){seed, nSeed});
   if (partial.knowns == NULL) return fmi3Error;
-  return status_of(
-      directional_derivative(c, partial.unknowns, nSensitivity, partial.knowns, nSeed, seed, sensitivity, __func__));
+  return status_of(directional_derivative(c, partial.unknowns, nSensitivity, partial.knowns, nSeed, seed, sensitivity));
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns,
@@ -38,32 +36,30 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unk
   struct Partial partial = enter_with_partial(c, __func__, unknowns, nUnknowns, (struct Values){seed, nSeed}, knowns,
                                               nKnowns, (struct Values){sensitivity, nSensitivity});
   if (partial.knowns == NULL) return fmi3Error;
-  return status_of(
-      adjoint_derivative(c, partial.unknowns, nSeed, partial.knowns, nSensitivity, seed, sensitivity, __func__));
+  return status_of(adjoint_derivative(c, partial.unknowns, nSeed, partial.knowns, nSensitivity, seed, sensitivity));
 }
 
 /* One order for each variable, of which an array has several values. */
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 orders[],
                                     fmi3Float64 values[], size_t nValues) {
   struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
-  if (instance == NULL || !check_array(instance, orders, nvr, __func__, "orders")) return fmi3Error;
-  const unsigned *references =
-      expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues}, __func__);
-  int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of, __func__);
+  if (instance == NULL || !check_array(instance, orders, nvr, "orders")) return fmi3Error;
+  const unsigned *references = expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues});
+  int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of);
   if (references == NULL || order_of == NULL) return fmi3Error;
   /* The variable begins where its value reference is met. */
   for (size_t k = 0, i = 0; k < nValues; k++) {
     if (i < nvr && references[k] == vr[i]) i++;
     order_of[k] = orders[i - 1];
   }
-  return status_of(output_derivatives(instance, references, nValues, order_of, values, __func__));
+  return status_of(output_derivatives(instance, references, nValues, order_of, values));
 }
 
 /* modelDescription.xml tells of variables as a whole; providesPerElementDependencies is false. */
 static fmi3Status no_dependencies(fmi3Instance c, const char *name) {
   struct Instance *instance = enter(c, FUNCTION_GET_DEPENDENCIES, name);
   if (instance == NULL) return fmi3Error;
-  return status_of(log_error(instance, "%s: expected no call, since providesPerElementDependencies is false", name));
+  return status_of(refuse_call(instance, "expected no call, since providesPerElementDependencies is false"));
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference valueReference,

@@ -23,7 +23,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
                                   .tolerance = tolerance,
                                   .has_stop_time = stopTimeDefined,
                                   .has_tolerance = toleranceDefined};
-  enum Status status = simulation_set_up(instance, &experiment, __func__);
+  enum Status status = simulation_set_up(instance, &experiment);
   if (status == STATUS_DONE) instance->situation->phase = PHASE_INITIALIZATION;
   return status_of(status);
 }
@@ -31,7 +31,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
   if (instance == NULL) return fmi3Error;
-  enum Status status = simulation_start(instance, __func__);
+  enum Status status = simulation_start(instance);
   if (status == STATUS_DONE && instance->uses_event_mode) instance->situation->phase = PHASE_EVENT;
   return status_of(status);
 }
@@ -69,12 +69,12 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *discreteStatesN
                                     fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
                                     fmi3Float64 *nextEventTime) {
   struct Instance *instance = enter(c, FUNCTION_UPDATE_DISCRETE_STATES, __func__);
-  if (instance == NULL || !check_array(instance, discreteStatesNeedUpdate, 1, __func__, "discreteStatesNeedUpdate") ||
-      !check_array(instance, terminateSimulation, 1, __func__, "terminateSimulation") ||
-      !check_array(instance, nominalsOfContinuousStatesChanged, 1, __func__, "nominalsOfContinuousStatesChanged") ||
-      !check_array(instance, valuesOfContinuousStatesChanged, 1, __func__, "valuesOfContinuousStatesChanged") ||
-      !check_array(instance, nextEventTimeDefined, 1, __func__, "nextEventTimeDefined") ||
-      !check_array(instance, nextEventTime, 1, __func__, "nextEventTime"))
+  if (instance == NULL || !check_array(instance, discreteStatesNeedUpdate, 1, "discreteStatesNeedUpdate") ||
+      !check_array(instance, terminateSimulation, 1, "terminateSimulation") ||
+      !check_array(instance, nominalsOfContinuousStatesChanged, 1, "nominalsOfContinuousStatesChanged") ||
+      !check_array(instance, valuesOfContinuousStatesChanged, 1, "valuesOfContinuousStatesChanged") ||
+      !check_array(instance, nextEventTimeDefined, 1, "nextEventTimeDefined") ||
+      !check_array(instance, nextEventTime, 1, "nextEventTime"))
     return fmi3Error;
   *discreteStatesNeedUpdate = *terminateSimulation = *nominalsOfContinuousStatesChanged = fmi3False;
   *nextEventTimeDefined = fmi3False;
@@ -84,7 +84,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *discreteStatesN
 
 static fmi3Status get_count(fmi3Instance c, size_t count, size_t *value, const char *name, const char *argument) {
   struct Instance *instance = enter(c, FUNCTION_GET_COUNT, name);
-  if (instance == NULL || !check_array(instance, value, 1, name, argument)) return fmi3Error;
+  if (instance == NULL || !check_array(instance, value, 1, argument)) return fmi3Error;
   *value = count;
   return fmi3OK;
 }

@@ -11,46 +11,42 @@ static const struct ArrayVariable *array_with(unsigned reference) {
 }
 
 /* How many values the variables have. False after logging where a reference is of an element alone. */
-static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count,
-                         const char *function) {
+static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count) {
   *count = 0;
   for (size_t i = 0; i < nvr; i++) {
     const struct ArrayVariable *array = array_with(vr[i]);
     *count += array != NULL ? array->count : 1;
     if (array == NULL || array->first == vr[i]) continue;
-    log_error(instance, "%s: the value reference %u is of '%s', an element of an array; expected %zu, of the array",
-              function, vr[i], lagrangian.variables[vr[i]].name, array->first);
+    refuse_call(instance, "the value reference %u is of '%s', an element of an array; expected %zu, of the array",
+                vr[i], lagrangian.variables[vr[i]].name, array->first);
     return false;
   }
   return true;
 }
 
-void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size,
-                        const char *function) {
+void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size) {
   struct Workspace *workspace = &component->workspaces[use];
   if (workspace->block != NULL && count <= workspace->size / size) return workspace->block;
   fmi3_memory.free(workspace->block);
   workspace->block = fmi3_memory.allocate(count + 1, size);
   workspace->size = workspace->block != NULL ? count * size : 0;
-  if (workspace->block == NULL)
-    log_error(&component->instance, "%s: there is no memory for %zu values", function, count);
+  if (workspace->block == NULL) refuse_call(&component->instance, "there is no memory for %zu values", count);
   return workspace->block;
 }
 
 const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct Values values, const char *function) {
+                                  size_t nvr, struct Values values) {
   struct Instance *instance = &component->instance;
   size_t count;
-  if (!check_array(instance, vr, nvr, function, "valueReferences") ||
-      !check_array(instance, values.array, values.count, function, "values") ||
-      !count_values(instance, vr, nvr, &count, function))
+  if (!check_array(instance, vr, nvr, "valueReferences") ||
+      !check_array(instance, values.array, values.count, "values") || !count_values(instance, vr, nvr, &count))
     return NULL;
   if (count != values.count) {
-    log_error(instance, "%s: %zu values; expected %zu, as many as the variables have", function, values.count, count);
+    refuse_call(instance, "%zu values; expected %zu, as many as the variables have", values.count, count);
     return NULL;
   }
   if (count > 0 && lagrangian.array_count == 0) return vr;
-  unsigned *references = reserve_workspace(component, use, count, sizeof *references, function);
+  unsigned *references = reserve_workspace(component, use, count, sizeof *references);
   for (size_t i = 0, k = 0; i < nvr && references != NULL; i++) {
     const struct ArrayVariable *array = array_with(vr[i]);
     for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = vr[i] + j;

@@ -15,10 +15,9 @@ struct Values {
  * the caller's array or the workspace. NULL after logging where arguments are wrong or the number of values is another.
  */
 const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct Values values, const char *function);
+                                  size_t nvr, struct Values values);
 
 /* Room in a workspace for so many elements; NULL after logging where there is no memory. */
-void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size,
-                        const char *function);
+void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size);
 
 #endif

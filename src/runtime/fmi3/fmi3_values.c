@@ -10,28 +10,28 @@ static const unsigned *enter_with_values(fmi3Instance c, enum Function function,
                                          const fmi3ValueReference vr[], size_t nvr, const void *values,
                                          size_t nValues) {
   if (enter(c, function, name) == NULL) return NULL;
-  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues}, name);
+  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues});
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 values[],
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_get(c, references, nValues, values, __func__));
+  return status_of(values_get(c, references, nValues, values));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 values[],
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_set(c, references, nValues, values, __func__));
+  return status_of(values_set(c, references, nValues, values));
 }
 
 /* Counts of the statistics are of the type Int64. */
 fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int64 values[], size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_get_counts(c, references, nValues, values, __func__));
+  return status_of(values_get_counts(c, references, nValues, values));
 }
 
 /* Parameters of whole numbers are of the type Int32. */
@@ -40,25 +40,24 @@ fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
   if (references == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++)
     if (references[i] < lagrangian.variable_count && lagrangian.variables[references[i]].kind == VARIABLE_STATISTIC)
-      return status_of(
-          log_error(c, "%s: '%s' is of the type Int64", __func__, lagrangian.variables[references[i]].name));
-  return status_of(values_get_whole(c, references, nValues, values, TYPE_INTEGER, __func__));
+      return status_of(refuse_call(c, "'%s' is of the type Int64", lagrangian.variables[references[i]].name));
+  return status_of(values_get_whole(c, references, nValues, values, TYPE_INTEGER));
 }
 
 fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 values[],
                         size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_set_whole(c, references, nValues, values, TYPE_INTEGER, __func__));
+  return status_of(values_set_whole(c, references, nValues, values, TYPE_INTEGER));
 }
 
 fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Boolean values[],
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole);
   if (whole == NULL) return fmi3Error;
-  enum Status status = values_get_whole(c, references, nValues, whole, TYPE_BOOLEAN, __func__);
+  enum Status status = values_get_whole(c, references, nValues, whole, TYPE_BOOLEAN);
   for (size_t i = 0; i < nValues && status == STATUS_DONE; i++) values[i] = whole[i] != 0;
   return status_of(status);
 }
@@ -67,8 +66,8 @@ fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t 
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole, __func__);
+  int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole);
   if (whole == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++) whole[i] = values[i];
-  return status_of(values_set_whole(c, references, nValues, whole, TYPE_BOOLEAN, __func__));
+  return status_of(values_set_whole(c, references, nValues, whole, TYPE_BOOLEAN));
 }

@@ -42,7 +42,7 @@ struct EventLaws {
   /* Sets the modes to what start values say, as long as these may be set: no contact is closed, and all friction slides. */
   void (*guess)(struct Instance *instance);
   /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
-  bool (*start)(struct Instance *instance, const char *function);
+  bool (*start)(struct Instance *instance);
   /*
    * Opens contacts that a parameter, an input or a state has moved apart; false after logging why the step is discarded,
    * as bodies that stand in one another.

@@ -31,14 +31,14 @@ void initial_state_add_along(struct Instance *instance, const double *parameter,
   }
 }
 
-enum Status initial_state_check(struct Instance *instance, const char *function) {
+enum Status initial_state_check(struct Instance *instance) {
   for (size_t i = 0; lagrangian.initial_state != NULL && i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (follows(instance, variable) && !isfinite(instance->state[variable->index]))
-      return log_error(instance,
-                       "%s: the start value of '%s' is not finite: it follows from %s; set these otherwise, or '%s' "
-                       "itself",
-                       function, variable->name, variable->follows_from, variable->name);
+      return refuse_call(instance,
+                         "the start value of '%s' is not finite: it follows from %s; set these otherwise, or '%s' "
+                         "itself",
+                         variable->name, variable->follows_from, variable->name);
   }
   return STATUS_DONE;
 }

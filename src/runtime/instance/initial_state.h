@@ -22,6 +22,6 @@ void initial_state_follow(struct Instance *instance);
 void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch);
 
 /* An error that names a state without a finite start value. */
-enum Status initial_state_check(struct Instance *instance, const char *function);
+enum Status initial_state_check(struct Instance *instance);
 
 #endif

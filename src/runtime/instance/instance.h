@@ -68,6 +68,7 @@ struct CommunicationStep;
 struct Instance {
   struct Allocator memory;
   struct Log log;
+  const char *function; /* of the interface, that was called last, for messages */
   enum Kind kind;
   struct Situation *situation;
   /* See reading.h: the one that what is told was found from last, and that one. NULL where no start or step moves states. */

@@ -5,31 +5,43 @@
 
 #include "instance/instance.h"
 
-static void write_arguments(const struct Log *log, enum Status status, const char *format, va_list arguments) {
+/* function: what comes before the message; NULL for nothing. */
+static void write_arguments(const struct Log *log, enum Status status, const char *function, const char *format,
+                            va_list arguments) {
   char text[MESSAGE_LENGTH];
   if ((log->wanted & 1u << status) == 0) return;
-  vsnprintf(text, sizeof text, format, arguments);
+  int length = function != NULL ? snprintf(text, sizeof text, "%s: ", function) : 0;
+  vsnprintf(text + length, sizeof text - (size_t)length, format, arguments);
   log->write(log->receiver, status, text);
 }
 
 void log_write(const struct Log *log, enum Status status, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  write_arguments(log, status, format, arguments);
+  write_arguments(log, status, NULL, format, arguments);
   va_end(arguments);
 }
 
 void log_message(const struct Instance *instance, enum Status status, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  write_arguments(&instance->log, status, format, arguments);
+  write_arguments(&instance->log, status, NULL, format, arguments);
   va_end(arguments);
 }
 
 enum Status log_error(struct Instance *instance, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  write_arguments(&instance->log, STATUS_ERROR, format, arguments);
+  write_arguments(&instance->log, STATUS_ERROR, NULL, format, arguments);
+  va_end(arguments);
+  instance->situation->phase = PHASE_ERROR;
+  return STATUS_ERROR;
+}
+
+enum Status refuse_call(struct Instance *instance, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  write_arguments(&instance->log, STATUS_ERROR, instance->function, format, arguments);
   va_end(arguments);
   instance->situation->phase = PHASE_ERROR;
   return STATUS_ERROR;

@@ -35,4 +35,7 @@ void log_message(const struct Instance *instance, enum Status status, const char
 /* Logs an error and makes the instance refuse to go on until it is reset; returns STATUS_ERROR. */
 enum Status log_error(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
+/* The same of a call that cannot be; the name of the function that was called comes before the message. */
+enum Status refuse_call(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
+
 #endif

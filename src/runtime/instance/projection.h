@@ -17,7 +17,7 @@ struct Projection {
    * The same with the start values of the instance, however far they are; fixed coordinates and their velocities stay. Logs
    * what was moved. False after logging why the constraints cannot be fulfilled.
    */
-  bool (*make_consistent)(struct Instance *instance, const char *function);
+  bool (*make_consistent)(struct Instance *instance);
   /*
    * The same with the state at the begin of a step, after parameters or inputs were set. False after logging as what
    * discards the step why the constraints cannot be fulfilled; the state is then as it was.

@@ -224,7 +224,7 @@ static void log_redundant(const struct Instance *instance, const struct Work *wo
           instance->situation->time, lagrangian.constraints.names[j]);
 }
 
-static bool refuse(struct Instance *instance, size_t constraint, const char *what, const char *function) {
+static bool refuse(struct Instance *instance, size_t constraint, const char *what) {
   struct Work work = work_of(instance);
   if (instance->singular != 0) {
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
@@ -232,14 +232,12 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
   }
   const char *name = lagrangian.constraints.names[constraint];
   if (!isfinite(work.lack[constraint]))
-    log_error(instance, "%s: the constraint '%s' has no finite value at these start values; expected others", function,
-              name);
+    refuse_call(instance, "the constraint '%s' has no finite value at these start values; expected others", name);
   else
-    log_error(
-        instance,
-        "%s: no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
-        "expected start values nearer to a solution, fewer of them fixed, or parameters for which there is one",
-        function, what, name, -work.lack[constraint]);
+    refuse_call(instance,
+                "no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
+                "expected start values nearer to a solution, fewer of them fixed, or parameters for which there is one",
+                what, name, -work.lack[constraint]);
   return false;
 }
 
@@ -265,25 +263,25 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   return found;
 }
 
-static bool refuse_vanishing(struct Instance *instance, size_t constraint, const char *function) {
-  log_error(
+static bool refuse_vanishing(struct Instance *instance, size_t constraint) {
+  refuse_call(
       instance,
-      "%s: the constraint '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
+      "the constraint '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
       "motion; expected it without a square, a root or abs of the whole, or a start away from a singular position",
-      function, lagrangian.constraints.names[constraint]);
+      lagrangian.constraints.names[constraint]);
   return false;
 }
 
 /* Fixed ones that had to move all the same are refused; what rounding has moved is put back. */
-static bool keep_fixed(struct Instance *instance, const double *before, const char *function) {
+static bool keep_fixed(struct Instance *instance, const double *before) {
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < 2 * n; i++) {
     if (!lagrangian.constraints.coordinate_is_fixed[i % n]) continue;
     if (fabs(instance->state[i] - before[i]) > 1e-9 * scale_of(before, i)) {
-      log_error(instance,
-                "%s: the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
-                "start value there, or fewer fixed coordinates",
-                function, evaluate_state_name(i), instance->state[i], before[i]);
+      refuse_call(instance,
+                  "the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
+                  "start value there, or fewer fixed coordinates",
+                  evaluate_state_name(i), instance->state[i], before[i]);
       return false;
     }
     instance->state[i] = before[i];
@@ -291,23 +289,23 @@ static bool keep_fixed(struct Instance *instance, const double *before, const ch
   return true;
 }
 
-static bool make_consistent(struct Instance *instance, const char *function) {
+static bool make_consistent(struct Instance *instance) {
   struct Work work = work_of(instance);
   double time = instance->situation->time;
   bool keeps_fixed = lagrangian.constraints.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   size_t vanishing_one = find_vanishing(instance, time, instance->state);
-  if (vanishing_one < lagrangian.constraints.count) return refuse_vanishing(instance, vanishing_one, function);
+  if (vanishing_one < lagrangian.constraints.count) return refuse_vanishing(instance, vanishing_one);
   if (lacking < lagrangian.constraints.count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
     evaluate_lack(instance, time, instance->state, POSITIONS);
-    return refuse(instance, lacking, "coordinates", function);
+    return refuse(instance, lacking, "coordinates");
   }
   lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
-  if (lacking < lagrangian.constraints.count) return refuse(instance, lacking, "velocities", function);
+  if (lacking < lagrangian.constraints.count) return refuse(instance, lacking, "velocities");
   log_redundant(instance, &work);
-  if (keeps_fixed && !keep_fixed(instance, work.before, function)) return false;
+  if (keeps_fixed && !keep_fixed(instance, work.before)) return false;
   log_moves(instance, work.before, instance->situation->tolerance);
   return true;
 }

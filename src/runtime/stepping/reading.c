@@ -37,13 +37,13 @@ static void tell_impossible_start(struct Instance *instance, const char *reason)
 }
 
 /* Brings the copy to what is told, without a word: what does not go, the function that begins there will tell. */
-static void find_silently(struct Instance *instance, const char *function) {
+static void find_silently(struct Instance *instance) {
   char reason[MESSAGE_LENGTH] = "";
   struct Log log = instance->log;
   uint64_t told_singularity = instance->told_singularity;
   bool starts = instance->situation->phase == PHASE_INITIALIZATION;
   instance->log = (struct Log){keep_message, reason, 1u << STATUS_DISCARD | 1u << STATUS_ERROR};
-  if (starts) instance->shown_is_found = start_find(instance, function) == STATUS_DONE;
+  if (starts) instance->shown_is_found = start_find(instance) == STATUS_DONE;
   else instance->shown_is_found = evaluate_prepare(instance) == STATUS_DONE && start_step(instance);
   instance->log = log;
   instance->told_singularity = told_singularity;
@@ -52,13 +52,13 @@ static void find_silently(struct Instance *instance, const char *function) {
   if (starts) tell_impossible_start(instance, reason);
 }
 
-void reading_begin(struct Instance *instance, const char *function) {
+void reading_begin(struct Instance *instance) {
   if (!may_differ(instance)) return;
   bool is_new = memcmp(instance->given, instance->situation, situation_size()) != 0;
   if (is_new) memcpy(instance->given, instance->situation, situation_size());
   if (is_new || !instance->shown_is_found) memcpy(instance->shown, instance->situation, situation_size());
   exchange_situations(instance);
-  if (is_new) find_silently(instance, function);
+  if (is_new) find_silently(instance);
   instance->modes_stay = instance->shown_is_found;
   instance->prepared_is_stale = true;
   instance->is_reading = true;

@@ -11,7 +11,7 @@
  * Between these two, variables have the values that they are told with; nothing may be set. Where there is no start, a warning
  * says once why, and the values stay as they were set; so they do where the next step will be discarded.
  */
-void reading_begin(struct Instance *instance, const char *function);
+void reading_begin(struct Instance *instance);
 void reading_end(struct Instance *instance);
 
 #endif

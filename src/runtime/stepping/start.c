@@ -16,18 +16,17 @@ static bool has_accelerations(struct Instance *instance) {
   return lagrangian.derivatives == NULL || evaluate_derivatives(instance, &point, instance->work);
 }
 
-enum Status start_find(struct Instance *instance, const char *function) {
-  if (initial_state_check(instance, function) != STATUS_DONE) return STATUS_ERROR;
+enum Status start_find(struct Instance *instance) {
+  if (initial_state_check(instance) != STATUS_DONE) return STATUS_ERROR;
   if (lagrangian.event_laws != NULL) lagrangian.event_laws->guess(instance);
   bool is_ready = is_prepared(instance);
   if (is_ready && lagrangian.constraints.projection != NULL &&
-      !lagrangian.constraints.projection->make_consistent(instance, function))
+      !lagrangian.constraints.projection->make_consistent(instance))
     return STATUS_ERROR;
-  if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance, function))
-    return STATUS_ERROR;
+  if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance)) return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
   log_singularity(instance, STATUS_ERROR, instance->situation->time);
-  return log_error(instance, "%s: the system has no acceleration at its start values", function);
+  return refuse_call(instance, "the system has no acceleration at its start values");
 }
 
 bool start_step(struct Instance *instance) {

@@ -10,7 +10,7 @@
  * Brings the instance from the values that were set to the start of the simulation, behind impacts and events at the start
  * itself; an error, logged, where there is none.
  */
-enum Status start_find(struct Instance *instance, const char *function);
+enum Status start_find(struct Instance *instance);
 
 /*
  * Brings constraints and modes into agreement with parameters, inputs and a state that were set, as a step begins. False

@@ -118,7 +118,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   return course->resting < RESTING_STEP_LIMIT ? NULL : solver_resting;
 }
 
-/* Goes through the first event in the solver's last step, which then ends there. NULL, or the reason why the motion does. */
+/* Goes through the next event in the solver's last step, which then ends there. NULL, or the reason why the motion does. */
 static const char *pass_events(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
   return lagrangian.event_laws != NULL ? lagrangian.event_laws->pass(instance, step, &course->progress) : NULL;
 }
@@ -240,25 +240,23 @@ static double rounding_of_sum(const struct Situation *situation, double end, dou
 }
 
 /* What is wrong with a communication step. */
-static enum Status check_step(struct Instance *instance, double time, double size, const char *function) {
+static enum Status check_step(struct Instance *instance, double time, double size) {
   const struct Situation *situation = instance->situation;
-  if (!isfinite(time))
-    return log_error(instance, "%s: currentCommunicationPoint is %g; expected a finite time", function, time);
+  if (!isfinite(time)) return refuse_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
   if (!isfinite(size) || size <= 0.0)
-    return log_error(instance, "%s: step %g at time %g; expected a finite step larger than 0", function, size, time);
+    return refuse_call(instance, "step %g at time %g; expected a finite step larger than 0", size, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
   if (fabs(time - situation->time) > rounding)
-    return log_error(instance, "%s: currentCommunicationPoint is %.15g; expected %.15g, where the instance is",
-                     function, time, situation->time);
+    return refuse_call(instance, "currentCommunicationPoint is %.15g; expected %.15g, where the instance is", time,
+                       situation->time);
   if (time + size <= time)
-    return log_error(instance, "%s: step %g does not advance the time %g; expected a larger one", function, size, time);
+    return refuse_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
   if (!isfinite(time + size))
-    return log_error(instance, "%s: step %g from time %g ends beyond all numbers; expected a shorter one", function,
-                     size, time);
+    return refuse_call(instance, "step %g from time %g ends beyond all numbers; expected a shorter one", size, time);
   double excess = fmax(rounding, rounding_of_sum(situation, time + size, size));
   if (situation->stop_time_defined && time + size - situation->stop_time > excess)
-    return log_error(instance, "%s: the step ends at %.15g; expected none past stopTime %.15g", function, time + size,
-                     situation->stop_time);
+    return refuse_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
+                       situation->stop_time);
   return STATUS_DONE;
 }
 
@@ -270,11 +268,11 @@ static struct CommunicationStep step_within_experiment(const struct Situation *s
   return (struct CommunicationStep){.start = time, .end = time + size, .length = size};
 }
 
-enum Status communication_step(struct Instance *instance, double time, double size, const char *function) {
+enum Status communication_step(struct Instance *instance, double time, double size) {
   struct Situation *situation = instance->situation;
-  if (check_step(instance, time, size, function) != STATUS_DONE) return STATUS_ERROR;
+  if (check_step(instance, time, size) != STATUS_DONE) return STATUS_ERROR;
   if (evaluate_prepare(instance) != STATUS_DONE)
-    return log_error(instance, "%s: the parameters leave no acceleration at time %g", function, time);
+    return refuse_call(instance, "the parameters leave no acceleration at time %g", time);
   situation->time = time;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
@@ -282,7 +280,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
   enum StepResult result = run(instance, &step, &reached);
-  if (result == STEP_FAILED) return log_error(instance, "%s: the step from time %g failed", function, time);
+  if (result == STEP_FAILED) return refuse_call(instance, "the step from time %g failed", time);
   evaluate_advance_inputs(instance, reached);
   situation->input_derivatives_set = 0;
   situation->time = reached;

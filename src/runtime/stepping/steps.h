@@ -5,9 +5,9 @@
 #include "instance/instance.h"
 
 /*
- * Goes on from time by size; messages come under the name of the function that the caller called. Discards after
+ * Goes on from time by size. Discards after
  * logging where the solver came to a part of the step alone, which situation->time then tells.
  */
-enum Status communication_step(struct Instance *instance, double time, double size, const char *function);
+enum Status communication_step(struct Instance *instance, double time, double size);
 
 #endif
