@@ -110,8 +110,10 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
     *time = NAN;
-    if (!switching_narrow(instance, progress->searched, &near) && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (switching_find(instance, progress->searched, near, time, indicator)) return true;
+    const double *samples;
+    bool is_sure = switching_narrow(instance, progress->searched, &near, &samples);
+    if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
+    if (switching_find(instance, progress->searched, near, samples, time, indicator)) return true;
     window = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->gathered = 0;

@@ -28,14 +28,15 @@ struct Search {
 };
 
 size_t switching_search_count(void) {
-  size_t samples = 2 * lagrangian.state_count + (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t search = switching_sample_count() + 2 * lagrangian.state_count +
+                  (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
   size_t window = switching_window_count();
-  return samples > window ? samples : window;
+  return search > window ? search : window;
 }
 
 static struct Search search_of(struct Instance *instance) {
   size_t count = indicator_count(lagrangian.switches);
-  struct Search search = {.instance = instance, .state = instance->switching_work};
+  struct Search search = {.instance = instance, .state = instance->switching_work + switching_sample_count()};
   search.rounded = search.state + lagrangian.state_count;
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
@@ -44,12 +45,25 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
-/* The values at a time; NAN where there are none. */
+/* The values at a time and the state there, which may be NULL; NAN where there are none. */
+static void sample_at_state(const struct Search *search, double time, const double *state, double *values) {
+  bool known = state != NULL && switching_indicators(search->instance, time, state, values);
+  for (size_t i = 0; i < indicator_count(lagrangian.switches) && !known; i++) values[i] = NAN;
+}
+
 static void sample(struct Search *search, double time, double *values) {
-  size_t count = indicator_count(lagrangian.switches);
-  bool known = lagrangian.solver->interpolate(search->instance, time, search->state) &&
-               switching_indicators(search->instance, time, search->state, values);
-  for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
+  bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
+  sample_at_state(search, time, known ? search->state : NULL, values);
+}
+
+/* At the nodes of a window. */
+static void sample_window(struct Search *search, double from, double to, const double *states) {
+  for (size_t k = 0; k < CHEBYSHEV_NODES; k++) {
+    double time = chebyshev_time(from, to, (int)k),
+           *values = search->samples + k * indicator_count(lagrangian.switches);
+    if (states == NULL) sample(search, time, values);
+    else sample_at_state(search, time, states + k * lagrangian.state_count, values);
+  }
 }
 
 static double value_at(struct Search *search, size_t indicator, double time) {
@@ -239,12 +253,12 @@ bool switching_jump(struct Instance *instance, double *time, double *state, size
   return true;
 }
 
-bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator) {
+bool switching_find(struct Instance *instance, double from, double to, const double *samples, double *time,
+                    size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
-  for (int k = 0; k < CHEBYSHEV_NODES; k++)
-    sample(&search, chebyshev_time(from, to, k), search.samples + (size_t)k * count);
+  sample_window(&search, from, to, samples);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double f[CHEBYSHEV_NODES], sign = switching_sign(instance, i);

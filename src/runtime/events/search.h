@@ -13,10 +13,12 @@
 size_t switching_search_count(void);
 
 /*
- * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign. False
- * where none does. The time is NAN where its zeros cannot be told from one another.
+ * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign; samples: as
+ * switching_narrow() gives them for this window. False where none does. The time is NAN where its zeros cannot be told from
+ * one another.
  */
-bool switching_find(struct Instance *instance, double from, double to, double *time, size_t *indicator);
+bool switching_find(struct Instance *instance, double from, double to, const double *samples, double *time,
+                    size_t *indicator);
 
 /*
  * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the

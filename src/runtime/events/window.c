@@ -18,10 +18,14 @@ struct Window {
   Series *x, *input, *work;
 };
 
+size_t switching_sample_count(void) {
+  return lagrangian.switches->watched_limit == NULL ? 0 : CHEBYSHEV_NODES * lagrangian.state_count;
+}
+
 size_t switching_window_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches->watched_limit == NULL) return 0;
-  return CHEBYSHEV_NODES * (lagrangian.state_count + switches->watched_acceleration_count) +
+  return switching_sample_count() + CHEBYSHEV_NODES * switches->watched_acceleration_count +
          SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
 }
 
@@ -35,15 +39,20 @@ static struct Window window_of(struct Instance *instance, double from, double to
   return window;
 }
 
-/* The states, and where they are looked at the accelerations and forces. False where there are none. */
-static bool sample_window(const struct Window *window) {
+static bool sample_states(const struct Window *window) {
+  bool are_known = true;
+  for (int node = 0; node < CHEBYSHEV_NODES && are_known; node++)
+    are_known = lagrangian.solver->interpolate(window->instance, chebyshev_time(window->from, window->to, node),
+                                               window->states + (size_t)node * lagrangian.state_count);
+  return are_known;
+}
+
+/* The accelerations and forces, where they are looked at. False where there are none. */
+static bool sample_accelerations(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count;
-  for (int node = 0; node < CHEBYSHEV_NODES; node++) {
+  for (int node = 0; node < CHEBYSHEV_NODES && count > 0; node++) {
     double time = chebyshev_time(window->from, window->to, node);
-    double *state = window->states + (size_t)node * lagrangian.state_count;
-    if (!lagrangian.solver->interpolate(window->instance, time, state)) return false;
-    if (count == 0) continue;
-    struct Point point = solver_point(window->instance, time, state);
+    struct Point point = solver_point(window->instance, time, window->states + (size_t)node * lagrangian.state_count);
     double *acceleration = window->accelerations + (size_t)node * count;
     if (lagrangian.constraints.accelerations == NULL || lagrangian.constraints.accelerations(&point, acceleration) != 0)
       return false;
@@ -68,7 +77,7 @@ static double sure_half(const struct Window *window) {
   const struct SwitchTable *switches = lagrangian.switches;
   double middle = chebyshev_time(window->from, window->to, CHEBYSHEV_NODES / 2);
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
-  bool is_resolved = sample_window(window);
+  bool is_resolved = sample_accelerations(window);
   for (size_t i = 0; i < states && is_resolved; i++)
     is_resolved = expand_sampled(window, window->states, states, i, lagrangian.steps.nominal[i], window->x[i]);
   for (size_t i = 0; i < forces && is_resolved; i++)
@@ -87,11 +96,13 @@ static double sure_half(const struct Window *window) {
   return limit.step;
 }
 
-bool switching_narrow(struct Instance *instance, double from, double *to) {
+bool switching_narrow(struct Instance *instance, double from, double *to, const double **samples) {
+  *samples = NULL;
   if (lagrangian.switches->watched_limit == NULL) return true;
   for (;;) {
     struct Window window = window_of(instance, from, *to);
-    double length = *to - from, half = sure_half(&window);
+    *samples = sample_states(&window) ? window.states : NULL;
+    double length = *to - from, half = *samples != NULL ? sure_half(&window) : 0.0;
     if (half >= 0.5 * length) return true;
     double shorter = fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length);
     if (shorter <= 16.0 * DBL_EPSILON * fabs(from) || !(from + shorter > from)) return false;
