@@ -46,13 +46,13 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   bool sticks = false;
   for (size_t i = 0; i < switches->friction_count; i++)
-    sticks |= rests_on(switches, i, contact) && mode_of(settlement, switches->frictions[i].mode) == 0.0;
+    sticks |= rests_on(switches, i, contact) && friction_sticks(settlement, i);
   return sticks;
 }
 
 static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
   size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
-  if (mode_of(settlement, settlement->switches->contacts[contact].mode) != 0.0) return true;
+  if (contact_is_closed(settlement, contact)) return true;
   return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
 }
 
@@ -61,8 +61,8 @@ static bool sinks(const struct Settlement *settlement) {
   bool any = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
     size_t place = contact_place(settlement->switches, i, CONTACT_ACCELERATION);
-    bool is_open = mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0;
-    any |= is_open && settlement->takes_part[i] != 0.0 && settlement->value[place] < -settlement->noise[place];
+    any |= !contact_is_closed(settlement, i) && settlement->takes_part[i] != 0.0 &&
+           settlement->value[place] < -settlement->noise[place];
   }
   return any;
 }
@@ -75,7 +75,7 @@ static bool choose_resting(struct Settlement *settlement) {
   for (size_t i = 0; i < contacts; i++)
     settlement->takes_part[i] = is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    settlement->takes_part[contacts + i] = mode_of(settlement, switches->frictions[i].mode) != 0.0 ? 1.0 : 0.0;
+    settlement->takes_part[contacts + i] = friction_sticks(settlement, i) ? 0.0 : 1.0;
     for (size_t k = 0; k < contacts; k++)
       slides |= settlement->takes_part[k] * settlement->takes_part[contacts + i] != 0.0 && rests_on(switches, i, k);
   }
@@ -88,7 +88,7 @@ static bool find_pushes(struct Settlement *settlement, struct Pushes *pushes) {
   bool changed = settlement->changed;
   settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (settlement->takes_part[i] != 0.0) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    if (settlement->takes_part[i] != 0.0) set_contact(settlement, i, false);
   bool done = pushes_create(settlement, pushes);
   settlement_restore_modes(settlement);
   settlement->changed = changed;
@@ -114,8 +114,7 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
   size_t n = resting->count;
   for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(pushes->mobility[i * pushes->count + i]);
   for (size_t i = 0; i < n; i++) {
-    resting->free[i] = settlement->value[contact_place(settlement->switches, pushes->member[i], CONTACT_ACCELERATION)] *
-                       resting->unit[i];
+    resting->free[i] = contact_value(settlement, pushes->member[i], CONTACT_ACCELERATION) * resting->unit[i];
     for (size_t j = 0; j < n; j++) {
       const struct ContactFacts *contact = &settlement->switches->contacts[pushes->member[j]];
       double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];

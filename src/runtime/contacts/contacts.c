@@ -30,8 +30,7 @@ static size_t find_impact(const struct Settlement *settlement) {
   double fastest = 0.0;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
     size_t rate = contact_place(settlement->switches, i, CONTACT_RATE);
-    bool is_open =
-        mode_of(settlement, settlement->switches->contacts[i].mode) == 0.0 && settlement->was_opened[i] == 0.0;
+    bool is_open = !contact_is_closed(settlement, i) && settlement->was_opened[i] == 0.0;
     bool is_hit_first =
         is_hit(settlement, contact_indicator(settlement->switches, i)) && is_open && settlement->impacts == 0;
     bool closes = settlement->value[rate] < (is_hit_first ? 0.0 : -settlement->noise[rate]);
@@ -43,13 +42,12 @@ static size_t find_impact(const struct Settlement *settlement) {
 }
 
 static void open_all(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  for (size_t i = 0; i < switches->contact_count; i++) settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) set_contact(settlement, i, false);
 }
 
 /* Logs a restitution that is none. */
 static bool check_restitution(const struct Settlement *settlement, size_t contact) {
-  double restitution = settlement->value[contact_place(settlement->switches, contact, CONTACT_RESTITUTION)];
+  double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
   if (restitution >= 0.0 && restitution <= 1.0) return true;
   log_message(settlement->instance, STATUS_DISCARD,
               "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
@@ -84,17 +82,15 @@ static void let_go(struct Settlement *settlement) {
     for (size_t k = 0; k < switches->contact_count; k++) {
       if (!rests_on(switches, i, k)) continue;
       rests = true;
-      presses |= mode_of(settlement, switches->contacts[k].mode) != 0.0;
+      presses |= contact_is_closed(settlement, k);
     }
-    if (!rests || presses || mode_of(settlement, switches->frictions[i].mode) != 0.0) continue;
-    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+    if (!rests || presses || !friction_sticks(settlement, i)) continue;
+    set_friction(settlement, i, 1.0);
   }
 }
 
 static void let_all_slide(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    settlement_set_mode(settlement, switches->frictions[i].mode, 1.0);
+  for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
 }
 
 /* An impact of a contact, and of those that are hit together with it. */
@@ -133,9 +129,9 @@ static void let_moving_slide(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
     size_t place = friction_place(switches, i, FRICTION_VELOCITY);
     double velocity = settlement->value[place];
-    bool sticks = mode_of(settlement, switches->frictions[i].mode) == 0.0;
-    if (!sticks || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE)) continue;
-    settlement_set_mode(settlement, switches->frictions[i].mode, velocity < 0.0 ? -1.0 : 1.0);
+    if (!friction_sticks(settlement, i) || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE))
+      continue;
+    set_friction(settlement, i, velocity < 0.0 ? -1.0 : 1.0);
   }
 }
 
@@ -145,18 +141,16 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     size_t velocity = friction_place(switches, i, FRICTION_VELOCITY);
     bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
-    if (rests_on(switches, i, contact) && !slides) settlement_set_mode(settlement, switches->frictions[i].mode, 0.0);
+    if (rests_on(switches, i, contact) && !slides) set_friction(settlement, i, 0.0);
   }
 }
 
 /* Closes contacts that come to rest, all at once. */
 static bool close_contacts(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
   bool closes = false;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
-    if (!is_open || !comes_to_rest(settlement, i)) continue;
-    settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
+    if (contact_is_closed(settlement, i) || !comes_to_rest(settlement, i)) continue;
+    set_contact(settlement, i, true);
     let_stick(settlement, i);
     closes = true;
   }
@@ -171,13 +165,11 @@ static double largest_drift(const struct Settlement *settlement) {
 
 /* Opens contacts that were lifted. Whether there were any. */
 static bool open_lifted(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
   bool opens = false;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t gap = contact_place(switches, i, CONTACT_GAP);
-    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
-    if (!is_closed || settlement->value[gap] <= largest_drift(settlement)) continue;
-    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
+    if (!contact_is_closed(settlement, i) || contact_value(settlement, i, CONTACT_GAP) <= largest_drift(settlement))
+      continue;
+    set_contact(settlement, i, false);
     opens = true;
   }
   return opens;
@@ -191,8 +183,8 @@ static bool open_parting(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t place = contact_place(switches, i, CONTACT_RATE);
     double rate = settlement->value[place], least = settlement->thrown ? settlement->noise[place] : drift;
-    if (mode_of(settlement, switches->contacts[i].mode) == 0.0 || !(rate > least)) continue;
-    settlement_set_mode(settlement, switches->contacts[i].mode, 0.0);
+    if (!contact_is_closed(settlement, i) || !(rate > least)) continue;
+    set_contact(settlement, i, false);
     settlement->was_opened[i] = 1.0;
     opens = true;
   }
@@ -203,9 +195,8 @@ static bool part(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   open_lifted(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
-    bool is_closed = mode_of(settlement, switches->contacts[i].mode) != 0.0;
-    if (is_closed || gap >= -largest_drift(settlement)) continue;
+    double gap = contact_value(settlement, i, CONTACT_GAP);
+    if (contact_is_closed(settlement, i) || gap >= -largest_drift(settlement)) continue;
     log_message(
         settlement->instance, STATUS_DISCARD,
         "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
@@ -226,11 +217,10 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
   settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
+    double gap = contact_value(settlement, i, CONTACT_GAP);
     double noise = settlement->noise[contact_place(switches, i, CONTACT_GAP)];
-    bool is_open = mode_of(settlement, switches->contacts[i].mode) == 0.0;
-    if (!is_open || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
-    settlement_set_mode(settlement, switches->contacts[i].mode, 1.0);
+    if (contact_is_closed(settlement, i) || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
+    set_contact(settlement, i, true);
     *lifts = true;
   }
   if (!*lifts) return true;
@@ -266,7 +256,7 @@ static const char *check_gaps(const struct Settlement *settlement) {
   bool starts = settlement->occasion == AT_START, moved = settlement->moved;
   double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = settlement->value[contact_place(switches, i, CONTACT_GAP)];
+    double gap = contact_value(settlement, i, CONTACT_GAP);
     if (gap >= -allowed) continue;
     log_message(
         settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
@@ -302,7 +292,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   *again = pulling < switches->contact_count;
   if (!*again) return NULL;
   settlement->was_opened[pulling] = 1.0;
-  settlement_set_mode(settlement, switches->contacts[pulling].mode, 0.0);
+  set_contact(settlement, pulling, false);
   let_go(settlement);
   return NULL;
 }

@@ -106,9 +106,7 @@ static double fill_rates(const struct Settlement *settlement, struct ImpactProbl
   memset(problem->rate, 0, problem->count * sizeof *problem->rate);
   for (size_t i = 0; i < pushes->count; i++) {
     bool is_contact = i < pushes->contact_count;
-    double bounce = is_contact
-                        ? settlement->value[contact_place(settlement->switches, pushes->member[i], CONTACT_RESTITUTION)]
-                        : 0.0;
+    double bounce = is_contact ? contact_value(settlement, pushes->member[i], CONTACT_RESTITUTION) : 0.0;
     double rate = pushes->rate[i] * problem->unit[i] * (1.0 + (pushes->rate[i] < 0.0 ? share * bounce : 0.0));
     problem->rate[i] = rate;
     if (!is_contact) problem->rate[i + pushes->friction_count] = -rate;
@@ -198,8 +196,7 @@ static void add_impulses(struct Settlement *settlement, const struct Pushes *pus
 
 /* A contact that is hit alone, without friction. */
 static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
-  double bounce =
-      bounces ? settlement->value[contact_place(settlement->switches, pushes->member[0], CONTACT_RESTITUTION)] : 0.0;
+  double bounce = bounces ? contact_value(settlement, pushes->member[0], CONTACT_RESTITUTION) : 0.0;
   double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
   if (!(pushes->mobility[0] > DBL_MIN)) return false;
   add_impulses(settlement, pushes, &impulse);

@@ -24,6 +24,27 @@ struct Pushes {
 bool pushes_create(struct Settlement *settlement, struct Pushes *pushes);
 void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
 
+static inline bool contact_is_closed(const struct Settlement *settlement, size_t contact) {
+  return mode_of(settlement, settlement->switches->contacts[contact].mode) != 0.0;
+}
+
+static inline void set_contact(struct Settlement *settlement, size_t contact, bool is_closed) {
+  settlement_set_mode(settlement, settlement->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
+}
+
+static inline double contact_value(const struct Settlement *settlement, size_t contact, size_t part) {
+  return settlement->value[contact_place(settlement->switches, contact, part)];
+}
+
+static inline bool friction_sticks(const struct Settlement *settlement, size_t friction) {
+  return mode_of(settlement, settlement->switches->frictions[friction].mode) == 0.0;
+}
+
+/* mode: the sign of its velocity, 0 for one that sticks. */
+static inline void set_friction(struct Settlement *settlement, size_t friction, double mode) {
+  settlement_set_mode(settlement, settlement->switches->frictions[friction].mode, mode);
+}
+
 /* Whether the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
 
