@@ -25,24 +25,12 @@ static fmi2Status unknown_status(fmi2Component c, const char *name) {
   return fmi2Discard;
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value) {
-  (void)s;
-  (void)value;
-  return unknown_status(c, __func__);
-}
-
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value) {
   if (s != fmi2LastSuccessfulTime) return unknown_status(c, __func__);
   struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
   if (instance == NULL || !check_array(instance, value, 1, "value")) return fmi2Error;
   *value = instance->situation->time;
   return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value) {
-  (void)s;
-  (void)value;
-  return unknown_status(c, __func__);
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value) {
@@ -53,8 +41,14 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
   return fmi2OK;
 }
 
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value) {
-  (void)s;
-  (void)value;
-  return unknown_status(c, __func__);
-}
+/* Of other types there is none that could be known. */
+#define NO_STATUS(function, type)                                                                                      \
+  fmi2Status function(fmi2Component c, const fmi2StatusKind s, type *value) {                                          \
+    (void)s;                                                                                                           \
+    (void)value;                                                                                                       \
+    return unknown_status(c, __func__);                                                                                \
+  }
+
+NO_STATUS(fmi2GetStatus, fmi2Status)
+NO_STATUS(fmi2GetIntegerStatus, fmi2Integer)
+NO_STATUS(fmi2GetStringStatus, fmi2String)
