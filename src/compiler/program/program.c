@@ -41,20 +41,37 @@ static void create_series(struct Program *program, struct Values *values) {
   if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, values);
 }
 
-static size_t count_of(const struct Routine *routine) {
-  return routine != NULL ? routine->count : 0;
+static void visit_series(const struct SeriesProgram *series, enum FunctionName start, enum FunctionName order,
+                         RoutineVisitor *visit, void *context) {
+  if (series != NULL && series->start != NULL) visit(context, start, series->start);
+  if (series != NULL && series->order != NULL) visit(context, order, series->order);
+}
+
+void program_visit(const struct Program *program, RoutineVisitor *visit, void *context) {
+  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
+    if (program->routines[i] != NULL) visit(context, i, program->routines[i]);
+  for (size_t i = 0; i < program->interface->result_count; i++) {
+    if (program->result[i] != NULL) visit(context, FUNCTION_RESULT, program->result[i]);
+    if (program->result_along[i] != NULL) visit(context, FUNCTION_RESULT_ALONG, program->result_along[i]);
+  }
+  visit_series(program->series, FUNCTION_START, FUNCTION_SERIES, visit, context);
+  visit_series(program->output_series, FUNCTION_OUTPUT_SERIES, FUNCTION_OUTPUT_SERIES, visit, context);
+  visit_series(program->watched_series, FUNCTION_WATCHED_LIMIT, FUNCTION_WATCHED_LIMIT, visit, context);
+}
+
+static void add_count(void *context, enum FunctionName name, const struct Routine *routine) {
+  size_t *count = context;
+  if (name != FUNCTION_LINEAR) *count += routine->count;
 }
 
 size_t instruction_count(const struct Program *program) {
   size_t count = 0;
-  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
-    if (i != FUNCTION_LINEAR) count += count_of(program->routines[i]);
-  for (size_t i = 0; i < program->interface->result_count; i++)
-    count += count_of(program->result[i]) + count_of(program->result_along[i]);
-  const struct SeriesProgram *const series[] = {program->series, program->output_series, program->watched_series};
-  for (int i = 0; i < 3; i++)
-    if (series[i] != NULL) count += count_of(series[i]->start) + count_of(series[i]->order);
+  program_visit(program, add_count, &count);
   return count;
+}
+
+static size_t count_of(const struct Routine *routine) {
+  return routine != NULL ? routine->count : 0;
 }
 
 static void choose_form(struct Program *program, enum CodeForm form) {

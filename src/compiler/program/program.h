@@ -33,5 +33,9 @@ struct Program {
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
 
+/* Visits each routine of the program, with the function that it is of, in the order in which they are built. */
+typedef void RoutineVisitor(void *context, enum FunctionName name, const struct Routine *routine);
+void program_visit(const struct Program *program, RoutineVisitor *visit, void *context);
+
 /* How many instructions all routines have together, but those of linear(), which copies alone. */
 size_t instruction_count(const struct Program *program);

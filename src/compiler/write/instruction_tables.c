@@ -12,9 +12,17 @@ static void add_number(struct TableContext *context, Node node) {
   context->number[node] = context->numbers.count;
 }
 
+/* Whether it is written as a table where the program is. */
+static bool is_in_tables(const struct Program *program, enum FunctionName name) {
+  if (name == FUNCTION_START || name == FUNCTION_SERIES) return program->series_is_table;
+  return generated_functions[name].group != IN_SWITCHES;
+}
+
 /* Notes the numbers and functions that a routine uses. */
-static void note(struct TableContext *context, const struct Routine *routine) {
-  for (size_t i = 0; routine != NULL && i < routine->count; i++) {
+static void note(void *target, enum FunctionName name, const struct Routine *routine) {
+  struct TableContext *context = target;
+  if (!is_in_tables(context->program, name)) return;
+  for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
     if (instruction->opcode == CALL || instruction->opcode == CALL_OF_TWO) context->function[instruction->function] = 1;
     for (int j = 0; j < opcode_arity(instruction->opcode); j++)
@@ -23,11 +31,8 @@ static void note(struct TableContext *context, const struct Routine *routine) {
   }
 }
 
-static void note_series(struct TableContext *context, const struct SeriesProgram *series) {
-  if (series == NULL) return;
-  note(context, series->start);
-  note(context, series->order);
-  for (size_t i = 0; i < series->limit.count; i++) {
+static void note_limit(struct TableContext *context, const struct SeriesProgram *series) {
+  for (size_t i = 0; series != NULL && i < series->limit.count; i++) {
     const struct LimitCheck *check = &series->limit.items[i];
     if (limit_facts(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
       add_number(context, (Node)index_in(check->exponent));
@@ -38,13 +43,8 @@ struct TableContext *table_context_create(const struct Program *program) {
   struct TableContext *context = allocate(1, sizeof *context);
   *context =
       (struct TableContext){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
-  for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) note(context, program->routines[i]);
-  for (size_t i = 0; i < program->interface->result_count; i++) {
-    note(context, program->result[i]);
-    note(context, program->result_along[i]);
-  }
-  if (program->series_is_table) note_series(context, program->series);
-  note_series(context, program->output_series);
+  program_visit(program, note, context);
+  if (program->series_is_table) note_limit(context, program->series);
   size_t count[3] = {0};
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
     if (context->function[function] > 0) context->function[function] = ++count[operation_arity(function)];
@@ -60,20 +60,17 @@ static void write_functions(FILE *file, const struct TableContext *context, int 
   fputs("NULL};\n", file);
 }
 
-static size_t longest(size_t length, const struct Routine *routine) {
-  return routine != NULL && routine->local_count > length ? routine->local_count : length;
+/* Those of prepare() stand behind what it computes, and statements have theirs. */
+static void find_most_locals(void *context, enum FunctionName name, const struct Routine *routine) {
+  size_t *most = context;
+  bool has_own = name == FUNCTION_PREPARE || generated_functions[name].group == IN_SWITCHES;
+  if (!has_own && routine->local_count > *most) *most = routine->local_count;
 }
 
-/* The local variables of the routine that has most; those of prepare() stand behind what it computes. */
+/* The local variables of the routine that has most. */
 static size_t local_count(const struct Program *program) {
   size_t count = 0;
-  for (enum FunctionName i = FUNCTION_PREPARE + 1; i < LAGRANGIAN_ROUTINES; i++)
-    count = longest(count, program->routines[i]);
-  for (size_t i = 0; i < program->interface->result_count; i++)
-    count = longest(longest(count, program->result[i]), program->result_along[i]);
-  const struct SeriesProgram *const series[] = {program->series, program->output_series};
-  for (int i = 0; i < 2; i++)
-    if (series[i] != NULL) count = longest(longest(count, series[i]->start), series[i]->order);
+  program_visit(program, find_most_locals, &count);
   return count;
 }
 
