@@ -45,36 +45,23 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
-/* The values at a time and the state there, which may be NULL; NAN where there are none. */
-static void sample_at_state(const struct Search *search, double time, const double *state, double *values) {
-  bool known = state != NULL && switching_indicators(search->instance, time, state, values);
-  for (size_t i = 0; i < indicator_count(lagrangian.switches) && !known; i++) values[i] = NAN;
-}
-
-static void sample(struct Search *search, double time, double *values) {
-  bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
-  sample_at_state(search, time, known ? search->state : NULL, values);
-}
-
-/* At the nodes of a window. */
-static void sample_window(struct Search *search, double from, double to, const double *states) {
-  for (size_t k = 0; k < CHEBYSHEV_NODES; k++) {
-    double time = chebyshev_time(from, to, (int)k),
-           *values = search->samples + k * indicator_count(lagrangian.switches);
-    if (states == NULL) sample(search, time, values);
-    else sample_at_state(search, time, states + k * lagrangian.state_count, values);
-  }
+/* The values at a time; NAN where there are none. state: there, NULL where it was not looked at yet. */
+static void sample(struct Search *search, double time, const double *state, double *values) {
+  size_t count = indicator_count(lagrangian.switches);
+  bool known = state != NULL || lagrangian.solver->interpolate(search->instance, time, search->state);
+  known = known && switching_indicators(search->instance, time, state != NULL ? state : search->state, values);
+  for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
 static double value_at(struct Search *search, size_t indicator, double time) {
-  sample(search, time, search->values);
+  sample(search, time, NULL, search->values);
   return search->values[indicator];
 }
 
 static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double later = time * (1.0 + 4.0 * DBL_EPSILON), *exact = search->exact;
-  sample(search, time, search->values);
+  sample(search, time, NULL, search->values);
   switching_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
   for (size_t i = 0; i < count; i++)
     if (switching_is_force(search->instance, i)) search->noise[i] = 0.0;
@@ -230,7 +217,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
  */
 static size_t find_passed(struct Search *search, double time) {
   size_t count = lagrangian.switches->branch_count;
-  sample(search, time, search->values);
+  sample(search, time, NULL, search->values);
   for (size_t i = 0; i < count; i++)
     if (switching_sign(search->instance, i) * search->values[i] < 0.0) return i;
   return count;
@@ -258,7 +245,9 @@ bool switching_find(struct Instance *instance, double from, double to, const dou
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
-  sample_window(&search, from, to, samples);
+  for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
+    sample(&search, chebyshev_time(from, to, (int)k), samples != NULL ? samples + k * lagrangian.state_count : NULL,
+           search.samples + k * count);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double f[CHEBYSHEV_NODES], sign = switching_sign(instance, i);

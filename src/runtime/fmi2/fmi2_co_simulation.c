@@ -43,12 +43,12 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
 
 /* Of other types there is none that could be known. */
 #define NO_STATUS(function, type)                                                                                      \
-  fmi2Status function(fmi2Component c, const fmi2StatusKind s, type *value) {                                          \
+  fmi2Status function(fmi2Component c, const fmi2StatusKind s, fmi2##type *value) {                                    \
     (void)s;                                                                                                           \
     (void)value;                                                                                                       \
     return unknown_status(c, __func__);                                                                                \
   }
 
-NO_STATUS(fmi2GetStatus, fmi2Status)
-NO_STATUS(fmi2GetIntegerStatus, fmi2Integer)
-NO_STATUS(fmi2GetStringStatus, fmi2String)
+NO_STATUS(fmi2GetStatus, Status)
+NO_STATUS(fmi2GetIntegerStatus, Integer)
+NO_STATUS(fmi2GetStringStatus, String)
