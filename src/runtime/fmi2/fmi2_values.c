@@ -1,8 +1,8 @@
 /* Getting and setting variables, and their derivatives (sections 2.1.7, 2.1.9 and 4.2.1). */
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
-#include "fmi/values.h"
 #include "fmi/life_cycle.h"
+#include "fmi/values.h"
 #include "fmi2/fmi2_component.h"
 
 /* The instance where the function may be called with these arrays; NULL after logging where it may not. */

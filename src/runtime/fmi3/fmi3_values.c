@@ -1,7 +1,7 @@
 /* Getting and setting variables of the types that there are (sections 2.2.6 and 2.4.7). */
 #include "fmi/check.h"
-#include "fmi/values.h"
 #include "fmi/life_cycle.h"
+#include "fmi/values.h"
 #include "fmi3/fmi3_component.h"
 #include "fmi3/fmi3_references.h"
 
