@@ -369,8 +369,8 @@ struct Lagrangian {
   struct TaylorTable taylor;
   struct ImplicitTable implicit;
   struct ConstraintTable constraints;
-  const struct SwitchTable *switches; /* NULL where nothing switches, as is */
-  const struct EventLaws *event_laws; /* event_laws.h */
+  const struct SwitchTable *switches; /* NULL where nothing switches */
+  const struct EventLaws *event_laws; /* event_laws.h; likewise */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
   int (*prepare)(const double *parameter, double *prepared);

@@ -4,7 +4,7 @@
 
 enum { CHEBYSHEV_DEGREE = 8, CHEBYSHEV_NODES };
 
-/* The time of a node, from 0, the end of the window, to 8, its begin; node 4 is the middle. */
+/* The time of a node, from 0, the end of the window, to 8, its beginning; node 4 is the middle. */
 double chebyshev_time(double from, double to, int node);
 
 /* The coefficients c[CHEBYSHEV_NODES] of the polynomial through f[CHEBYSHEV_NODES] at the nodes. */

@@ -98,15 +98,13 @@ static void take_roundings(struct Settlement *settlement) {
   switching_roundings(settlement->instance, settlement->time, settlement->state, accelerations_of(settlement),
                       rounding);
   for (size_t i = 0; i < switches->branch_count; i++) add_noise(settlement, i, rounding[i]);
-  rounding += switches->branch_count;
   for (size_t i = 0; i < switches->contact_count; i++)
-    add_noise(settlement, contact_place(switches, i, CONTACT_GAP), rounding[i]);
-  rounding += switches->contact_count;
+    add_noise(settlement, contact_place(switches, i, CONTACT_GAP), rounding[contact_indicator(switches, i)]);
   for (size_t i = 0; i < switches->friction_count; i++)
-    add_noise(settlement, friction_place(switches, i, FRICTION_VELOCITY), rounding[i]);
+    add_noise(settlement, friction_place(switches, i, FRICTION_VELOCITY), rounding[friction_indicator(switches, i)]);
 }
 
-/* Rounding in one way may leave a difference as it is; what it does in another is measured at the begin of an event. */
+/* Rounding in one way may leave a difference as it is; what it does in another is measured at the beginning of an event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
   double *noise = settlement->noise, *other = settlement->other_noise, factor, other_factor = 0.0;

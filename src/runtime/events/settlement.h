@@ -12,7 +12,7 @@ struct Settlement {
   enum Occasion occasion;
   size_t indicator;           /* for AT_EVENT */
   double *value, *noise;      /* value[], and what rounding may make of it */
-  double *other_noise;        /* by rounding in another way, at the begin of the event */
+  double *other_noise;        /* by rounding in another way, at the beginning of the event */
   double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
@@ -21,7 +21,7 @@ struct Settlement {
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;
   const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
-  double overshoot;                    /* in s: how long before its indicator was 0 */
+  double overshoot;                    /* in s: how long ago its indicator was 0 */
   const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */
   double *energy;                      /* energies and momenta before it */
   bool changed, jumped;                /* jumped: velocities, or coordinates did */

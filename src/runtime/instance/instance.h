@@ -71,10 +71,10 @@ struct Instance {
   const char *function; /* of the interface, that was called last, for messages */
   enum Kind kind;
   struct Situation *situation;
-  /* See reading.h: the one that what is told was found from last, and that one. NULL where no start or step moves states. */
+  /* See reading.h: what was set when what is told was found last, and what is told. NULL where no start or step moves states. */
   struct Situation *given, *shown;
-  bool is_reading;     /* the situation is what is told, and shown the one that was set */
-  bool shown_is_found; /* it is not as it was given */
+  bool is_reading;     /* the situation is what is told, and shown is what was set */
+  bool shown_is_found; /* what is told was found, and is not as it was set */
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* inside situation->values */
   void *saved; /* what the solver keeps inside situation->values */
   double *prepared;

@@ -19,7 +19,7 @@ struct Projection {
    */
   bool (*make_consistent)(struct Instance *instance);
   /*
-   * The same with the state at the begin of a step, after parameters or inputs were set. False after logging as what
+   * The same with the state at the beginning of a step, after parameters or inputs were set. False after logging as what
    * discards the step why the constraints cannot be fulfilled; the state is then as it was.
    */
   bool (*follow_change)(struct Instance *instance);
