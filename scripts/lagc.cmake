@@ -2,12 +2,16 @@
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 
-# The schema becomes a string in the program.
-file(READ ${root}/fmu/system.xsd schema HEX)
-string(REGEX REPLACE "(..)" "0x\\1," schema "${schema}")
-file(CONFIGURE OUTPUT system_schema.c CONTENT
-     "extern const char system_schema[];\nconst char system_schema[] = {${schema}0};\n" @ONLY)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/fmu/system.xsd)
+# A file becomes a string in the program: the schema, and what is not formulas on an FMU's page.
+function(add_string name file)
+  file(READ ${root}/${file} bytes HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  file(CONFIGURE OUTPUT ${name}.c CONTENT "extern const char ${name}[];\nconst char ${name}[] = {${bytes}0};\n" @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/${file})
+endfunction()
+add_string(system_schema fmu/system.xsd)
+add_string(page_style modelDescription/page/page.css)
+add_string(page_script modelDescription/page/page.js)
 
 # So do the names of the runtime's sources, and its rooms that every FMU has, for FMUs that carry their sources.
 function(list_of_names list variable)
@@ -24,7 +28,7 @@ file(CONFIGURE OUTPUT runtime_sources.c CONTENT "${sources}${rooms}" @ONLY)
 file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
 add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
-            ${CMAKE_BINARY_DIR}/runtime_sources.c)
+            ${CMAKE_BINARY_DIR}/page_style.c ${CMAKE_BINARY_DIR}/page_script.c ${CMAKE_BINARY_DIR}/runtime_sources.c)
 target_compile_definitions(compiler PUBLIC _XOPEN_SOURCE=700)
 target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/modelDescription)
 target_include_directories(compiler SYSTEM PUBLIC ${LIBXML2_INCLUDE_DIRS})

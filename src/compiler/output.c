@@ -7,7 +7,7 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "base/platform.h"
-#include "documentation.h"
+#include "page/documentation.h"
 #include "fmi3_description.h"
 #include "model_description.h"
 #include "write/code.h"

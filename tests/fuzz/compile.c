@@ -10,7 +10,7 @@
 
 #include <libxml/tree.h>
 
-#include "documentation.h"
+#include "page/documentation.h"
 #include "mechanics/motion.h"
 #include "base/memory.h"
 #include "interface/listing.h"

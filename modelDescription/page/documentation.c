@@ -1,0 +1,133 @@
+#include "documentation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <libxml/xmlwriter.h>
+
+#include "base/memory.h"
+#include "mechanics_sections.h"
+#include "page.h"
+#include "value_sections.h"
+#include "variables_section.h"
+#include "xml_output.h"
+
+/* page.css and page.js, which the build makes strings of; without < and &, so that the page is XML too. */
+extern const char page_style[], page_script[];
+
+static void write_solver(struct Page *page) {
+  const struct Method *method = page->equations->method;
+  if (page->equations->count == 0) return;
+  page_heading(page, "Solver");
+  page_element(page, "p", method->sentence);
+  if (!isnan(page->model->solver.max_step)) {
+    char *text = format_text("No step of the method is longer than %g s.", page->model->solver.max_step);
+    page_element(page, "p", text);
+  } else if (method->series == FIRST_TERMS)
+    page_element(
+        page, "p",
+        "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
+        "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");
+}
+
+/* Small systems are compiled, large ones interpreted: see program.h. */
+static void write_form(struct Page *page) {
+  const struct Program *program = page->program;
+  bool only_series = program->is_table && program->series != NULL && !program->series_is_table;
+  const char *form = only_series ? "those of the Taylor series as compiled C code, the others in tables, which the "
+                                   "FMU carries out"
+                     : program->is_table ? "in tables, which the FMU carries out: a C compiler would take long for them"
+                                         : "as compiled C code";
+  char *text = format_text("The equations are %zu instructions, %s.", instruction_count(program), form);
+  page_heading(page, "Code");
+  page_element(page, "p", text);
+}
+
+static void write_sections(struct Page *page) {
+  write_calculated(page);
+  write_definitions(page);
+  write_starts(page);
+  if (page->equations->count > 0) write_mechanics(page);
+  write_outputs(page);
+  write_solver(page);
+  write_form(page);
+  write_variables(page);
+}
+
+/* Browsers take nothing for markup there, so that nothing may be escaped. */
+static void write_as_it_is(const struct Page *page, const char *name, const char *text) {
+  xmlTextWriterStartElement(page->writer, BAD_CAST name);
+  xmlTextWriterWriteRaw(page->writer, BAD_CAST text);
+  xmlTextWriterEndElement(page->writer);
+}
+
+static void write_head(const struct Page *page) {
+  static const char *const metas[][2] = {{"viewport", "width=device-width, initial-scale=1"},
+                                         {"color-scheme", "light dark"}};
+  xmlTextWriterStartElement(page->writer, BAD_CAST "head");
+  xmlTextWriterStartElement(page->writer, BAD_CAST "meta");
+  write_attribute(page->writer, "charset", "utf-8");
+  xmlTextWriterEndElement(page->writer);
+  for (size_t i = 0; i < 2; i++) {
+    xmlTextWriterStartElement(page->writer, BAD_CAST "meta");
+    write_attribute(page->writer, "name", metas[i][0]);
+    write_attribute(page->writer, "content", metas[i][1]);
+    xmlTextWriterEndElement(page->writer);
+  }
+  page_element(page, "title", page->model->name);
+  write_as_it_is(page, "style", page_style);
+  xmlTextWriterEndElement(page->writer);
+}
+
+static void write_contents(const struct Page *page) {
+  xmlTextWriterStartElement(page->writer, BAD_CAST "nav");
+  for (size_t i = 0; i < page->heading_count; i++) {
+    xmlTextWriterStartElement(page->writer, BAD_CAST "a");
+    xmlTextWriterWriteFormatAttribute(page->writer, BAD_CAST "href", "#section%zu", i + 1);
+    xmlTextWriterWriteString(page->writer, BAD_CAST page->headings[i]);
+    xmlTextWriterEndElement(page->writer);
+  }
+  xmlTextWriterEndElement(page->writer);
+}
+
+/* Around the sections, which are written before it, since the contents list them. */
+static void write_page(const struct Page *page, const xmlBuffer *sections) {
+  xmlTextWriterPtr writer = page->writer;
+  xmlTextWriterWriteDTD(writer, BAD_CAST "html", NULL, NULL, NULL);
+  xmlTextWriterStartElement(writer, BAD_CAST "html");
+  write_attribute(writer, "lang", "en");
+  write_head(page);
+  xmlTextWriterStartElement(writer, BAD_CAST "body");
+  write_contents(page);
+  xmlTextWriterStartElement(writer, BAD_CAST "main");
+  page_element(page, "h1", page->model->name);
+  if (page->model->description != NULL) page_element(page, "p", page->model->description);
+  xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
+  xmlTextWriterEndElement(writer);
+  write_as_it_is(page, "script", page_script);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+}
+
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary) {
+  struct Page page = {.program = program,
+                      .model = program->model,
+                      .equations = program->equations,
+                      .interface = program->interface,
+                      .summary = summary};
+  xmlBufferPtr sections = xmlBufferCreate();
+  xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
+  page.writer = sections != NULL ? xmlNewTextWriterMemory(sections, 0) : NULL;
+  bool written = writer != NULL && page.writer != NULL;
+  if (written) {
+    write_sections(&page);
+    written = xmlTextWriterFlush(page.writer) >= 0;
+    xmlFreeTextWriter(page.writer);
+    page.writer = writer;
+    write_page(&page, sections);
+    written = xmlTextWriterEndDocument(writer) >= 0 && written;
+  }
+  xmlFreeTextWriter(writer);
+  xmlBufferFree(sections);
+  return written;
+}

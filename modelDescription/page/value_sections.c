@@ -1,0 +1,47 @@
+#include "value_sections.h"
+
+/* The author's own names, which the formulas use where they can. */
+void write_definitions(struct Page *page) {
+  const struct VariableList *definitions = &page->model->definitions;
+  const struct NodeNames *names = &page->summary->names;
+  bool first = true;
+  for (size_t i = 0; i < definitions->count; i++) {
+    const struct Variable *definition = &definitions->items[i];
+    if (names->of[definition->node] != definition->name) continue;
+    if (first) page_heading(page, "Definitions");
+    first = false;
+    page_equation(page, definition->name, definition->node);
+  }
+}
+
+void write_calculated(struct Page *page) {
+  const struct VariableList *calculated = &page->model->calculated;
+  size_t shown = calculated->count < SHOWN_LIMIT ? calculated->count : SHOWN_LIMIT;
+  if (shown == 0) return;
+  page_heading(page, "Calculated parameters");
+  for (size_t i = 0; i < shown; i++) page_equation(page, calculated->items[i].name, calculated->items[i].node);
+  page_rest(page, calculated->count, shown, "parameters");
+}
+
+/* Start values that follow from parameters. */
+void write_starts(struct Page *page) {
+  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities};
+  size_t count = 0;
+  for (size_t list = 0; list < 2; list++)
+    for (size_t i = 0; i < lists[list]->count; i++) {
+      const struct Variable *state = &lists[list]->items[i];
+      if (!start_follows(page->model, state)) continue;
+      if (count++ == 0) page_heading(page, "Start values, of what is not set before the simulation");
+      if (count <= SHOWN_LIMIT) page_equation(page, state->name, state->start_expression);
+    }
+  page_rest(page, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
+}
+
+void write_outputs(struct Page *page) {
+  const struct VariableList *outputs = &page->model->outputs;
+  if (outputs->count == 0) return;
+  page_heading(page, "Outputs");
+  for (size_t i = 0; i < page->summary->output_count; i++)
+    page_equation(page, outputs->items[i].name, page->summary->outputs[i]);
+  page_rest(page, outputs->count, page->summary->output_count, "outputs");
+}

@@ -1,0 +1,12 @@
+/* The sections on what the author gave as formulas of their own. Each writes nothing where there are none. */
+#ifndef VALUE_SECTIONS_H
+#define VALUE_SECTIONS_H
+
+#include "page.h"
+
+void write_calculated(struct Page *page);
+void write_definitions(struct Page *page);
+void write_starts(struct Page *page);
+void write_outputs(struct Page *page);
+
+#endif
