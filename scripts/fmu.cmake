@@ -1,6 +1,7 @@
 # lagrange_add_fmu, for CMakeLists.txt and for projects that find the installed package. Before it: the targets lagrange-fmu::lagc
 # and lagrange-fmu::icon, the target lagrange_runtime, which this machine's libraries are linked with, and the variables
-# lagrange_global_names, a file with what nm says of the runtime, and lagrange_sundials, a folder of cross.py (or none).
+# lagrange_global_names, a file with what nm says of the runtime, lagrange_licenses, a folder of collect_licenses(), and
+# lagrange_sundials, a folder of cross.py (or none).
 get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 find_program(zip zip REQUIRED)
 
@@ -106,9 +107,9 @@ function(add_archive name version folder system platforms)
   add_custom_command(OUTPUT ${fmu}
                      COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
                              -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D NAMES=${lagrange_global_names}
-                             -P ${scripts}/pack.cmake
+                             -D LICENSES=${lagrange_licenses} -P ${scripts}/pack.cmake
                      DEPENDS ${folder}/model.png ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
-                             ${scripts}/archive.cmake ${scripts}/one_file.cmake
+                             ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.cmake ${lagrange_root}/LICENSE
                      COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${fmu})
   add_dependencies(${target} icon_${name}) # else each FMU would draw it

@@ -9,9 +9,10 @@ install(FILES LICENSE DESTINATION ${package})
 install(DIRECTORY include DESTINATION ${package} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY src/runtime DESTINATION ${package}/src FILES_MATCHING PATTERN "*.[ch]" PATTERN "*.map")
 install(FILES fmu/system.xsd fmu/README.md DESTINATION ${package}/fmu)
-install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/one_file.cmake scripts/cross.py scripts/requirements-platforms.txt
+install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/licenses.cmake scripts/one_file.cmake scripts/cross.py scripts/requirements-platforms.txt
         DESTINATION ${package}/scripts)
 install(FILES ${lagrange_global_names} DESTINATION ${package})
+install(DIRECTORY ${lagrange_licenses} DESTINATION ${package})
 # Where scripts/sundials-all has built it: erk and bdf, for all platforms.
 install(DIRECTORY ${lagrange_sundials} DESTINATION ${package} OPTIONAL)
 configure_package_config_file(scripts/lagrange-fmu-config.cmake.in lagrange-fmu-config.cmake

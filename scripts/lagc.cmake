@@ -12,6 +12,7 @@ endfunction()
 add_string(system_schema fmu/system.xsd)
 add_string(page_style modelDescription/page/page.css)
 add_string(page_script modelDescription/page/page.js)
+add_string(license_text LICENSE)
 
 # So do the names of the runtime's sources, and its rooms that every FMU has, for FMUs that carry their sources.
 function(list_of_names list variable)
@@ -28,7 +29,8 @@ file(CONFIGURE OUTPUT runtime_sources.c CONTENT "${sources}${rooms}" @ONLY)
 file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
 add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
-            ${CMAKE_BINARY_DIR}/page_style.c ${CMAKE_BINARY_DIR}/page_script.c ${CMAKE_BINARY_DIR}/runtime_sources.c)
+            ${CMAKE_BINARY_DIR}/page_style.c ${CMAKE_BINARY_DIR}/page_script.c
+            ${CMAKE_BINARY_DIR}/license_text.c ${CMAKE_BINARY_DIR}/runtime_sources.c)
 target_compile_definitions(compiler PUBLIC _XOPEN_SOURCE=700)
 target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/modelDescription)
 target_include_directories(compiler SYSTEM PUBLIC ${LIBXML2_INCLUDE_DIRS})

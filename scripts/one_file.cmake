@@ -52,7 +52,15 @@ function(one_file system name file)
       endif()
     endif()
   endforeach()
+  file(READ ${SOURCE}/LICENSE license)
+  string(STRIP "${license}" license)
+  string(REPLACE "\n" "\n * " license "${license}")
+  string(REPLACE " * \n" " *\n" license "${license}")
   file(WRITE ${file} "/*
+ * ${license}
+ */
+
+/*
  * ${name} in C11, without any library but libm. Several FMUs can be linked into one program: compile each with
  * ${fmi}_FUNCTION_PREFIX defined as the FMU's name and _, here ${name}_, which the functions of FMI then begin with.
  * For a shared library, leave it undefined.

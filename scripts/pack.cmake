@@ -1,7 +1,7 @@
 # Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D NAMES=...
 #                     -P pack.cmake
 # FOLDER holds what lagc wrote, and model.png; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
-# FMI, 2 or 3; NAMES lists the global names of the compiled runtime.
+# FMI, 2 or 3; NAMES lists the global names of the compiled runtime; LICENSES is the folder of collect_licenses().
 cmake_minimum_required(VERSION 3.18)
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
@@ -34,6 +34,8 @@ else()
   string(REPLACE "../model.png" "../terminalsAndIcons/icon.png" documentation "${documentation}")
 endif()
 file(WRITE ${content}/documentation/index.html "${documentation}")
+include(${CMAKE_CURRENT_LIST_DIR}/licenses.cmake)
+copy_licenses(${FOLDER}/documentation/licenses/license.txt ${content}/documentation/licenses ${LICENSES})
 
 # An FMU that is complete in C has its source as one file: all that system.c includes, once each.
 if(EXISTS ${FOLDER}/fmi3/buildDescription.xml)

@@ -4,7 +4,7 @@
 
 /*
  * "left = right" in the infix form of algebra/formula.h as several <math> elements, between which a browser may break the
- * line: before the terms of sums and between factors, where they are too wide for a narrow page. To be freed with free().
+ * line: before the terms of sums and between factors, where they are too wide for a narrow page.
  * NULL where the text is none of this form, or longer than anybody reads.
  */
 char *mathml_of_equation(const char *equation);

@@ -7,21 +7,22 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "base/platform.h"
-#include "page/documentation.h"
 #include "fmi3_description.h"
+#include "licenses.h"
 #include "model_description.h"
+#include "page/documentation.h"
 #include "write/code.h"
 
-enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, CODE, FILE_COUNT };
+enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, LICENSE, CODE, FILE_COUNT };
 
 /* What names the files of a run that has not come to its end. */
 static const char unfinished[] = ".unfinished";
 
-static char *code_text(const struct Program *program) {
+static char *text_of(const struct Program *program, void (*write)(FILE *, const struct Program *)) {
   char *text = NULL;
   size_t length = 0;
   FILE *file = open_text(&text, &length);
-  code_write(file, program);
+  write(file, program);
   close_text(file, &text, &length);
   return text;
 }
@@ -47,9 +48,13 @@ static bool write_file(const char *path, const char *text) {
 
 /* The last one is what the build looks for: while it is there, all are of one run. */
 static const char *const names[FILE_COUNT] = {
-    [DESCRIPTION] = "modelDescription.xml",       [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
-    [TERMINALS] = "fmi3/terminalsAndIcons.xml",   [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
-    [DOCUMENTATION] = "documentation/index.html", [CODE] = "system.c",
+    [DESCRIPTION] = "modelDescription.xml",
+    [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
+    [TERMINALS] = "fmi3/terminalsAndIcons.xml",
+    [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
+    [DOCUMENTATION] = "documentation/index.html",
+    [LICENSE] = "documentation/licenses/license.txt",
+    [CODE] = "system.c",
 };
 
 static char *path_of(const char *directory, int file, const char *suffix) {
@@ -93,7 +98,7 @@ void output_remove(const char *directory) {
 
 /* Creates the directory and those in it. */
 static bool create_directories(const char *directory) {
-  static const char *const inner[] = {"documentation", "fmi3"};
+  static const char *const inner[] = {"documentation/licenses", "fmi3"};
   bool created = create_directory(directory);
   for (size_t i = 0; i < sizeof inner / sizeof *inner && created; i++)
     created = create_directory(format_text("%s/%s", directory, inner[i]));
@@ -126,7 +131,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   xmlBufferPtr anonymous = xmlBufferCreate(), buffers[FILE_COUNT];
   const char *texts[FILE_COUNT];
   char guid[GUID_LENGTH];
-  char *code = code_text(program);
+  char *code = text_of(program, code_write), *licenses = text_of(program, licenses_write);
   for (int i = 0; i < FILE_COUNT; i++) buffers[i] = xmlBufferCreate();
   bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
@@ -135,6 +140,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   for (int i = 0; i < FILE_COUNT; i++) texts[i] = (const char *)xmlBufferContent(buffers[i]);
   const struct Method *method = program->equations->method;
   if (method != NULL && method->uses_library) texts[BUILD_DESCRIPTION] = NULL;
+  texts[LICENSE] = licenses;
   texts[CODE] = file;
   limit = graph_limit(program->model->graph);
   if (limit != NULL)

@@ -260,7 +260,7 @@ def test_the_archive(name):
     with zipfile.ZipFile(fmu.archive(name)) as archive:
         members = {info.filename: info for info in archive.infolist() if not info.is_dir()}
     assert {member for member in members if not member.startswith("sources/")} == {
-        "modelDescription.xml", "model.png", f"binaries/linux64/{name}.so", "documentation/index.html"
+        "modelDescription.xml", "model.png", f"binaries/linux64/{name}.so", "documentation/index.html", "documentation/licenses/license.txt"
     }
     for info in members.values():
         assert info.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)

@@ -585,7 +585,7 @@ def names_of(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
-FILES = ["documentation/index.html", "fmi3/modelDescription.xml", "fmi3/terminalsAndIcons.xml", "modelDescription.xml", "system.c"]
+FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3/modelDescription.xml", "fmi3/terminalsAndIcons.xml", "modelDescription.xml", "system.c"]
 
 
 @pytest.mark.parametrize("limit", [0, 1, 4096, 7000])

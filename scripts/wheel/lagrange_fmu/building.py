@@ -3,6 +3,7 @@
 import os
 import platform
 import re
+import shutil
 import subprocess
 import tempfile
 import warnings
@@ -68,6 +69,14 @@ def compile_libraries(folder, name, platforms, fmi, content):
             raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
 
+def copy_licenses(file, target):
+    """Of libraries that are linked into the FMU: lagc's license.txt names the files."""
+    target.mkdir(parents=True)
+    for names in re.findall(" is linked into it: (.*)", file.read_text()):
+        for name in names.split(", "):
+            shutil.copy(HERE / "licenses" / name, target)
+
+
 def write_descriptions(folder, name, fmi, content):
     """What stands beside the libraries; folder holds what lagc wrote."""
     files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
@@ -75,13 +84,16 @@ def write_descriptions(folder, name, fmi, content):
         files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
         documentation = (folder / "documentation" / "index.html").read_text(encoding="utf-8")
         (folder / "documentation" / "index.html").write_text(documentation.replace("../model.png", "../terminalsAndIcons/icon.png"), encoding="utf-8")
+    licenses = Path("documentation/licenses")
+    files[licenses / "license.txt"] = licenses / "license.txt"
+    copy_licenses(folder / licenses / "license.txt", content / licenses)
     build_description = folder / "fmi3" / "buildDescription.xml"
     if build_description.exists():  # then it is complete in C
         write_sources(folder / "system.c", name, content / "sources" / f"{name}.c", fmi)
         if fmi == 3:
             files["sources/buildDescription.xml"] = "fmi3/buildDescription.xml"
     for member, file in files.items():
-        (content / member).parent.mkdir(exist_ok=True)
+        (content / member).parent.mkdir(parents=True, exist_ok=True)
         (folder / file).rename(content / member)
 
 
