@@ -83,7 +83,7 @@ def icon_words(folder, library):
 
 def pack_words(folder, library, archive, version):
     settings = {"FOLDER": folder, "LIBRARIES": library, "FMU": archive, "VERSION": version, "SYSTEM": "system.xml", "SOURCE": ROOT,
-                "NAMES": BUILD / "global_names", "ZIP": shutil.which("zip")}  # fmt: skip
+                "NAMES": BUILD / "global_names", "LICENSES": BUILD / "licenses", "ZIP": shutil.which("zip")}  # fmt: skip
     return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
 
 
