@@ -3,10 +3,38 @@
 #include <math.h>
 #include <string.h>
 
+#include "algebra/units/other_units.h"
 #include "base/memory.h"
 #include "xml_output.h"
 
-static void write_unit(xmlTextWriterPtr writer, const char *name) {
+static bool contains(const char *const *names, size_t count, const char *name) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(names[i], name) == 0) return true;
+  return false;
+}
+
+/* Those that variables of the unit are shown in, each once. */
+static void write_display_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count,
+                                const char *unit) {
+  const char **written = allocate(variable_count, sizeof *written);
+  size_t count = 0;
+  for (size_t i = 0; i < variable_count; i++) {
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    struct Dimension dimension;
+    double factor;
+    if (variable->display_unit == NULL || strcmp(variable->unit, unit) != 0) continue;
+    if (contains(written, count, variable->display_unit)) continue;
+    written[count++] = variable->display_unit;
+    display_unit_parse(variable->display_unit, &dimension, &factor);
+    xmlTextWriterStartElement(writer, BAD_CAST "DisplayUnit");
+    write_attribute(writer, "name", variable->display_unit);
+    write_number(writer, "factor", 1.0 / factor); /* of the value in the unit */
+    xmlTextWriterEndElement(writer);
+  }
+}
+
+static void write_unit(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count,
+                       const char *name) {
   struct Dimension dimension = unit_of(name);
   xmlTextWriterStartElement(writer, BAD_CAST "Unit");
   write_attribute(writer, "name", name);
@@ -15,13 +43,8 @@ static void write_unit(xmlTextWriterPtr writer, const char *name) {
     if (dimension.exponent[i] != 0)
       xmlTextWriterWriteFormatAttribute(writer, BAD_CAST base_unit_names[i], "%g", dimension.exponent[i]);
   xmlTextWriterEndElement(writer);
+  write_display_units(writer, interface, variable_count, name);
   xmlTextWriterEndElement(writer);
-}
-
-static bool contains(const char *const *names, size_t count, const char *name) {
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(names[i], name) == 0) return true;
-  return false;
 }
 
 /* Each unit once, in the order of the variables. A system has few of them, however many variables. */
@@ -33,7 +56,7 @@ void write_units(xmlTextWriterPtr writer, const struct Interface *interface, siz
     if (unit == NULL || contains(written, count, unit)) continue;
     if (count == 0) xmlTextWriterStartElement(writer, BAD_CAST "UnitDefinitions");
     written[count++] = unit;
-    write_unit(writer, unit);
+    write_unit(writer, interface, variable_count, unit);
   }
   if (count > 0) xmlTextWriterEndElement(writer);
 }
@@ -109,4 +132,13 @@ const char *naming_convention(const struct Model *model) {
   for (size_t i = 1; i < model->inputs.count; i++)
     if (is_input_rate(model, i) && is_input_rate(model, i - 1)) return "flat";
   return "structured";
+}
+
+void write_origin(xmlTextWriterPtr writer, const struct Model *model) {
+  const char *const attributes[][2] = {
+      {"description", model->description}, {"author", model->origin.author},
+      {"version", model->origin.version},  {"copyright", model->origin.copyright},
+      {"license", model->origin.license},  {"generationTool", "lagrange-fmu " LAGC_VERSION}};
+  for (size_t i = 0; i < sizeof attributes / sizeof *attributes; i++)
+    if (attributes[i][1] != NULL) write_attribute(writer, attributes[i][0], attributes[i][1]);
 }

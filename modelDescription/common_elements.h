@@ -20,3 +20,6 @@ bool has_start(const struct ScalarVariable *entry);
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable);
 
 const char *naming_convention(const struct Model *model);
+
+/* What is said of the system as a whole, and the tool, as attributes. */
+void write_origin(xmlTextWriterPtr writer, const struct Model *model);

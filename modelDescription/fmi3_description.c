@@ -67,6 +67,8 @@ static void write_numbers(xmlTextWriterPtr writer, const struct Interface *inter
                           const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
   if (variable->unit != NULL && entry->type == TYPE_REAL) write_attribute(writer, "unit", variable->unit);
+  if (variable->display_unit != NULL && entry->type == TYPE_REAL)
+    write_attribute(writer, "displayUnit", variable->display_unit);
   if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);
   if (!isnan(entry->maximum)) write_number(writer, "max", entry->maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
@@ -124,8 +126,7 @@ bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, 
   write_attribute(writer, "fmiVersion", "3.0");
   write_attribute(writer, "modelName", model->name);
   write_attribute(writer, "instantiationToken", token);
-  if (model->description != NULL) write_attribute(writer, "description", model->description);
-  write_attribute(writer, "generationTool", "lagrange-fmu");
+  write_origin(writer, model);
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
   write_interfaces(writer, program);
   write_units(writer, program->interface, program->interface->count);

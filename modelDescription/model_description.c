@@ -50,6 +50,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   enum VariableKind kind = variable->entry.kind;
   xmlTextWriterStartElement(writer, BAD_CAST "Real");
   if (variable->unit != NULL) write_attribute(writer, "unit", variable->unit);
+  if (variable->display_unit != NULL) write_attribute(writer, "displayUnit", variable->display_unit);
   if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
   if (!isnan(variable->entry.maximum)) write_number(writer, "max", variable->entry.maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
@@ -100,8 +101,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   write_attribute(writer, "fmiVersion", "2.0");
   write_attribute(writer, "modelName", model->name);
   write_attribute(writer, "guid", guid);
-  if (model->description != NULL) write_attribute(writer, "description", model->description);
-  write_attribute(writer, "generationTool", "lagrange-fmu");
+  write_origin(writer, model);
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
   const struct SwitchingExpressions *switching = program->equations->switching;
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "numberOfEventIndicators", "%zu",

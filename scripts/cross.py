@@ -69,7 +69,9 @@ def libraries_of(platform, name, fmi=2):
         raise Failure(f"this Python has no package ziglang, which compiles for {platform}; expected one after pip install {package}")
     suffix, targets = PLATFORMS[platform]
     if fmi == 2:
-        return {f"{platform}/{name}{suffix}": targets}
+        # Importers on Apple's own processors look into a folder by its name in FMI 3.0 first, or alone.
+        further = {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets[1:]}
+        return {f"{platform}/{name}{suffix}": targets, **further}
     return {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets}
 
 
@@ -123,10 +125,14 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
         raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
     else:
         sundials = Path(sundials).resolve()
+    compiled = {}
     for path, targets in libraries_of(platform, name, fmi).items():
         library = Path(binaries).resolve() / path
         with scratch(library) as folder:
-            slices = [compile_target(target, system, library.name, fmi, source, sundials, folder) for target in targets]
+            for target in targets:
+                if target not in compiled:
+                    compiled[target] = compile_target(target, system, library.name, fmi, source, sundials, folder)
+            slices = [compiled[target] for target in targets]
             (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])
             (folder / library.name).replace(library)
 

@@ -38,6 +38,7 @@ static bool are_alike(const struct InterfaceVariable *a, const struct InterfaceV
          (first->follows_from == NULL) == (second->follows_from == NULL) && starts_nearby(a) == starts_nearby(b) &&
          are_same_number(first->minimum, second->minimum) && are_same_number(first->maximum, second->maximum) &&
          are_same_number(a->nominal, b->nominal) && are_same_text(a->unit, 1, b->unit, index) &&
+         are_same_text(a->display_unit, 1, b->display_unit, index) &&
          are_same_text(a->description, 1, b->description, index);
 }
 

@@ -10,6 +10,7 @@
 struct InterfaceVariable {
   struct ScalarVariable entry; /* as in the generated table; the name belongs to this structure */
   char *unit, *description;    /* NULL where unknown */
+  char *display_unit;          /* NULL where none was given */
   double nominal;              /* NAN where none was given */
   Node node;                   /* the value; ZERO for statistics */
   Node start;                  /* of a state whose start value follows from parameters; else ZERO */

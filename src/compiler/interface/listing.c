@@ -22,6 +22,11 @@ static struct InterfaceVariable *append(struct Interface *interface, enum Variab
   return variable;
 }
 
+static void set_units(struct InterfaceVariable *variable, const struct Variable *source) {
+  variable->unit = variable_unit(source);
+  if (source->display_unit != NULL && variable->unit != NULL) variable->display_unit = copy_text(source->display_unit);
+}
+
 /* The names of what the node depends on. */
 static char *names_below(const struct Model *model, Node node) {
   struct SymbolNames names = {0};
@@ -39,7 +44,7 @@ static void append_list(struct Interface *interface, const struct Model *model, 
     variable->entry.start = source->start;
     variable->entry.minimum = source->minimum;
     variable->entry.maximum = source->maximum;
-    variable->unit = variable_unit(source);
+    set_units(variable, source);
     variable->nominal = source->nominal;
     variable->node = source->node;
     if (!start_follows(model, source)) continue;
@@ -55,7 +60,7 @@ static void append_calculated(struct Interface *interface, const struct Model *m
     struct InterfaceVariable *variable =
         append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
     variable->entry.follows_from = names_below(model, source->node);
-    variable->unit = variable_unit(source);
+    set_units(variable, source);
     variable->node = source->node;
   }
 }

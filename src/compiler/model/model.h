@@ -10,7 +10,8 @@
 
 struct Variable {
   char *name, *description;
-  char *unit; /* as written, NULL where none was given */
+  char *unit;         /* as written, NULL where none was given */
+  char *display_unit; /* that importers may show it in; NULL where none was given */
   enum VariableType type;
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN where none was given */
@@ -80,6 +81,11 @@ struct LinearizationPoint {
   bool *given;
 };
 
+/* Who made a system, and on what terms: texts as given; NULL where none was. */
+struct Origin {
+  char *author, *version, *copyright, *license;
+};
+
 /* What moves in a given way, by inputs or by drives. */
 struct GivenMotion {
   Node *input_rates;                 /* of each input: the one that is its time derivative; ZERO for none */
@@ -144,6 +150,7 @@ struct Experiment {
 
 struct Model {
   char *name, *description;
+  struct Origin origin;
   struct Graph *graph;
   Node time;
   struct VariableList parameters, inputs, coordinates, velocities, outputs;

@@ -94,6 +94,8 @@ static struct Scope *language_of(struct Model *model, struct Diagnostics *diagno
 static void read_system(struct Reader *reader, xmlNodePtr root) {
   reader->model->name = attribute(root, "name");
   reader->model->description = attribute(root, "description");
+  reader->model->origin = (struct Origin){attribute(root, "author"), attribute(root, "version"),
+                                          attribute(root, "copyright"), attribute(root, "license")};
   expand(reader, root);
   check_definitions_used(reader);
   check_given(reader);

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "algebra/units/units.h"
 #include "base/memory.h"
 
 /* One of the unit is factor * pi^pi_power of the SI unit. */
@@ -120,12 +119,30 @@ static char *factor_text(double factor, int pi_power) {
   return is_above ? format_text("%s/%s", number, pi) : format_text("1/(%s*%s)", number, pi);
 }
 
-char *unit_remedy(const char *text) {
-  char *si = NULL, *remedy = NULL;
+/* The unit with SI names, and how it was translated. Free with free(). */
+static char *translation_of(const char *text, struct Translation *translation) {
+  char *si = NULL;
   size_t length = 0;
   FILE *file = open_text(&si, &length);
-  struct Translation translation = translate(text, file);
+  *translation = translate(text, file);
   close_text(file, &si, &length);
+  return si;
+}
+
+bool display_unit_parse(const char *text, struct Dimension *dimension, double *factor) {
+  struct Translation translation;
+  char *si = translation_of(text, &translation);
+  const char *problem;
+  bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, dimension, &problem);
+  *factor = translation.factor * pow(acos(-1.0), translation.pi_power);
+  free(si);
+  return is_known && isnormal(*factor);
+}
+
+char *unit_remedy(const char *text) {
+  char *remedy = NULL;
+  struct Translation translation;
+  char *si = translation_of(text, &translation);
   struct Dimension dimension;
   const char *problem;
   bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, &dimension, &problem);

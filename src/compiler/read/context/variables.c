@@ -1,5 +1,7 @@
 #include "read/context/variables.h"
 
+
+#include "algebra/units/other_units.h"
 #include "base/memory.h"
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
@@ -8,12 +10,35 @@ struct Variable *append_variable(struct VariableList *list, struct Variable vari
   return &list->items[list->count++];
 }
 
+/* Here an angle is not a number: turns in a minute are no frequency in Hz. */
+static bool is_same_dimension(struct Dimension first, struct Dimension second) {
+  for (int i = 0; i < BASE_UNIT_COUNT; i++)
+    if (first.exponent[i] != second.exponent[i]) return false;
+  return first.known && second.known;
+}
+
+char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension dimension) {
+  struct Dimension shown;
+  double factor;
+  char *text = attribute(node, name);
+  if (text == NULL) return NULL;
+  if (!display_unit_parse(text, &shown, &factor))
+    report_error(reader->diagnostics, xmlGetLineNo(node),
+                 "%s '%s' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN", name, text);
+  else if (!is_same_dimension(shown, dimension))
+    report_error(reader->diagnostics, xmlGetLineNo(node), "%s '%s' shows what is in %s; expected that unit here", name,
+                 text, unit_text(shown));
+  else return text;
+  return NULL;
+}
+
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) name = copy_text("?"); /* reported already */
   struct Variable variable = variable_create(name, attribute(node, "description"), xmlGetLineNo(node));
   variable.unit = attribute(node, "unit");
   variable.dimension = unit_attribute(reader, node, "unit");
+  variable.display_unit = display_unit_attribute(reader, node, "displayUnit", variable.dimension);
   return variable;
 }
 

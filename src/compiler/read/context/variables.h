@@ -3,8 +3,11 @@
 
 #include "read/context/attributes.h"
 
-/* Name, description and unit; the rest is not there. */
+/* Name, description and units; the rest is not there. */
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node);
+
+/* The display unit in an attribute of the element, for what has this dimension; NULL where missing or after an error. */
+char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension dimension);
 
 /* Reports a range or a start value that does not fit. */
 void check_range(struct Reader *reader, const struct Variable *variable);

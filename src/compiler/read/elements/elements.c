@@ -64,6 +64,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   struct Variable velocity =
       variable_create(name_attribute(reader, node, "velocity"), attribute(node, "velocityDescription"), position.line);
   velocity.dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0);
+  velocity.display_unit = display_unit_attribute(reader, node, "velocityDisplayUnit", velocity.dimension);
   if (velocity.name == NULL) velocity.name = copy_text("?");
   given_for(reader, node, position.name); /* is there, and read with the start values */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);

@@ -64,6 +64,7 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
   struct Variable variable = {.name = copy_text(name),
                               .description = attribute(node, "description"),
                               .unit = attribute(node, "unit"),
+                              .display_unit = display_unit_attribute(reader, node, "displayUnit", value.dimension),
                               .dimension = value.dimension,
                               .node = without_displacements(reader, xmlGetLineNo(node), "the definition", value.node)};
   append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);

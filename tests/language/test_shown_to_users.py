@@ -1,0 +1,75 @@
+"""What an author gives for whoever opens the FMU: units to show values in, and who made it on what terms."""
+
+import math
+import xml.etree.ElementTree as ElementTree
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
+
+import fmu
+from fmu import lagc
+
+ORIGIN = {"author": "A. Author & B. Author", "version": "1.2", "copyright": "(c) 2026 the authors", "license": "CC0-1.0"}
+SYSTEM = """<system name="Shown" description="Rod" author="A. Author &amp; B. Author" version="1.2" copyright="(c) 2026 the authors" license="CC0-1.0">
+  <parameter name="l" start="0.5" unit="m" displayUnit="mm"/>
+  <parameter name="m" start="1" unit="kg" displayUnit="g"/>
+  <parameter name="w" value="l/5" unit="m" displayUnit="cm"/>
+  <parameter name="n" start="10" unit="rad/s" displayUnit="rpm"/>
+  <input name="tau" unit="N.m" displayUnit="N.mm"/>
+  <for index="i" from="1" to="2">
+    <coordinate name="theta[i]" velocity="omega[i]" unit="rad" displayUnit="deg" velocityDisplayUnit="deg/s" start="i"/>
+    <kinetic>m*l^2*omega[i]^2/2</kinetic><force coordinate="theta[i]">tau</force>
+  </for>
+  <output name="speed" unit="rad/s" displayUnit="rpm">omega[1] + n</output>
+</system>"""
+# Value in SI units of one of each unit.
+UNITS = {"mm": 1e-3, "g": 1e-3, "cm": 1e-2, "rpm": 2 * math.pi / 60, "N.mm": 1e-3, "deg": math.pi / 180, "deg/s": math.pi / 180}
+SHOWN = dict(l="mm", m="g", w="cm", n="rpm", tau="N.mm", theta="deg", omega="deg/s", speed="rpm")
+
+
+@pytest.fixture(scope="module")
+def archives():
+    fmu.build_systems("shown", {"Shown": SYSTEM}, "-DFMI_VERSIONS=2;3")
+    second = fmu.archive("Shown")
+    return [second, second.parent.parent / "fmi3" / second.name]
+
+
+def test_importers_get_them(archives):
+    for archive in archives:
+        assert validate_fmu(str(archive)) == []
+        description = fmpy.read_model_description(str(archive))
+        factors = {shown.name: (unit.name, shown.factor) for unit in description.unitDefinitions for shown in unit.displayUnits}
+        assert {name: 1 / float(factor) for name, (_, factor) in factors.items()} == pytest.approx(UNITS, rel=1e-15)
+        shown = {variable.name.split("[")[0]: variable.displayUnit for variable in description.modelVariables if variable.displayUnit}
+        assert {name: unit.name if hasattr(unit, "name") else unit for name, unit in shown.items()} == SHOWN
+        for variable in description.modelVariables:
+            if variable.displayUnit:
+                assert factors[SHOWN[variable.name.split("[")[0]]][0] == variable.unit
+        assert {name: getattr(description, name) for name in ORIGIN} == ORIGIN
+        assert description.generationTool == f"lagrange-fmu {lagc('--version').stdout.split()[-1]}"
+
+
+def test_values_stay_in_si(archives):
+    for archive in archives:
+        result = fmpy.simulate_fmu(str(archive), start_values={"l": 0.25}, stop_time=0.1, output=["speed"])
+        assert result["speed"][0] == 10
+
+
+def test_elements_that_are_shown_alike_are_an_array(archives):
+    root = ElementTree.fromstring((fmu.unpacked_archive(archives[1]) / "modelDescription.xml").read_text())
+    (theta,) = [variable for variable in root.iter("Float64") if variable.get("name").startswith("theta")]
+    assert theta.get("name") == "theta" and theta.find("Dimension").get("start") == "2"
+
+
+@pytest.mark.parametrize("unit, message", [
+    ('unit="m" displayUnit="furlong"', "displayUnit 'furlong' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN"),
+    ('unit="m" displayUnit="m"', "displayUnit 'm' is not known"),
+    ('unit="m" displayUnit="deg"', "displayUnit 'deg' shows what is in rad; expected that unit here"),
+    ('unit="Hz" displayUnit="rpm"', "displayUnit 'rpm' shows what is in rad/s; expected that unit here"),
+    ('displayUnit="mm"', "displayUnit 'mm' shows what is in m; expected that unit here"),
+])  # fmt: skip
+def test_what_cannot_be_shown(unit, message, tmp_path):
+    (tmp_path / "system.xml").write_text(f'<system name="Wrong"><input name="u" {unit}/><output name="y">u</output></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and f"system.xml:1: {message}" in result.stderr
