@@ -83,13 +83,21 @@ enum Status values_none(void *component, enum Function function, size_t count, c
   return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variable for this function");
 }
 
+/*
+ * Whether the importer integrates, and so sets the states at any time: some importers do that one by one, as variables, which
+ * is the same as all at once.
+ */
+static bool is_exchanged(const struct Instance *instance) {
+  return instance->situation->phase == PHASE_CONTINUOUS_TIME;
+}
+
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return instance->situation->phase != PHASE_CONTINUOUS_TIME;
-  case VARIABLE_MODE:
-  case VARIABLE_STATE: return is_before_start(instance);
+  case VARIABLE_MODE: return is_before_start(instance);
+  case VARIABLE_STATE: return is_before_start(instance) || is_exchanged(instance);
   default: return false;
   }
 }
@@ -127,6 +135,10 @@ static void end_polynomial(struct Instance *instance, size_t input) {
 
 static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
+  if (variable->kind == VARIABLE_STATE && is_exchanged(instance)) {
+    instance->state[variable->index] = value;
+    return;
+  }
   if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]

@@ -14,15 +14,19 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
   return are_right ? instance : NULL;
 }
 
+static bool may_be_read_early(const struct ScalarVariable *variable) {
+  return is_unknown(variable) || variable->kind == VARIABLE_INPUT || variable->kind == VARIABLE_STATE;
+}
+
 /*
  * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
- * and MasterSim read all variables then, and some end at any status but the best; they get the values, and the log tells
- * it once.
+ * read all variables then, and some end at any status but the best; they get the values, and the log tells it once. It does
+ * not tell of inputs and states, which MasterSim and CasADi read before they set them.
  */
 static void tell_early_reading(struct Instance *instance, const fmi2ValueReference vr[], size_t nvr) {
   if (instance->situation->phase != PHASE_INITIALIZATION || instance->told_early_reading) return;
   for (size_t i = 0; i < nvr && !instance->told_early_reading; i++) {
-    if (vr[i] >= lagrangian.variable_count || is_unknown(&lagrangian.variables[vr[i]])) continue;
+    if (vr[i] >= lagrangian.variable_count || may_be_read_early(&lagrangian.variables[vr[i]])) continue;
     log_message(instance, STATUS_WARNING,
                 "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
                 lagrangian.variables[vr[i]].name);

@@ -119,7 +119,7 @@ static char *factor_text(double factor, int pi_power) {
   return is_above ? format_text("%s/%s", number, pi) : format_text("1/(%s*%s)", number, pi);
 }
 
-/* The unit with SI names, and how it was translated. Free with free(). */
+/* The unit with SI names, and how it was translated. */
 static char *translation_of(const char *text, struct Translation *translation) {
   char *si = NULL;
   size_t length = 0;
@@ -135,7 +135,6 @@ bool display_unit_parse(const char *text, struct Dimension *dimension, double *f
   const char *problem;
   bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, dimension, &problem);
   *factor = translation.factor * pow(acos(-1.0), translation.pi_power);
-  free(si);
   return is_known && isnormal(*factor);
 }
 
