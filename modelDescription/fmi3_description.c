@@ -74,7 +74,7 @@ static void write_numbers(xmlTextWriterPtr writer, const struct Interface *inter
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
   if (entry->kind == VARIABLE_DERIVATIVE)
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
-                                      interface_find(interface, VARIABLE_STATE, entry->index));
+                                      interface_find(interface, VARIABLE_STATE, entry->index) + FIRST_REFERENCE);
 }
 
 /* A statistic may count further than an Int32. */
@@ -88,7 +88,7 @@ static void write_variable(xmlTextWriterPtr writer, const struct Interface *inte
   char *name = array_name(variable), *description = array_description(variable);
   xmlTextWriterStartElement(writer, BAD_CAST type_name(&variable->entry));
   write_attribute(writer, "name", name);
-  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", place);
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", place + FIRST_REFERENCE);
   if (description != NULL) write_attribute(writer, "description", description);
   write_classification(writer, variable);
   if (is_intermediate(&variable->entry)) write_attribute(writer, "intermediateUpdate", "true");

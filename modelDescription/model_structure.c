@@ -23,6 +23,7 @@ const struct StructureForm structure_of_fmi2 = {.groups = {"Outputs", "Derivativ
 const struct StructureForm structure_of_fmi3 = {
     .elements = {"Output", "ContinuousStateDerivative", "InitialUnknown", "EventIndicator"},
     .key = "valueReference",
+    .first_key = FIRST_REFERENCE,
     .has_arrays = true};
 
 struct Structure {

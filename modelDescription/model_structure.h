@@ -5,6 +5,8 @@
 
 #include "program/program.h"
 
+enum { FIRST_REFERENCE = 1 }; /* of FMI 3.0's value references: see src/runtime/fmi3/fmi3_references.h */
+
 extern const struct StructureForm structure_of_fmi2, structure_of_fmi3;
 
 void model_structure_write(xmlTextWriterPtr writer, const struct Program *program, const struct StructureForm *form);

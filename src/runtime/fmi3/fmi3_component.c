@@ -5,6 +5,7 @@
 
 #include "fmi/log_categories.h"
 #include "fmi3/fmi3_memory.h"
+#include "fmi3/fmi3_references.h"
 
 /* '#' introduces a variable in a message. */
 static void send(void *receiver, enum Status status, const char *message) {
@@ -38,7 +39,8 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
     return false;
   }
   for (size_t i = 0; i < count; i++) {
-    if (references[i] < lagrangian.variable_count && is_intermediate(&lagrangian.variables[references[i]])) continue;
+    unsigned place = place_of_reference(references[i]);
+    if (place < lagrangian.variable_count && is_intermediate(&lagrangian.variables[place])) continue;
     log_write(log, STATUS_ERROR,
               "%s: the value reference %u among requiredIntermediateVariables is of no variable with "
               "intermediateUpdate=\"true\"",

@@ -47,9 +47,9 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
   const unsigned *references = expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues});
   int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of);
   if (references == NULL || order_of == NULL) return fmi3Error;
-  /* The variable begins where its value reference is met. */
+  /* The variable begins where its place is met. */
   for (size_t k = 0, i = 0; k < nValues; k++) {
-    if (i < nvr && references[k] == vr[i]) i++;
+    if (i < nvr && references[k] == place_of_reference(vr[i])) i++;
     order_of[k] = orders[i - 1];
   }
   return status_of(output_derivatives(instance, references, nValues, order_of, values));

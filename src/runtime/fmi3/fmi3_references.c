@@ -3,22 +3,28 @@
 #include "fmi/check.h"
 #include "fmi3/fmi3_memory.h"
 
-/* The array with the variable in it; NULL for a scalar. */
-static const struct ArrayVariable *array_with(unsigned reference) {
+/* The array with the variable of this place in it; NULL for a scalar. */
+static const struct ArrayVariable *array_with(unsigned place) {
   for (size_t i = 0; i < lagrangian.array_count; i++)
-    if (reference - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
+    if (place - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
   return NULL;
 }
 
-/* How many values the variables have. False after logging where a reference is of an element alone. */
+/* How many values the variables have. False after logging where a reference is of no variable, or of an element alone. */
 static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count) {
   *count = 0;
   for (size_t i = 0; i < nvr; i++) {
-    const struct ArrayVariable *array = array_with(vr[i]);
+    if (vr[i] == 0 || vr[i] > lagrangian.variable_count) {
+      refuse_call(instance, "the value reference %u is unknown; expected one from 1 to %zu", vr[i],
+                  lagrangian.variable_count);
+      return false;
+    }
+    unsigned place = place_of_reference(vr[i]);
+    const struct ArrayVariable *array = array_with(place);
     *count += array != NULL ? array->count : 1;
-    if (array == NULL || array->first == vr[i]) continue;
+    if (array == NULL || array->first == place) continue;
     refuse_call(instance, "the value reference %u is of '%s', an element of an array; expected %zu, of the array",
-                vr[i], lagrangian.variables[vr[i]].name, array->first);
+                vr[i], lagrangian.variables[place].name, array->first + 1);
     return false;
   }
   return true;
@@ -45,11 +51,11 @@ const unsigned *expand_references(struct Component *component, enum WorkspaceUse
     refuse_call(instance, "%zu values; expected %zu, as many as the variables have", values.count, count);
     return NULL;
   }
-  if (count > 0 && lagrangian.array_count == 0) return vr;
   unsigned *references = reserve_workspace(component, use, count, sizeof *references);
   for (size_t i = 0, k = 0; i < nvr && references != NULL; i++) {
-    const struct ArrayVariable *array = array_with(vr[i]);
-    for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = vr[i] + j;
+    unsigned place = place_of_reference(vr[i]);
+    const struct ArrayVariable *array = array_with(place);
+    for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = place + j;
   }
   return references;
 }
