@@ -69,6 +69,12 @@ def compile_libraries(folder, name, platforms, fmi, content):
             raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
 
+def leave_out_icon(file):
+    """What draws it is not in the package."""
+    text = file.read_text(encoding="utf-8")
+    file.write_text(re.sub(r"  <GraphicalRepresentation>.*?</GraphicalRepresentation>\n", "", text, flags=re.S), encoding="utf-8")
+
+
 def copy_licenses(file, target):
     """Of libraries that are linked into the FMU: lagc's license.txt names the files."""
     target.mkdir(parents=True)
@@ -82,8 +88,7 @@ def write_descriptions(folder, name, fmi, content):
     files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
     if fmi == 3:
         files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
-        documentation = (folder / "documentation" / "index.html").read_text(encoding="utf-8")
-        (folder / "documentation" / "index.html").write_text(documentation.replace("../model.png", "../terminalsAndIcons/icon.png"), encoding="utf-8")
+        leave_out_icon(folder / "fmi3" / "terminalsAndIcons.xml")
     licenses = Path("documentation/licenses")
     files[licenses / "license.txt"] = licenses / "license.txt"
     copy_licenses(folder / licenses / "license.txt", content / licenses)
