@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "mechanics_sections.h"
 #include "page.h"
+#include "sketch.h"
 #include "value_sections.h"
 #include "variables_section.h"
 #include "xml_output.h"
@@ -102,6 +103,7 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterStartElement(writer, BAD_CAST "main");
   page_element(page, "h1", page->model->name);
   if (page->model->description != NULL) page_element(page, "p", page->model->description);
+  write_sketch(page);
   xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
   xmlTextWriterEndElement(writer);
   write_as_it_is(page, "script", page_script);

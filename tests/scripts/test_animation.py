@@ -319,11 +319,6 @@ def test_the_icon_of_a_system_in_space(arm):
     assert image[0, 0] == pytest.approx(1.0)
 
 
-def test_the_documentation_shows_the_sketch(arm):
-    assert '<img src="../model.png"' in (arm / "documentation" / "index.html").read_text()
-    assert "<img" not in (fmu.unpacked("FourBar") / "documentation" / "index.html").read_text()
-
-
 def test_frames(arm, tmp_path_factory):
     """An arm that turns about the upward y axis, and a block that slides along it with a load above, where z of the slide points down."""
     text, _ = run(tmp_path_factory.mktemp("arm"), "SceneArm", "l=0.7")
