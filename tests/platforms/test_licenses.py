@@ -39,7 +39,7 @@ def test_what_is_linked_is_named(method, N, names, tmp_path):
 
 def test_licences_of_libraries():
     """As the libraries' authors wrote them: of SUNDIALS Lawrence Livermore's, of KLU the LGPL."""
-    fmu.build_systems("licenses", {"Chain": CHAIN.format(method="bdf", N=200)})
+    fmu.build_systems("licensed", {"Chain": CHAIN.format(method="bdf", N=200)})
     folder = fmu.unpacked("Chain") / "documentation" / "licenses"
     assert {path.name for path in folder.iterdir()} == {"license.txt", "sundials.txt", "suitesparse.txt", "LGPL-2.1.txt"}
     assert "Lawrence Livermore" in (folder / "sundials.txt").read_text()
