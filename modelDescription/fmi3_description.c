@@ -49,9 +49,8 @@ static size_t element_count(const struct InterfaceVariable *variable) {
 }
 
 static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   for (size_t i = 0; i < element_count(variable); i++) {
     char number[NUMBER_LENGTH];
     number_text(variable[i].entry.start, number);
@@ -59,8 +58,7 @@ static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable 
     else fputs(number, file);
     if (i + 1 < element_count(variable)) fputc(' ', file);
   }
-  close_text(file, &text, &length);
-  write_attribute(writer, "start", text);
+  write_attribute(writer, "start", close_text(&text));
 }
 
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,

@@ -81,19 +81,16 @@ static size_t find_places(const struct Structure *structure, size_t unknown, boo
 }
 
 static void write_dependencies(const struct Structure *structure, size_t count, bool initial) {
-  char *places = NULL, *kinds = NULL;
-  size_t places_length = 0, kinds_length = 0;
-  FILE *places_file = open_text(&places, &places_length), *kinds_file = open_text(&kinds, &kinds_length);
+  struct TextStream places, kinds;
+  FILE *places_file = open_text(&places), *kinds_file = open_text(&kinds);
   for (size_t i = 0; i < count; i++) {
     size_t place = structure->places[i];
     enum VariableType type = structure->interface->variables[place].entry.type;
     fprintf(places_file, "%s%zu", i > 0 ? " " : "", place + structure->form->first_key);
     fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->of_place[place], type, initial));
   }
-  close_text(places_file, &places, &places_length);
-  close_text(kinds_file, &kinds, &kinds_length);
-  write_attribute(structure->writer, "dependencies", places);
-  write_attribute(structure->writer, "dependenciesKind", kinds);
+  write_attribute(structure->writer, "dependencies", close_text(&places));
+  write_attribute(structure->writer, "dependenciesKind", close_text(&kinds));
 }
 
 /*

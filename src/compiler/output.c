@@ -19,12 +19,9 @@ enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCU
 static const char unfinished[] = ".unfinished";
 
 static char *text_of(const struct Program *program, void (*write)(FILE *, const struct Program *)) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
-  write(file, program);
-  close_text(file, &text, &length);
-  return text;
+  struct TextStream text;
+  write(open_text(&text), program);
+  return close_text(&text);
 }
 
 /* Creates the directory and those above it. */

@@ -23,11 +23,10 @@ int LLVMFuzzerInitialize(int *count, char ***words);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void write_texts(const struct Program *program, const struct Summary *summary) {
-  char *code = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&code, &length);
+  struct TextStream code;
+  FILE *file = open_text(&code);
   code_write(file, program);
-  close_text(file, &code, &length);
+  close_text(&code);
   xmlBufferPtr buffer = xmlBufferCreate();
   if (!model_description_write(buffer, program, "") || !documentation_write(buffer, program, summary)) abort();
   xmlBufferFree(buffer);

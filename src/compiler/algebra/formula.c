@@ -186,21 +186,14 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
   printer->depth--;
 }
 
-void print_expression(FILE *file, const struct Graph *graph, Node node) {
-  struct Printer printer = {.file = file, .graph = graph, .whole = node, .start = ftell(file)};
-  print(&printer, node, IN_SUM);
-}
-
 char *expression_text(const struct Graph *graph, Node node) {
   return expression_text_with_names(graph, node, NULL);
 }
 
 char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   struct Printer printer = {.file = file, .graph = graph, .names = names, .whole = node};
   print(&printer, node, IN_SUM);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }

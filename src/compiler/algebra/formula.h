@@ -5,10 +5,7 @@
 
 #include "algebra/graph.h"
 
-/* Writes the expression; very long ones are cut off with "...". */
-void print_expression(FILE *file, const struct Graph *graph, Node node);
-
-/* The same as a string. */
+/* A very long one is cut off with "...". */
 char *expression_text(const struct Graph *graph, Node node);
 
 /* Names that stand for expressions: of[node] is that of a node below count, or NULL. */

@@ -72,17 +72,17 @@ void *make_room(void *items, size_t count, size_t size) {
   return is_full ? reallocate(items, count > 0 ? 2 * count : 1, size) : items;
 }
 
-FILE *open_text(char **text, size_t *length) {
-  FILE *file = open_text_stream(text, length);
-  if (file == NULL) out_of_memory();
-  return file;
+FILE *open_text(struct TextStream *text) {
+  text->file = open_text_stream(&text->content, &text->length);
+  if (text->file == NULL) out_of_memory();
+  return text->file;
 }
 
-void close_text(FILE *file, char **text, size_t *length) {
-  if (!close_text_stream(file, text, length)) out_of_memory();
-  char *content = memcpy(allocate(*length + 1, 1), *text, *length);
-  free(*text);
-  *text = content;
+char *close_text(struct TextStream *text) {
+  if (!close_text_stream(text->file, &text->content, &text->length)) out_of_memory();
+  char *content = memcpy(allocate(text->length + 1, 1), text->content, text->length);
+  free(text->content);
+  return content;
 }
 
 char *copy_text(const char *text) {

@@ -29,9 +29,16 @@ void release_all(void);
  */
 void *make_room(void *items, size_t count, size_t size);
 
-/* A stream that writes a string, complete after close_text() of the same; never NULL. */
-FILE *open_text(char **text, size_t *length);
-void close_text(FILE *file, char **text, size_t *length);
+/* A string that is being written. */
+struct TextStream {
+  FILE *file;
+  char *content;
+  size_t length;
+};
+
+/* The stream to write it with; never NULL. close_text() returns the string. */
+FILE *open_text(struct TextStream *text);
+char *close_text(struct TextStream *text);
 
 char *copy_text(const char *text);
 

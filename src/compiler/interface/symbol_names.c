@@ -26,15 +26,14 @@ void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, cons
 }
 
 char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph) {
-  char *text = NULL;
-  size_t size = 0, length = 0;
-  FILE *file = open_text(&text, &size);
+  struct TextStream text;
+  FILE *file = open_text(&text);
+  size_t length = 0;
   for (size_t i = 0; i < names->count && length <= LENGTH_LIMIT; i++) {
     const char *name = graph->symbols[names->symbols[i]].name;
     const char *shown = length + strlen(name) <= LENGTH_LIMIT ? name : "...";
     fprintf(file, "%s%s", length > 0 ? ", " : "", shown);
     length += strlen(name) + 2;
   }
-  close_text(file, &text, &size);
-  return text;
+  return close_text(&text);
 }

@@ -60,9 +60,3 @@ bool is_looped(const struct Equations *equations, size_t row) {
 size_t row_count(const struct Equations *equations) {
   return equations->count + equations->constraints->count;
 }
-
-bool has_loops(const struct Equations *equations) {
-  for (size_t block = 0; block < equations->inertia->block_count; block++)
-    if (!equations->inertia->blocks[block].is_unrolled) return true;
-  return false;
-}

@@ -42,6 +42,3 @@ bool is_looped(const struct Equations *equations, size_t row);
 
 /* How many rows there are. */
 size_t row_count(const struct Equations *equations);
-
-/* Whether there is such a block. */
-bool has_loops(const struct Equations *equations);

@@ -197,6 +197,5 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   }
   if (graph_limit(graph) != NULL)
     report_error(diagnostics, 0, "the equations of motion need %s; expected a smaller system", graph_limit(graph));
-  if (diagnostics->errors == errors) return equations;
-  return NULL;
+  return diagnostics->errors == errors ? equations : NULL;
 }

@@ -313,8 +313,7 @@ struct LinearSystem *linear_system_of(const struct Model *model, const struct Eq
   for (size_t i = 0; i < n; i++) system->a[i * 2 * n + n + i] = ONE;
   int errors = diagnostics->errors;
   fill_accelerations(model, equations, system, diagnostics);
-  if (diagnostics->errors == errors) return system;
-  return NULL;
+  return diagnostics->errors == errors ? system : NULL;
 }
 
 static void print_matrix(const struct Model *model, const char *name, const Node *matrix, size_t rows, size_t columns,

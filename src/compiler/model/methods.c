@@ -81,13 +81,11 @@ const struct Method *method_named(const char *name) {
 }
 
 char *method_names(void) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   for (size_t i = 0; i < METHOD_COUNT; i++)
     fprintf(file, "%s%s", i == 0 ? "" : i + 1 == METHOD_COUNT ? " or " : ", ", methods[i].name);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }
 
 /* For rows of masses, springs and dampers, KLU was measured to be faster from 20 states on, and twice as fast at 40. */

@@ -121,12 +121,9 @@ static char *factor_text(double factor, int pi_power) {
 
 /* The unit with SI names, and how it was translated. */
 static char *translation_of(const char *text, struct Translation *translation) {
-  char *si = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&si, &length);
-  *translation = translate(text, file);
-  close_text(file, &si, &length);
-  return si;
+  struct TextStream stream;
+  *translation = translate(text, open_text(&stream));
+  return close_text(&stream);
 }
 
 bool display_unit_parse(const char *text, struct Dimension *dimension, double *factor) {
@@ -139,7 +136,6 @@ bool display_unit_parse(const char *text, struct Dimension *dimension, double *f
 }
 
 char *unit_remedy(const char *text) {
-  char *remedy = NULL;
   struct Translation translation;
   char *si = translation_of(text, &translation);
   struct Dimension dimension;
@@ -147,8 +143,7 @@ char *unit_remedy(const char *text) {
   bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, &dimension, &problem);
   char *factor = is_known ? factor_text(translation.factor, translation.pi_power) : NULL;
   if (is_known && translation.factor == 1 && translation.pi_power == 0)
-    remedy = format_text("expected %s%s", si,
-                         strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
-  else if (factor != NULL) remedy = format_text("expected %s, and the value times %s", si, factor);
-  return remedy;
+    return format_text("expected %s%s", si,
+                       strchr(text, '.') == NULL && strchr(si, '.') != NULL ? ", with a point between units" : "");
+  return factor != NULL ? format_text("expected %s, and the value times %s", si, factor) : NULL;
 }

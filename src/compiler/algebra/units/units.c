@@ -155,14 +155,12 @@ char *unit_text(struct Dimension dimension) {
     above += dimension.exponent[i] > 0;
     below += dimension.exponent[i] < 0;
   }
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   if (above == 0) fputs("1", file);
   append_powers(file, dimension, 1, "");
   if (below > 0) fputs(below > 1 ? "/(" : "/", file);
   append_powers(file, dimension, -1, "");
   if (below > 1) fputs(")", file);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }

@@ -227,8 +227,7 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
   create_watched_series(expressions);
   if (graph_limit(model->graph) != NULL)
     report_error(diagnostics, 0, "the generated code needs %s; expected a smaller system", graph_limit(model->graph));
-  if (diagnostics->errors == errors) return expressions;
-  return NULL;
+  return diagnostics->errors == errors ? expressions : NULL;
 }
 
 struct NodeList expressions_targets(const struct Expressions *expressions) {

@@ -5,20 +5,19 @@
 
 /* Of a circle that is closed by the definition with this number: a -> b -> a. */
 static void report_circle(const struct Definitions *definitions, struct Reader *reader, size_t top, size_t closing) {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   bool inside = false;
   for (size_t i = 0; i <= top; i++) {
     const struct Definition *definition = &definitions->items[definitions->stack[i]];
     inside = inside || definitions->stack[i] == closing;
     if (inside && definition->state == ACTIVE) fprintf(file, "%s -> ", definition->name);
   }
-  close_text(file, &text, &length);
+  const char *names = close_text(&text);
   const struct NamedExpression *expression = &definitions->items[closing].expression;
   struct Source *present = source_enter(reader, expression->source);
   report_error(reader->diagnostics, xmlGetLineNo(expression->node),
-               "definitions need each other in a circle: %s%s; expected one of them without the next", text,
+               "definitions need each other in a circle: %s%s; expected one of them without the next", names,
                definitions->items[closing].name);
   source_enter(reader, present);
 }

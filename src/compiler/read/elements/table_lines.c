@@ -45,15 +45,13 @@ static void take_lines(struct TableLines *lines, const char *text) {
 static char *text_of_file(const char *path) {
   FILE *file = fopen(path, "r");
   if (file == NULL) return NULL;
-  char *text = NULL;
-  size_t length = 0;
-  FILE *copy = open_text(&text, &length);
+  struct TextStream text;
+  FILE *copy = open_text(&text);
   for (int c = getc(file); c != EOF && c != '\0'; c = getc(file)) putc(c, copy);
   bool right = ferror(file) == 0;
   fclose(file);
-  close_text(copy, &text, &length);
-  if (right) return text;
-  return NULL;
+  char *whole = close_text(&text);
+  return right ? whole : NULL;
 }
 
 void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *name) {

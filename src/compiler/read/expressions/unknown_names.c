@@ -88,15 +88,13 @@ void report_reserved(struct Parser *parser, const char *name) {
 
 /* Those of one argument first. */
 static char *function_names(void) {
-  char *names = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&names, &length);
+  struct TextStream names;
+  FILE *file = open_text(&names);
   for (int arity = 1; arity <= 2; arity++)
     for (int operation = 0; operation < OPERATION_COUNT; operation++)
       if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
         fprintf(file, "%s, ", functions[operation].name);
-  close_text(file, &names, &length);
-  return names;
+  return close_text(&names);
 }
 
 /* Those of the file being read, as it calls them. */

@@ -101,16 +101,14 @@ static struct Choices choices_of_value(const struct Check *check, const char *at
 /* "did you mean 'unit'?", or "expected name, start or unit" without anything similar. */
 static char *remedy(const char *wanted, struct Choices choices) {
   struct Similar similar = {.wanted = wanted};
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   for (size_t i = 0; i < choices.count; i++) similar_consider(&similar, choices.names[i]);
   if (similar.best != NULL) fprintf(file, "did you mean '%s'?", similar.best);
   else fputs(choices.count > 0 ? "expected " : "expected none", file);
   for (size_t i = 0; similar.best == NULL && i < choices.count; i++)
     fprintf(file, "%s%s", i == 0 ? "" : i + 1 == choices.count ? " or " : ", ", choices.names[i]);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }
 
 static void report_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
