@@ -16,7 +16,6 @@ struct Printer {
   const struct Graph *graph;
   const struct NodeNames *names; /* NULL for none */
   Node whole;                    /* what is printed, which is not named itself */
-  long start;
   int depth;
 };
 
@@ -36,7 +35,7 @@ void print_number(FILE *file, double value) {
 }
 
 static bool is_cut(struct Printer *printer) {
-  if (ftell(printer->file) - printer->start < LENGTH_LIMIT && printer->depth < DEPTH_LIMIT) return false;
+  if (ftell(printer->file) < LENGTH_LIMIT && printer->depth < DEPTH_LIMIT) return false;
   fputs("...", printer->file);
   return true;
 }

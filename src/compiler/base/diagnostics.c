@@ -39,8 +39,12 @@ static void print_message(const struct Diagnostics *diagnostics, long line, cons
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", format, arguments);
+  report_error_of(diagnostics, line, format, arguments);
   va_end(arguments);
+}
+
+void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
+  if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", format, arguments);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: there are more mistakes; expected these to be mended first\n", diagnostics->file);
 }

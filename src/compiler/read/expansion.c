@@ -19,17 +19,15 @@ static void expand_children(struct Reader *reader, xmlNodePtr parent);
 
 static void report_index(struct Reader *reader, xmlNodePtr node) {
   char *index = attribute(node, "index");
-  report_error(reader->diagnostics, xmlGetLineNo(node), "the index '%s' of <for> is already a name; expected a new one",
-               index);
+  report_at(reader, node, "the index '%s' of <for> is already a name; expected a new one", index);
 }
 
 /* Whether the bounds are right and the index is a new name. */
 static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
   bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
   if (!are_whole || to - from >= REPETITION_LIMIT) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions", from, to,
-                 REPETITION_LIMIT);
+    report_at(reader, node, "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions",
+              from, to, REPETITION_LIMIT);
     return false;
   }
   if (scope_find(reader->scope, index) == NULL) return true;
@@ -41,8 +39,7 @@ static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char 
 static void check_limit(struct Reader *reader, xmlNodePtr node) {
   const char *limit = graph_limit(reader->model->graph);
   if (limit != NULL && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<for>: the system is too large: %s; expected fewer or shorter repetitions", limit);
+    report_at(reader, node, "<for>: the system is too large: %s; expected fewer or shorter repetitions", limit);
 }
 
 static void expand_repetition(struct Reader *reader, xmlNodePtr node) {

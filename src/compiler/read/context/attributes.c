@@ -5,6 +5,13 @@
 #include "base/memory.h"
 #include "mechanics/reactions.h"
 
+void report_at(const struct Reader *reader, xmlNodePtr node, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  report_error_of(reader->diagnostics, xmlGetLineNo(node), format, arguments);
+  va_end(arguments);
+}
+
 bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
   struct Place place = {.line = xmlGetLineNo(node), .what = name};
   return *text != '\0' && parse_number(reader->scope, text, place, value);
@@ -87,8 +94,7 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
   char *text = attribute(node, name);
   if (text != NULL && !unit_parse(text, &dimension, &problem)) {
     char *remedy = unit_remedy(text);
-    report_error(reader->diagnostics, xmlGetLineNo(node), "the unit '%s' is not known: %s", text,
-                 remedy != NULL ? remedy : problem);
+    report_at(reader, node, "the unit '%s' is not known: %s", text, remedy != NULL ? remedy : problem);
   }
   reader->scope->checks_units |= text != NULL;
   return dimension;

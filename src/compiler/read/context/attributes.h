@@ -48,6 +48,10 @@ struct Reader {
   struct Occurrence *present; /* the one being read */
 };
 
+/* Reports an error in the line of an element. */
+void report_at(const struct Reader *reader, xmlNodePtr node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* The kinds of symbols that may stand in a place, as in struct Place; what else must hold there is in a bit beyond. */
 #define KIND(kind) (1u << (kind))
 

@@ -59,9 +59,8 @@ static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Sou
   int depth = 0;
   for (const struct Source *outer = source->outer; outer != NULL; outer = outer->outer) depth++;
   if (depth <= DEPTH_LIMIT) return true;
-  report_error(reader->diagnostics, xmlGetLineNo(node),
-               "more than %d files include each other in a row; expected fewer, some of them side by side",
-               DEPTH_LIMIT);
+  report_at(reader, node, "more than %d files include each other in a row; expected fewer, some of them side by side",
+            DEPTH_LIMIT);
   return false;
 }
 
@@ -76,8 +75,7 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
     circle = format_text("%s -> %s", s->file, circle);
     if (s == first) break;
   }
-  report_error(reader->diagnostics, xmlGetLineNo(node),
-               "files include each other in a circle: %s; expected one of them without the next", circle);
+  report_at(reader, node, "files include each other in a circle: %s; expected one of them without the next", circle);
   return false;
 }
 
@@ -124,7 +122,7 @@ static void note_given(struct Reader *reader, const struct Source *source) {
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
     const struct Given *other = names_find(reader->includes->given, full_name);
     if (other != NULL && other->source == source->outer)
-      report_error(reader->diagnostics, xmlGetLineNo(node), "'%s' is given twice; expected it once", name);
+      report_at(reader, node, "'%s' is given twice; expected it once", name);
     if (other == NULL && name != NULL) {
       struct Given *given = allocate(1, sizeof *given);
       *given = (struct Given){.node = node, .source = source->outer, .target = source};
@@ -137,9 +135,9 @@ static void note_given(struct Reader *reader, const struct Source *source) {
 static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) {
   source->canonical_path = canonical_path(source->file);
   if (source->canonical_path == NULL)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",
-                 source->file, strerror(errno));
+    report_at(reader, node,
+              "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",
+              source->file, strerror(errno));
   if (source->canonical_path == NULL || !check_depth(reader, node, source) || !check_circle(reader, node, source))
     return;
   xmlDocPtr document = document_of(reader, source);
@@ -168,10 +166,9 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   char *prefix = format_text("%s.", name);
   struct Source *source = names_find(reader->includes->sources, prefix);
   if (source != NULL) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "as=\"%s\" is the name of the <include> on line %ld already; expected another name%s", name,
-                 xmlGetLineNo(source->include),
-                 source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
+    report_at(reader, node, "as=\"%s\" is the name of the <include> on line %ld already; expected another name%s", name,
+              xmlGetLineNo(source->include),
+              source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
     source = NULL;
   } else source = create_source(reader, node, name, prefix);
   return source != NULL && source->root != NULL ? source : NULL;

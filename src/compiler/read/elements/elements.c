@@ -52,7 +52,7 @@ static Node append_input_rate(struct Reader *reader) {
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
   double nominal = NAN;
   if (number_attribute(reader, node, name, &nominal) && !(nominal > 0)) {
-    report_error(reader->diagnostics, xmlGetLineNo(node), "%s is %g; expected a positive number", name, nominal);
+    report_at(reader, node, "%s is %g; expected a positive number", name, nominal);
     nominal = NAN;
   }
   return nominal;
@@ -157,36 +157,32 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
   reader->model->solver.line = xmlGetLineNo(node);
-  if (reader->has_solver) report_error(reader->diagnostics, xmlGetLineNo(node), "a second <solver>; expected one");
+  if (reader->has_solver) report_at(reader, node, "a second <solver>; expected one");
   reader->has_solver = true;
   if (method != NULL) reader->model->solver.method = method_named(method);
   double *tolerance = &reader->model->solver.tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "tolerance %g; expected a number between 0 and 1",
-                 *tolerance);
+    report_at(reader, node, "tolerance %g; expected a number between 0 and 1", *tolerance);
   if (*tolerance > 0 && *tolerance < 1e-14)
     report_warning(reader->diagnostics, xmlGetLineNo(node),
                    "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->solver.max_step);
   double *steps = &reader->model->solver.max_steps;
   if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
+    report_at(reader, node, "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
 }
 
 void read_experiment(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  if (reader->has_experiment)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a second <experiment>; expected one");
+  if (reader->has_experiment) report_at(reader, node, "a second <experiment>; expected one");
   reader->has_experiment = true;
   number_attribute(reader, node, "startTime", &model->experiment.start_time);
   number_attribute(reader, node, "stopTime", &model->experiment.stop_time);
   if (number_attribute(reader, node, "stepSize", &model->experiment.step_size) && !(model->experiment.step_size > 0))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "stepSize %g; expected a positive number",
-                 model->experiment.step_size);
+    report_at(reader, node, "stepSize %g; expected a positive number", model->experiment.step_size);
   double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
   if (model->experiment.stop_time <= start)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "stopTime %g is not after startTime %g",
-                 model->experiment.stop_time, start);
+    report_at(reader, node, "stopTime %g is not after startTime %g", model->experiment.stop_time, start);
 }
 
 /* Further inputs that are the time derivatives of the last one. */
@@ -194,8 +190,7 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   double derivatives = 0;
   if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "derivatives=\"%g\" of <input>; expected 1 or 2",
-                 derivatives);
+    report_at(reader, node, "derivatives=\"%g\" of <input>; expected 1 or 2", derivatives);
   size_t index = model->inputs.count - 1;
   for (int k = 0; k == 0 || (k <= 2 && derivatives >= k); k++, index++) {
     model->given.input_rates = make_room(model->given.input_rates, index, sizeof *model->given.input_rates);

@@ -27,11 +27,10 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
                 graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
     if (fits) symbol = quantity->node;
     else
-      report_error(reader->diagnostics, xmlGetLineNo(node), "<set %s=\"%s\">: there is no %s of this name",
-                   targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
+      report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name", targets[i].attribute,
+                name != NULL ? name : "", targets[i].attribute);
   }
-  if (given != 1)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a <set> needs one of velocity, coordinate and mode");
+  if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate and mode");
   return symbol;
 }
 
@@ -39,12 +38,10 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
   if (is_state && reader->model->given.drives[target->index].given)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "<set> of '%s', which is driven; expected another one",
-                 target->name);
+    report_at(reader, node, "<set> of '%s', which is driven; expected another one", target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
     if (event->assignments[i].symbol == symbol)
-      report_error(reader->diagnostics, xmlGetLineNo(node), "a second <set> of '%s' in one <event>; expected one",
-                   target->name);
+      report_at(reader, node, "a second <set> of '%s' in one <event>; expected one", target->name);
 }
 
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
@@ -69,9 +66,9 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   if (parse_when(reader->scope, when, place, &value)) {
     event->condition = value;
     if (direction != NULL)
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
-                   "no direction");
+      report_at(reader, node,
+                "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
+                "no direction");
   } else if (value != ZERO) {
     event->condition = side_of(reader->scope, value, xmlGetLineNo(node));
     event->side = new_mode(reader, "side", when);
@@ -80,8 +77,8 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
     event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
   }
   if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
+    report_at(reader, node,
+              "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
 }
 
 /* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */
@@ -128,7 +125,7 @@ void read_event(struct Reader *reader, xmlNodePtr node) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
   if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "an <event> that changes nothing; expected a <set>");
+    report_at(reader, node, "an <event> that changes nothing; expected a <set>");
   if (reader->diagnostics->errors == 0) check_forces(reader, &event, xmlGetLineNo(node));
   event.text = when;
   switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);

@@ -48,8 +48,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   const struct Symbol *symbol = find_coordinate(reader, coordinate);
   if (symbol == NULL) {
     char *meant = meant_coordinate(reader, coordinate);
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no coordinate '%s' for this force; %s", coordinate,
-                 meant);
+    report_at(reader, node, "there is no coordinate '%s' for this force; %s", coordinate, meant);
     return;
   }
   int index = symbol->index;
@@ -76,8 +75,7 @@ static void append_point_force(struct Model *model, Node position, Node force) {
 
 static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
   char *meant = meant_body(reader, name);
-  report_error(reader->diagnostics, xmlGetLineNo(node), "there is no %s '%s' for this %s; %s", what, name,
-               (const char *)node->name, meant);
+  report_at(reader, node, "there is no %s '%s' for this %s; %s", what, name, (const char *)node->name, meant);
 }
 
 /* The components along the axes of the frame that the attribute in names, of a force or torque. */
@@ -206,11 +204,9 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++) has_components |= has_attribute(node, axes[axis]);
   bool is_along_frame = has_attribute(node, "in");
   if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
+    report_at(reader, node, "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
   else if (on != NULL && !is_blank(node))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
+    report_at(reader, node, "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
   else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
   else add_cartesian_force(reader, node, on);
 }

@@ -26,10 +26,10 @@ void check_calculated(struct Reader *reader, const struct Given *given, xmlNodeP
   if (is_given(given, "value")) node = given->node;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (has_attribute(node, others[i]))
-      report_error(reader->diagnostics, xmlGetLineNo(node),
-                   "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
-                   "others, or start=\"...\" for one that is set",
-                   (const char *)node->name, others[i]);
+      report_at(reader, node,
+                "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                "others, or start=\"...\" for one that is set",
+                (const char *)node->name, others[i]);
   source_enter(reader, present);
 }
 
@@ -63,8 +63,8 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
   bool is_true = strcmp(text, "true") == 0, is_false = strcmp(text, "false") == 0;
   if (variable->type == TYPE_BOOLEAN && (is_true || is_false)) variable->start = is_true ? 1.0 : 0.0;
   else if (variable->type == TYPE_BOOLEAN && (strcasecmp(text, "true") == 0 || strcasecmp(text, "false") == 0))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "'%s': did you mean '%s'? It is written so", text,
-                 strcasecmp(text, "true") == 0 ? "true" : "false");
+    report_at(reader, node, "'%s': did you mean '%s'? It is written so", text,
+              strcasecmp(text, "true") == 0 ? "true" : "false");
   else if (!number_in(reader, node, name, text, &variable->start)) variable->start = 0.0;
 }
 
@@ -105,10 +105,10 @@ static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, cons
   variable.name = name;
   const struct Given *given = given_for(reader, node, name);
   if (is_given(given, "value"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "'%s' is one of a list of values, to which an <include> can give a start; expected start in place of "
-                 "value",
-                 name);
+    report_at(reader, node,
+              "'%s' is one of a list of values, to which an <include> can give a start; expected start in place of "
+              "value",
+              name);
   read_value(reader, node, "values", text, &variable);
   read_start(reader, node, given, &variable);
   declare(reader, node, given, variable);
@@ -118,21 +118,19 @@ static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, cons
 static void read_list(struct Reader *reader, xmlNodePtr node) {
   const char *next = attribute(node, "values"), *name = name_attribute(reader, node, "name");
   if (has_attribute(node, "start") || has_attribute(node, "value"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "a <parameter> with values and a start or value; expected values=\"...\" alone");
+    report_at(reader, node, "a <parameter> with values and a start or value; expected values=\"...\" alone");
   if (name == NULL) return;
   if (strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the parameter '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
-                 name);
+    report_at(reader, node,
+              "the parameter '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
+              name);
   size_t count = 0;
   for (next += strspn(next, separators); *next != '\0'; next += strspn(next, separators)) {
     int length = (int)strcspn(next, separators);
     read_listed(reader, node, format_text("%s[%zu]", name, ++count), format_text("%.*s", length, next));
     next += length;
   }
-  if (count == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "the parameter '%s' has no values; expected numbers", name);
+  if (count == 0) report_at(reader, node, "the parameter '%s' has no values; expected numbers", name);
 }
 
 void read_parameter(struct Reader *reader, xmlNodePtr node) {
@@ -150,7 +148,7 @@ void read_parameter(struct Reader *reader, xmlNodePtr node) {
   read_start(reader, node, given, &variable);
   declare(reader, node, given, variable);
   if (!has_attribute(node, "start") && !is_given(given, "start"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
-                 "follows from others, or values=\"...\" for name[1], name[2], ...");
+    report_at(reader, node,
+              "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
+              "follows from others, or values=\"...\" for name[1], name[2], ...");
 }

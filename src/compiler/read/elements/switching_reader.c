@@ -72,8 +72,7 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = reference_attribute(reader, node, "coordinate");
   reader->present->number = reader->model->switches.contact_count;
   if (!has_attribute(node, "min") && !has_attribute(node, "max"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "a <stop> without min and max; expected one of them, or both");
+    report_at(reader, node, "a <stop> without min and max; expected one of them, or both");
   if (coordinate != NULL && has_attribute(node, "min")) append_contact(reader, end_of_stop(node, coordinate, "min"));
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
 }
@@ -130,8 +129,7 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a <stop> of '%s', which is no coordinate; expected one",
-                 name != NULL ? name : "");
+    report_at(reader, node, "a <stop> of '%s', which is no coordinate; expected one", name != NULL ? name : "");
   static const char *const ends[] = {"min", "max"};
   size_t number = reader->present->number;
   bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no right name then */
@@ -153,16 +151,14 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
 static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
   bool has_coordinate = has_attribute(node, "coordinate");
   if (has_coordinate == has_attribute(node, "velocity")) {
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
+    report_at(reader, node, "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
     return false;
   }
   if (!has_coordinate) return expression_attribute(reader, node, "velocity", IN_CONSTRAINT, velocity);
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "a <friction> of '%s', which is no coordinate; expected one",
-                 name != NULL ? name : "");
+    report_at(reader, node, "a <friction> of '%s', which is no coordinate; expected one", name != NULL ? name : "");
   else {
     const struct Variable *variable = &reader->model->velocities.items[symbol->index];
     *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
@@ -217,8 +213,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   struct Quantity velocity = {.node = ZERO};
   if (!read_velocity(reader, node, &velocity)) return;
   if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
+    report_at(reader, node, "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
   struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
   friction->velocity = velocity.node;
   if (!read_friction_forces(reader, node, unit, friction)) return;

@@ -81,8 +81,7 @@ static void collect(struct Reader *reader, xmlNodePtr node, char *name, const ch
 
 static bool is_base(struct Reader *reader, xmlNodePtr node, const char *name) {
   if (strcmp(name, "base") != 0) return false;
-  report_error(reader->diagnostics, xmlGetLineNo(node),
-               "the name 'base' is that of the frame which rests; expected another name");
+  report_at(reader, node, "the name 'base' is that of the frame which rests; expected another name");
   return true;
 }
 
@@ -100,8 +99,7 @@ static bool is_collected(const struct Reader *reader, bool is_frame, const char 
 static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
   bool taken = is_collected(reader, true, name) || is_collected(reader, false, name);
   if (taken)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "a frame, point or body named '%s' is already defined; expected another name", name);
+    report_at(reader, node, "a frame, point or body named '%s' is already defined; expected another name", name);
   return taken;
 }
 
@@ -125,12 +123,8 @@ static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const c
   struct Similar similar = {.wanted = name};
   if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
   similar_consider_all(&similar, reader->frames);
-  if (similar.best != NULL)
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; did you mean '%s'?", name,
-                 similar.best);
-  else
-    report_error(reader->diagnostics, xmlGetLineNo(node), "there is no frame '%s'; expected the name of a <frame>",
-                 name);
+  if (similar.best != NULL) report_at(reader, node, "there is no frame '%s'; did you mean '%s'?", name, similar.best);
+  else report_at(reader, node, "there is no frame '%s'; expected the name of a <frame>", name);
 }
 
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {

@@ -42,8 +42,7 @@ static bool read_axis(struct Reader *reader, xmlNodePtr node, struct Vector *axi
   if (definitions_are_waiting(reader->definitions)) return false;
   Node square = vector_dot(graph, *axis, *axis);
   if (square == ZERO && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the axis of <rotate> has the length 0; expected a direction, such as 0 0 1");
+    report_at(reader, node, "the axis of <rotate> has the length 0; expected a direction, such as 0 0 1");
   if (square == ZERO) return false;
   *axis = vector_scale(graph, power_number(graph, square, -0.5), *axis);
   return true;
@@ -69,9 +68,8 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
   for (size_t i = 0; i < model->constraints.count; i++)
     if (strcmp(model->constraints.items[i].name, name) == 0) model->constraints.items[i].node = norm;
   if (!graph_depends_on(graph, norm, COORDINATE))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "the quaternion of '%s' holds no coordinate; expected four coordinates, whose norm is held at 1",
-                 frame);
+    report_at(reader, node,
+              "the quaternion of '%s' holds no coordinate; expected four coordinates, whose norm is held at 1", frame);
 }
 
 static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
@@ -89,20 +87,18 @@ static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name
   bool is_simple = expected == 3 && is_letter(text);
   for (char *part = strtok_r(text, blanks, &rest); part != NULL; part = strtok_r(NULL, blanks, &rest)) found++;
   if (!is_simple && found != expected)
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "%s of <rotate> has %zu parts; expected %zu expressions between blanks, without blanks in them%s",
-                 name, found, expected, expected == 3 ? ", or x, y or z" : "");
+    report_at(reader, node,
+              "%s of <rotate> has %zu parts; expected %zu expressions between blanks, without blanks in them%s", name,
+              found, expected, expected == 3 ? ", or x, y or z" : "");
 }
 
 void check_turn(struct Reader *reader, xmlNodePtr node) {
   bool by_quaternion = has_attribute(node, "quaternion"), by_axis = has_attribute(node, "axis");
   if (by_quaternion == by_axis || by_axis != has_attribute(node, "angle"))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "<rotate> needs either axis=\"...\" with angle=\"...\" or quaternion=\"...\"");
+    report_at(reader, node, "<rotate> needs either axis=\"...\" with angle=\"...\" or quaternion=\"...\"");
   else check_parts(reader, node, by_axis ? "axis" : "quaternion", by_axis ? 3 : 4);
   if (by_quaternion && node != quaternion_of(node->parent))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
-                 "a second quaternion in one frame; expected a <frame> in this one for it");
+    report_at(reader, node, "a second quaternion in one frame; expected a <frame> in this one for it");
 }
 
 void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
