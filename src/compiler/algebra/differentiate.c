@@ -9,9 +9,9 @@ void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by
   const struct Function *row = &functions[graph->vertices[node].operation];
   *by_left = *by_right = ZERO;
   if (row->partial_derivatives != NULL) row->partial_derivatives(graph, node, by_left, by_right);
-  else if (row->recurrence == INTEGRAL) *by_left = scale(graph, row->sign, row->auxiliary(graph, node));
+  else if (row->recurrence == INTEGRAL) *by_left = scale(graph, recurrence_sign(row), row->auxiliary(graph, node));
   else if (row->recurrence == RATIO)
-    *by_left = scale(graph, row->sign, power_number(graph, row->auxiliary(graph, node), -1.0));
+    *by_left = scale(graph, recurrence_sign(row), power_number(graph, row->auxiliary(graph, node), -1.0));
 }
 
 /*

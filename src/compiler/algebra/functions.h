@@ -41,7 +41,7 @@ enum Recurrence {
 struct Function {
   const char *name;                 /* in formulas and messages; in the language too, unless it is internal */
   bool is_internal;                 /* the language has no function of this name */
-  const char *c_name;               /* in C's math library; NULL for what C writes otherwise */
+  const char *c_name;               /* in C's math library, where it is another; see function_in_c() */
   double (*of_one)(double);         /* the value on numbers; both are NULL for leaves */
   double (*of_two)(double, double); /* either this or of_one is given, which tells the number of operands */
 
@@ -52,7 +52,7 @@ struct Function {
   const char *domain_text; /* completes "expected an argument ...", for a value that is not finite; NULL: overflows */
 
   enum Recurrence recurrence;
-  double sign;                                       /* of INTEGRAL and RATIO: 1 or -1 */
+  bool is_reversed;                                  /* of INTEGRAL and RATIO: the sign is -1, else 1 */
   Node (*auxiliary)(struct Graph *graph, Node node); /* a; may be the node itself or an operand; ZERO for none */
   void (*partial_derivatives)(struct Graph *graph, Node node, Node *by_left, Node *by_right); /* NULL: see above */
 
@@ -66,3 +66,14 @@ struct Function {
 
 /* One row for each operation. */
 extern const struct Function functions[OPERATION_COUNT];
+
+/* The name of a function that C calls. */
+static inline const char *function_in_c(enum Operation operation) {
+  const struct Function *row = &functions[operation];
+  return row->c_name != NULL ? row->c_name : row->name;
+}
+
+/* That of INTEGRAL and RATIO. */
+static inline double recurrence_sign(const struct Function *row) {
+  return row->is_reversed ? -1.0 : 1.0;
+}

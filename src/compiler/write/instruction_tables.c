@@ -56,7 +56,7 @@ static void write_functions(FILE *file, const struct TableContext *context, int 
   fprintf(file, "static double (*const %s[])(%s) = {", name, type);
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
     if (context->function[function] > 0 && operation_arity(function) == arity)
-      fprintf(file, "%s, ", functions[function].c_name);
+      fprintf(file, "%s, ", function_in_c(function));
   fputs("NULL};\n", file);
 }
 

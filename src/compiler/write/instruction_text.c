@@ -47,7 +47,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
       continue;
     }
     text++;
-    if (*text == 'f') fputs(functions[instruction->function].c_name, file);
+    if (*text == 'f') fputs(function_in_c(instruction->function), file);
     else if (*text == '0' && facts->result == NUMBER) fprintf(file, "%u", instruction->result);
     else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
     else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);

@@ -179,8 +179,8 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
   const struct Function *function = &functions[vertex->operation];
   Node operand = vertex->left, auxiliary = builder->plan->auxiliary[node];
   switch (function->recurrence) {
-  case INTEGRAL: append_integral(builder, node, function->sign, operand, auxiliary); return;
-  case RATIO: append_ratio_integral(builder, node, function->sign, ONE, operand, auxiliary); return;
+  case INTEGRAL: append_integral(builder, node, recurrence_sign(function), operand, auxiliary); return;
+  case RATIO: append_ratio_integral(builder, node, recurrence_sign(function), ONE, operand, auxiliary); return;
   case ANGLE: append_angle(builder, node, operand, vertex->right, auxiliary); return;
   case CHOICE: append_choice(builder, node, operand, vertex->right, auxiliary); return;
   case REFLECTION:
