@@ -152,8 +152,9 @@ static void append_modes(struct Interface *interface, const struct Model *model)
     interface->variables[interface->count - 1].unit = variable_unit(mode);
   }
   for (size_t i = 0; i < switches->contact_count; i++) {
-    char *name = format_text("%s.closed", model->constraints.items[switches->contacts[i].constraint].name);
-    append_mode(interface, model, VARIABLE_CONTACT, switches->contacts[i].mode, name, "1 while it is closed, else 0");
+    const char *constraint = model->constraints.items[switches->contacts[i].constraint].name;
+    append_mode(interface, model, VARIABLE_CONTACT, switches->contacts[i].mode, format_text("%s.closed", constraint),
+                "1 while it is closed, else 0");
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
@@ -250,9 +251,9 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
 /* What FMI 2.0 asks for by a function alone. */
 static void append_indicators(struct Interface *interface, const struct SwitchingExpressions *switching) {
   for (size_t i = 0; switching != NULL && i < switching->indicator_count; i++) {
-    char *name = format_text("eventIndicator[%zu]", i + 1);
-    append(interface, VARIABLE_INDICATOR, i, name, "changes its sign where a mode may change")->node =
-        switching->indicators[i];
+    append(interface, VARIABLE_INDICATOR, i, format_text("eventIndicator[%zu]", i + 1),
+           "changes its sign where a mode may change")
+        ->node = switching->indicators[i];
   }
 }
 

@@ -88,13 +88,11 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
 static void write_blocks(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < program->blocks.count; i++) {
     const struct InertiaBlock *block = program->blocks.items[i].block;
-    char *start = format_text("start%zu", i), *column = format_text("column%zu", i);
-    char *coordinate = format_text("coordinate%zu", i);
     if (!block_is_full(block)) {
-      write_sizes(file, "size_t", start, block->start, block->count + 1);
-      write_sizes(file, "size_t", column, block->column, block->start[block->count]);
+      write_sizes(file, "size_t", format_text("start%zu", i), block->start, block->count + 1);
+      write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
     }
-    write_numbers(file, coordinate, block, program->equations->count);
+    write_numbers(file, format_text("coordinate%zu", i), block, program->equations->count);
   }
 }
 

@@ -220,10 +220,8 @@ static void write_results(FILE *file, const struct TableContext *context, enum F
   }
   write_word(&line, END);
   fputs("};\n", file);
-  char *table = format_text("%s_start", text->name);
-  write_sizes(file, "uint32_t", table, start, count);
-  table = format_text("%s_place", text->name);
-  write_sizes(file, "unsigned char", table, place, count);
+  write_sizes(file, "uint32_t", format_text("%s_start", text->name), start, count);
+  write_sizes(file, "unsigned char", format_text("%s_place", text->name), place, count);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
           operations, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));

@@ -21,14 +21,13 @@ static void declare(FILE *file, bool is_used, const char *name, const char *sour
 
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine) {
   size_t n = program->equations->count;
-  char *velocity = format_text("point->state + %zu", n), *seed_velocity = format_text("seed->state + %zu", n);
   declare(file, reads(routine, SPACE_STATE, 0, n), "q", "point->state");
-  declare(file, reads(routine, SPACE_STATE, n, 2 * n), "v", velocity);
+  declare(file, reads(routine, SPACE_STATE, n, 2 * n), "v", format_text("point->state + %zu", n));
   declare(file, routine_uses(routine, SPACE_INPUT), "u", "point->input");
   declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
   declare(file, routine_uses(routine, SPACE_PREPARED), "c", "point->prepared");
   declare(file, reads(routine, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
-  declare(file, reads(routine, SPACE_SEED_STATE, n, 2 * n), "dv", seed_velocity);
+  declare(file, reads(routine, SPACE_SEED_STATE, n, 2 * n), "dv", format_text("seed->state + %zu", n));
   declare(file, routine_uses(routine, SPACE_SEED_INPUT), "du", "seed->input");
   declare(file, routine_uses(routine, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
 }

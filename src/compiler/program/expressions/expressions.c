@@ -21,8 +21,8 @@ static Node *create_seeds(struct Graph *graph) {
   for (size_t i = 0; i < count; i++) {
     enum SymbolKind kind = graph->symbols[i].kind;
     if (kind == DISPLACEMENT || kind == REACTION || kind == MODE) continue; /* 0, replaced, or held */
-    char *name = format_text("d %s", graph->symbols[i].name);
-    seeds[i] = graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, name);
+    seeds[i] =
+        graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, format_text("d %s", graph->symbols[i].name));
   }
   return seeds;
 }

@@ -17,8 +17,8 @@ enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 
 Node new_mode(struct Reader *reader, const char *of, const char *what) {
   struct Switches *switches = &reader->model->switches;
-  char *name = format_text("%s.%s", of, what);
-  return graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  return graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++),
+                      format_text("%s.%s", of, what));
 }
 
 /* One that expressions of events know by the name of the variable which tells it. */

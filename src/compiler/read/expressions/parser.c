@@ -249,8 +249,7 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Place place = parser->place;
   parser->place.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
   parser->place.input_derivatives++;
-  char *what = format_text("%s%s", derived, place.what);
-  parser->place.what = what;
+  parser->place.what = format_text("%s%s", derived, place.what);
   struct Quantity value = parse_sum(parser);
   parser->place = place;
   expect_character(parser, ')', "at the end of der(...)");

@@ -19,9 +19,7 @@ static const char *expected_names(const struct Parser *parser) {
 
 static bool is_known(const struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
-  bool known =
-      scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
-  return known;
+  return scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
 }
 
 /* The components that a thing has, such as "bob.x or bob.y"; "" where there is none of this name. */
@@ -32,10 +30,7 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
   char *list = copy_text("");
   for (size_t i = 0; i < sizeof components / sizeof *components; i++) {
     char *name = format_text("%.*s.%s", (int)length, body, components[i]);
-    if (is_known(parser, name)) {
-      char *longer = format_text("%s%s%s", list, *list != '\0' ? " or " : "", name);
-      list = longer;
-    }
+    if (is_known(parser, name)) list = format_text("%s%s%s", list, *list != '\0' ? " or " : "", name);
   }
   return list;
 }
