@@ -27,9 +27,8 @@ struct Things {
 static Node component(const struct Model *model, const char *name, const char *axis) {
   Node node = ZERO;
   char *full = format_text("%s.%s", name, axis);
-  for (size_t i = 0; i < model->places.count && node == ZERO; i++)
-    if (strcmp(model->places.items[i].name, full) == 0) node = model->places.items[i].node;
-  free(full);
+  for (size_t i = 0; i < model->mechanism.places.count && node == ZERO; i++)
+    if (strcmp(model->mechanism.places.items[i].name, full) == 0) node = model->mechanism.places.items[i].node;
   return node;
 }
 
@@ -49,12 +48,14 @@ static enum PointKind kind_of(const struct Body *body) {
 static struct Things things_of(const struct Model *model) {
   struct Things things = {.count = 0};
   append_thing(&things, model, (struct Thing){.kind = ORIGIN});
-  for (size_t i = BASE + 1; i < model->frame_count; i++)
-    if (!model->frames[i].is_of_body)
-      append_thing(&things, model, (struct Thing){.kind = FRAME_POINT, .name = model->frames[i].name});
-  for (size_t i = 0; i < model->body_count; i++)
-    append_thing(&things, model,
-                 (struct Thing){kind_of(&model->bodies[i]), model->bodies[i].name, &model->bodies[i], {0}});
+  for (size_t i = BASE + 1; i < model->mechanism.frame_count; i++)
+    if (!model->mechanism.frames[i].is_of_body)
+      append_thing(&things, model, (struct Thing){.kind = FRAME_POINT, .name = model->mechanism.frames[i].name});
+  for (size_t i = 0; i < model->mechanism.body_count; i++)
+    append_thing(
+        &things, model,
+        (struct Thing){
+            kind_of(&model->mechanism.bodies[i]), model->mechanism.bodies[i].name, &model->mechanism.bodies[i], {0}});
   return things;
 }
 
@@ -68,14 +69,13 @@ static double distance(const struct Thing *first, const struct Thing *second, co
   return sum;
 }
 
-/* The values of all nodes where the coordinates are moved from their start, each trial otherwise. Free with free(). */
+/* The values of all nodes where the coordinates are moved from their start, each trial otherwise. */
 static double *moved_values(const struct Model *model, int trial) {
   double *symbols = start_values(model);
   for (size_t i = 0; i < model->coordinates.count && trial > 0; i++)
     symbols[model->graph->vertices[model->coordinates.items[i].node].left] +=
         0.3 * sin(1.0 + 2.7 * trial * (double)(i + 1));
   double *values = graph_evaluate(model->graph, symbols);
-  free(symbols);
   return values;
 }
 
@@ -106,7 +106,7 @@ static void project(const struct Things *things, const struct Model *model, cons
   const double azimuth = -1.1, elevation = 0.35;
   int upward = 2;
   for (int axis = 0; axis < 3; axis++)
-    if (model->gravity.along[axis] != ZERO) upward = axis;
+    if (model->mechanism.gravity.along[axis] != ZERO) upward = axis;
   double first = position[(upward + 1) % 3], second = position[(upward + 2) % 3];
   *right = things->are_in_space ? -sin(azimuth) * first + cos(azimuth) * second : position[0];
   *up = things->are_in_space
@@ -144,12 +144,5 @@ struct Drawing drawing_of(const struct Model *model) {
   for (int trial = 0; trial < TRIALS; trial++) values[trial] = moved_values(model, trial);
   place_points(&drawing, &things, model, values[0]);
   if (drawing.count == things.count) find_links(&drawing, &things, values);
-  for (int trial = 0; trial < TRIALS; trial++) free(values[trial]);
-  free(things.items);
   return drawing;
-}
-
-void drawing_free(struct Drawing *drawing) {
-  free(drawing->points);
-  free(drawing->links);
 }

@@ -25,8 +25,7 @@ struct Drawing {
   size_t link_count;
 };
 
-/* The first point is the origin; there are no others where nothing can be drawn. Free with drawing_free(). */
+/* The first point is the origin; there are no others where nothing can be drawn. */
 struct Drawing drawing_of(const struct Model *model);
-void drawing_free(struct Drawing *drawing);
 
 #endif

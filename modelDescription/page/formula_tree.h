@@ -22,5 +22,4 @@ bool formula_read(const char *equation, struct Formula *sides[2]);
 /* A name, or the derivative of one. */
 struct Formula *formula_of_name(const char *name);
 
-
 #endif

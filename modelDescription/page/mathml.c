@@ -137,27 +137,23 @@ static void write_in_pieces(FILE *file, const struct Formula *formula) {
 char *mathml_of_equation(const char *equation) {
   struct Formula *sides[2];
   if (strlen(equation) > LENGTH_LIMIT || !formula_read(equation, sides)) return NULL;
-  char *text = NULL;
-  size_t length = 0;
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   fputs(MATH, file);
   write_in_pieces(file, sides[0]);
   allow_break(file);
   fputs("<mo form=\"infix\">=</mo>", file);
   write_in_pieces(file, sides[1]);
   fputs("</math>", file);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }
 
 char *mathml_of_name(const char *name) {
-  char *text = NULL;
-  size_t length = 0;
   struct Formula *formula = formula_of_name(name);
-  FILE *file = open_text(&text, &length);
+  struct TextStream text;
+  FILE *file = open_text(&text);
   fputs(MATH, file);
   write_in_pieces(file, formula);
   fputs("</math>", file);
-  close_text(file, &text, &length);
-  return text;
+  return close_text(&text);
 }

@@ -1,6 +1,5 @@
 #include "mechanics_sections.h"
 
-
 /* Which law totalEnergy obeys (see energies.h). */
 static const char *balance_of(const struct Model *model, bool autonomous) {
   if (model->given.constraint != NULL)

@@ -110,5 +110,4 @@ void write_sketch(const struct Page *page) {
     struct Scale scale = scale_for(extent);
     write_drawing(page->writer, &drawing, &scale);
   }
-  drawing_free(&drawing);
 }
