@@ -8,16 +8,16 @@
 #include "mechanics/equations.h"
 
 struct InterfaceVariable {
-  struct ScalarVariable entry; /* as in the generated table; the name belongs to this structure */
-  char *unit, *description;    /* NULL where unknown */
-  char *display_unit;          /* NULL where none was given */
-  double nominal;              /* NAN where none was given */
-  Node node;                   /* the value; ZERO for statistics */
-  Node start;                  /* of a state whose start value follows from parameters; else ZERO */
-  bool is_moved_at_start;      /* a state that constraints may move as initialization ends */
-  bool is_continued;           /* a result that is computed together with the one before: components of one thing */
-  size_t array_count;          /* elements of the array that begins with this variable; 0 where none does */
-  bool is_further_element;     /* of an array that began before */
+  struct ScalarVariable entry;    /* as in the generated table */
+  const char *unit, *description; /* NULL where unknown */
+  const char *display_unit;       /* NULL where none was given */
+  double nominal;                 /* NAN where none was given */
+  Node node;                      /* the value; ZERO for statistics */
+  Node start;                     /* of a state whose start value follows from parameters; else ZERO */
+  bool is_moved_at_start;         /* a state that constraints may move as initialization ends */
+  bool is_continued;              /* a result that is computed together with the one before: components of one thing */
+  size_t array_count;             /* elements of the array that begins with this variable; 0 where none does */
+  bool is_further_element;        /* of an array that began before */
 };
 
 enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */

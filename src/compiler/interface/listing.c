@@ -16,15 +16,15 @@ static struct InterfaceVariable *append(struct Interface *interface, enum Variab
   if (index == 0) interface->first[kind] = interface->count;
   struct InterfaceVariable *variable = &interface->variables[interface->count++];
   *variable = (struct InterfaceVariable){
-      .entry = {.name = copy_text(name), .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
-      .description = description != NULL ? copy_text(description) : NULL,
+      .entry = {.name = name, .kind = kind, .index = index, .start = NAN, .minimum = NAN, .maximum = NAN},
+      .description = description,
       .nominal = NAN};
   return variable;
 }
 
 static void set_units(struct InterfaceVariable *variable, const struct Variable *source) {
   variable->unit = variable_unit(source);
-  if (source->display_unit != NULL && variable->unit != NULL) variable->display_unit = copy_text(source->display_unit);
+  if (source->display_unit != NULL && variable->unit != NULL) variable->display_unit = source->display_unit;
 }
 
 /* The names of what the node depends on. */
@@ -80,7 +80,7 @@ static void append_derivative(struct Interface *interface, const struct Variable
 static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
                           const char *description) {
   struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
-  variable->unit = copy_text(unit);
+  variable->unit = unit;
   variable->node = node;
 }
 
@@ -259,7 +259,7 @@ static void append_indicators(struct Interface *interface, const struct Switchin
 
 static void append_time(struct Interface *interface, const struct Model *model) {
   struct InterfaceVariable *time = append(interface, VARIABLE_TIME, 0, "time", "time");
-  time->unit = copy_text("s");
+  time->unit = "s";
   time->node = model->time;
 }
 

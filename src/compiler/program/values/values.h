@@ -18,7 +18,7 @@ struct Values {
 
 struct Values *values_create(const struct Graph *graph, const struct Prepared *prepared, size_t coordinates);
 
-/* Begins a new routine, which the caller owns. */
+/* Begins a new routine. */
 struct Routine *values_begin(struct Values *values);
 
 /* Computes what the targets need and the routine does not hold yet. preparing: as in form.h. */

@@ -12,5 +12,4 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
 /* Reports a range or a start value that does not fit. */
 void check_range(struct Reader *reader, const struct Variable *variable);
 
-/* Appends a variable, whose strings the list owns from now on. */
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);

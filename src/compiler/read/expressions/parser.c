@@ -96,7 +96,7 @@ static char *read_identifier(struct Parser *parser) {
   return identifier;
 }
 
-/* The index after an identifier, if there is one. Takes and returns an allocated string. */
+/* The index after an identifier, if there is one. */
 static char *read_index(struct Parser *parser, char *name) {
   if (*parser->next == '[') {
     parser->next++;
@@ -109,7 +109,7 @@ static char *read_index(struct Parser *parser, char *name) {
   return name;
 }
 
-/* The rest of a name after its first identifier. Takes and returns an allocated string. */
+/* The rest of a name after its first identifier. */
 static char *read_name_suffix(struct Parser *parser, char *name) {
   name = read_index(parser, name);
   while (!parser->failed && *parser->next == '.' &&

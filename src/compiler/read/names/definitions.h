@@ -59,7 +59,7 @@ void definitions_leave(struct Definitions *definitions);
 void bind_indices(struct Scope *scope, const struct Loop *loop);
 void unbind_indices(struct Scope *scope, const struct Loop *loop);
 
-/* Collects an expression under its name, which is taken over, as it is for the present indices. */
+/* Collects an expression under its name, as it is for the present indices. */
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression);
 
 /* That of this number is to be read before those on the stack. */
