@@ -64,7 +64,11 @@ void release(void *content) {
 }
 
 void release_all(void) {
-  while (ring.next != &ring) free(take_out(ring.next));
+  for (struct Block *block = ring.next, *next = NULL; block != &ring; block = next) {
+    next = block->next;
+    free(block);
+  }
+  ring.previous = ring.next = &ring;
 }
 
 void *make_room(void *items, size_t count, size_t size) {
