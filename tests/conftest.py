@@ -5,9 +5,12 @@ from collections import Counter
 
 import pytest
 
-import fmi3
-import fmu
-from linked import sizes
+# Matrices are small: threads of linear algebra would only wait for each other, and a hundred times as long. Before NumPy looks.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import fmi3  # noqa: E402
+import fmu  # noqa: E402
+from linked import sizes  # noqa: E402
 
 
 def pytest_generate_tests(metafunc):

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 from statistics import median
 
-from differential.build import runtime
+from building import runtime
 from fmu import LAGC, ROOT
 
 FOLDER = ROOT / "build" / "accelerations"
