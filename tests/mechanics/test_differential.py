@@ -43,7 +43,7 @@ TIME_LIMIT = 300  # s; none needs more than some seconds
 def test_random_system(number, tmp_path):
     """A value that is off, a crash, a hang, or C that does not compile is wrong; a refusal has to have a message."""
     system = generate(SEED, number)
-    system.plan.unrolled = False  # takes long to compile; the FMUs of all other tests are
+    system.plan.unrolled = False  # takes long to compile; those of fmu/ are
     outcome = judge_system(system, tmp_path, TIME_LIMIT)
     assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
