@@ -29,11 +29,11 @@ def passes(room):
 
 
 def outcomes(fault, rooms):
-    """By room."""
+    """By room; where FMUs cannot be built any more, the build has seen it."""
     with planted(fault):
         if not build():
-            return {room: "does not build" for room in rooms}
-        return {room: "unseen" if passes(room) else "seen" for room in rooms}
+            return {"build": "seen"}
+        return {"build": "unseen"} | {room: "unseen" if passes(room) else "seen" for room in rooms}
 
 
 def known():
@@ -64,7 +64,7 @@ def main(rooms, faults):
         key = (str(find(fault).file), fault.right.strip(), fault.wrong.strip())
         rows[key] = rows.get(key, dict(zip(FAULT, key))) | outcomes(fault, rooms)
         write(rows)
-        seen = [room for room in rooms if rows[key][room] == "seen"]
+        seen = [room for room in ["build", *rooms] if rows[key].get(room) == "seen"]
         print(f"{FAULTS.index(fault):3} seen by {', '.join(seen) or 'none'}: {key[0]}: {key[1]}  ->  {key[2]}", flush=True)
 
 
