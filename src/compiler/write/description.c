@@ -174,8 +174,8 @@ static void write_tables(FILE *file, const struct Program *program) {
 }
 
 static void write_operations(FILE *file, const struct OperationCounts *counts) {
-  fprintf(file, "    .steps.operations = {%.0f, %.0f, %.0f, %.0f, %.0f, %.0f},\n", counts->derivatives, counts->jacobian,
-          counts->series, counts->recurrences, counts->factor, counts->solve);
+  fprintf(file, "    .steps.operations = {%.0f, %.0f, %.0f, %.0f, %.0f, %.0f},\n", counts->derivatives,
+          counts->jacobian, counts->series, counts->recurrences, counts->factor, counts->solve);
 }
 
 static void write_lagrangian(FILE *file, const struct Program *program, size_t work_count, bool has_arrays) {

@@ -60,7 +60,7 @@ struct Settlement settlement_at(struct Instance *instance, double time, double *
 /* As the last evaluation left them. */
 static const double *accelerations_of(const struct Settlement *settlement) {
   return lagrangian.constraints.accelerations != NULL ? settlement->acceleration
-                                          : settlement->derivative + lagrangian.coordinate_count;
+                                                      : settlement->derivative + lagrangian.coordinate_count;
 }
 
 bool settlement_values(struct Settlement *settlement, const double *state, double *value) {

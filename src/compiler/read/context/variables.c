@@ -1,6 +1,5 @@
 #include "read/context/variables.h"
 
-
 #include "algebra/units/other_units.h"
 #include "base/memory.h"
 
