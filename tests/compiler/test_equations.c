@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "expressions.h"
 #include "mechanics/mass_matrix/inertia.h"
 #include "mechanics/lagrange.h"
@@ -19,7 +20,7 @@ enum { POINT_LIMIT = 8 };
 
 /* Reads a file with this text; point: "name=value ..." for a linearization, NULL for none. */
 static struct Model *read_text(const char *text, const char *point, struct Diagnostics *diagnostics) {
-  char path[] = "/tmp/equationsXXXXXX", *words = point == NULL ? NULL : strdup(point);
+  char path[] = "/tmp/equationsXXXXXX", *words = point == NULL ? NULL : copy_text(point);
   const char *names[POINT_LIMIT];
   size_t count = 0;
   int descriptor = mkstemp(path);
