@@ -7,7 +7,7 @@ import subprocess
 import pytest
 
 import fmu
-from building import alone, build_by_cmake
+from building import alone, build_by_cmake, built_by_tests
 from fmu import BUILD, ROOT
 
 SANITIZED = BUILD / "sanitized"
@@ -77,7 +77,8 @@ def rows_of_springs():
         for solver, (masses, _) in WITH_SUNDIALS.items()
     }
     with alone(SANITIZED / "rows-of-springs.lock"):
-        build_by_cmake(SANITIZED / "rows-of-springs", texts, "-DSANITIZE=address,undefined", tools=SANITIZED)
+        archives = build_by_cmake(SANITIZED / "rows-of-springs", texts, "-DSANITIZE=address,undefined", tools=SANITIZED)
+    built_by_tests.update({name: archives / f"{name}.fmu" for name in texts})
 
 
 @pytest.mark.parametrize("solver", WITH_SUNDIALS)

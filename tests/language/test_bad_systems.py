@@ -32,7 +32,7 @@ CASES = [
     ("tag not closed", 8, "<potential>m*g*l", 13, "</system> stands where <potential> of line 8 is still open"),
     ("unknown element", 8, "<potentail>m*g*bob.y</potentail>", 8, "<potentail> is no element of <system>; did you mean 'potential'"),
     ("unknown attribute", 6, '<coordinate name="theta" speed="omega" unit="rad"/>', 6,
-     "<coordinate> has no attribute 'speed'; expected name, unit, description, start, nominal, velocity, "),
+     "<coordinate> has no attribute 'speed'; expected name, unit, displayUnit, description, start, nominal, velocity, "),
     ("velocity missing", 6, '<coordinate name="theta" unit="rad"/>', 6, "<coordinate> needs the attribute 'velocity'"),
     ("parameter without start", 2, '<parameter name="m" unit="kg"/>', 2, "<parameter> needs the attribute 'start'"),
     ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, 'name="m 1" of <parameter> is no name; expected letters'),

@@ -87,6 +87,7 @@ static Node parse_group(struct Parser *parser) {
 /* Of not not ... the last two make 1 or 0 of the condition; those before change nothing but which of them it is. */
 static Node parse_factor(struct Parser *parser) {
   long negations = 0;
+  while (accept_word(parser, "not")) negations++;
   skip_space(parser);
   Node condition = parse_group(parser);
   for (long i = negations > 2 ? 2 - negations % 2 : negations; i > 0; i--)
