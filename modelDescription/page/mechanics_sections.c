@@ -40,6 +40,8 @@ static void write_energies(struct Page *page) {
       "potentialEnergy is U less the sum of v dU/dv, which is U where it has no velocities. totalEnergy is the "
       "sum of both.");
   page_element(page, "p", balance_of(page->model, summary->is_autonomous));
+  if (page->model->switches.contact_count + page->model->switches.event_count > 0)
+    page_element(page, "p", "So it is between events: impacts, and what events set, may change totalEnergy at once.");
 }
 
 static void write_constraints(struct Page *page) {

@@ -40,3 +40,8 @@ def test_a_formula_that_is_cut_off_is_shown_as_text(tmp_path):
     page = (tmp_path / "out" / "documentation" / "index.html").read_text()
     ElementTree.fromstring(page)
     assert "...</code>" in page
+
+
+def test_a_law_of_energy_ends_at_impacts():
+    tells = {name: "So it is between events" in (fmu.unpacked(name) / "documentation" / "index.html").read_text() for name in ("BouncingBall", "SimplePendulum")}
+    assert tells == {"BouncingBall": True, "SimplePendulum": False}
