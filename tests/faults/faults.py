@@ -375,6 +375,9 @@ PLACES = [
     # Robots and contacts
     ("bool is_taken = is_word(name);", "bool is_taken = false;", pytest("test_robots", "word_of_the_language")),
     ("double length = sqrt(1 - axis[next] * axis[next]);", "double length = 1;", pytest("test_robots", "accelerations")),
+    ("experiment->has_stop_time && !(stop >= start", "!(stop >= start", pytest("test_fmi_rules", "not_looked_at", "SimplePendulum")),
+    ("experiment->has_tolerance && !(tolerance > 0.0", "!(tolerance > 0.0", pytest("test_fmi_rules", "not_looked_at", "SimplePendulum")),
+    ("case FIRST_SLOPE: EACH(2, R = (&A)[1]);", "case FIRST_SLOPE: EACH(2, R = (&A)[0]);", pytest("test_instructions", "slopes_of_accelerations")),
     ("static const double rounding_of_operation = DBL_EPSILON;", "static const double rounding_of_operation = 0.0;",
      pytest("test_fmi3_events", "terms_cancel")),
     ("if (reach <= noise) return f[0] < -noise ? FALLS : STAYS;", "if (reach <= noise) return STAYS;", pytest("test_fmi3_events", "terms_cancel")),

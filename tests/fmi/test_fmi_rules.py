@@ -113,6 +113,15 @@ def test_bad_experiments(words, message, open_fmu):
         instance.fmu.setupExperiment(**words)
 
 
+def test_what_is_not_defined_is_not_looked_at(open_fmu):
+    instance = open_fmu("SimplePendulum")
+    instance.fmu.fmi2SetupExperiment(instance.fmu.component, 0, math.nan, 2.0, 0, math.nan)
+    instance.fmu.enterInitializationMode()
+    instance.fmu.exitInitializationMode()
+    instance.fmu.doStep(2.0, 0.1)
+    assert instance.fmu.getRealStatus(2) == 2.1
+
+
 def test_steps_end_where_they_say(name, open_fmu):
     """Rule 5: no drift, no rounding to a grid, and the caller's time counts."""
     instance = open_fmu(name).initialize(start_time=0.25)
