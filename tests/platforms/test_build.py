@@ -22,7 +22,8 @@ def test_the_same_input_gives_the_same_bytes(tmp_path):
     source = tmp_path / "else where, over there"
     for folder in ("fmu", "include", "modelDescription", "scripts", "src", "tests"):
         shutil.copytree(ROOT / folder, source / folder)
-    shutil.copy(ROOT / "CMakeLists.txt", source)
+    for file in ("CMakeLists.txt", "LICENSE"):
+        shutil.copy(ROOT / file, source)
     if (ROOT / "build" / "sundials").exists():
         shutil.copytree(ROOT / "build" / "sundials", source / "build" / "sundials")
     systems = tmp_path / "systems"

@@ -19,7 +19,8 @@ static Node rounding_of(struct Graph *graph, Node node, Node left, Node right) {
   partial_derivatives(graph, node, &by_left, &by_right);
   Node of_left = left == ZERO ? ZERO : multiply(graph, magnitude(graph, by_left), left);
   Node of_right = right == ZERO ? ZERO : multiply(graph, magnitude(graph, by_right), right);
-  return add(graph, add(graph, of_left, of_right), magnitude(graph, node));
+  Node own = magnitude(graph, node);
+  return add(graph, add(graph, of_left, of_right), own);
 }
 
 void roundings_of(struct Graph *graph, const Node *targets, size_t count, Node *roundings) {
