@@ -157,7 +157,8 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
-  if (isnan(time)) return "an indicator of events oscillates there faster than can be told";
+  progress->is_lost = isnan(time);
+  if (progress->is_lost) return "an indicator of events oscillates there faster than can be told";
   count_event(instance, step, time, indicator, progress);
   if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
     return is_of_contact(indicator) ? flutter : gathering;

@@ -20,6 +20,7 @@ struct CommunicationStep;
 /* How far a communication step has come with its events. */
 struct EventProgress {
   double searched;  /* no event before this time is left */
+  bool is_lost;     /* behind what was searched there is an event that cannot be told */
   int gathered;     /* how many have come within the rounding of time, or of what they wait for */
   int crowded;      /* how many of one indicator have come close together, without leaving 0 by more than rounding */
   double last;      /* event, from the start of the step on; 0 for none */

@@ -129,17 +129,23 @@ static void tell_observer(struct Instance *instance, struct CommunicationStep *s
   if (instance->observe != NULL && is_inside) instance->observe(instance, step, time);
 }
 
-/* Makes steps until the last one reaches the end; NULL, or the reason why none does, which may lie in an event. */
-static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event) {
+/*
+ * Makes steps until the last one reaches the end; NULL, or the reason why none does. *reached: the time up to which the motion
+ * is known then: what the solver has beyond an event that cannot be told is none.
+ */
+static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
+                         double *reached) {
   struct Course course = {.progress = {.searched = step->start, .gathered = instance->situation->gathered}};
   memcpy(course.before, instance->situation->statistics, sizeof course.before);
   for (;;) {
     const char *problem = pass_events(instance, step, &course);
     *ends_at_event = problem != NULL;
+    *reached = course.progress.is_lost ? course.progress.searched : instance->situation->last_step.end;
     if (problem != NULL) return problem;
     tell_observer(instance, step);
-    if (instance->situation->last_step.end >= step->end) return NULL;
+    if (*reached >= step->end) return NULL;
     problem = advance_once(instance, step, &course);
+    *reached = instance->situation->last_step.end;
     if (problem != NULL) return problem;
   }
 }
@@ -193,14 +199,15 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   bool ends_at_event = false;
   const char *law = NULL; /* that does not hold at the end */
-  const char *problem = reach(instance, step, &ends_at_event);
+  double known;
+  const char *problem = reach(instance, step, &ends_at_event, &known);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     *reached = step->end; /* an observer may have shortened the step */
     if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
     if (problem == NULL && law == NULL) return STEP_DONE;
   }
-  *reached = problem != NULL ? last->end : last->start;
+  *reached = problem != NULL ? known : last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
   if (law != NULL) return stop(instance, step, law, true, *reached);
