@@ -34,6 +34,16 @@ FAR_GROUND = """
   <solver method="{method}" tolerance="1e-10"/>
 </system>
 """
+# A gap in units in which it is small.
+SMALL_GAP = """
+<system name="SmallGap">
+  <parameter name="s" start="1"/>
+  <coordinate name="h" velocity="v" start="1"/>
+  <particle mass="1" y="h"/>
+  <potential>9.81*h</potential>
+  <contact name="ground" gap="s*h" restitution="0.5"/>
+</system>
+"""
 FAR_METHODS = ["taylor", "radau", "erk"]
 EVENTS = dict(eventModeUsed=True, earlyReturnAllowed=True)
 
@@ -45,7 +55,7 @@ def far_ground(method):
 @pytest.fixture(scope="module", autouse=True)
 def built():
     far = {name: FAR_GROUND.format(name=name, method=name[9:].lower()) for name in map(far_ground, FAR_METHODS)}
-    fmu.build_systems("fmi3-events", {"Zeno": ZENO, **far}, versions=[3])
+    fmu.build_systems("fmi3-events", {"Zeno": ZENO, "SmallGap": SMALL_GAP, **far}, versions=[3])
 
 
 def go_through(instance):
@@ -241,3 +251,12 @@ def test_a_step_that_loses_an_event_ends_before_it(opened):
     with contextlib.suppress(FMICallException):
         to(instance, 3.0, lambda: instance.get("h") == pytest.approx(0, abs=1e-9))
     assert instance.get("h") > -1e-6
+
+
+@pytest.mark.parametrize("scale", [1, 1e-14, 1e-30])
+def test_importers_find_small_gaps(scale):
+    """By model exchange: indicators are told beyond 0 by less where they are small."""
+    archive = fmu.archive("SmallGap")
+    archive = archive.parent.parent / "fmi3" / archive.name
+    result = fmpy.simulate_fmu(str(archive), fmi_type="ModelExchange", stop_time=3, relative_tolerance=1e-8, start_values={"s": scale}, output=["h", "ground.closed"])
+    assert min(result["h"]) > -1e-9 and result["h"][-1] == pytest.approx(0, abs=1e-9) and result["ground.closed"][-1] == 1

@@ -59,18 +59,42 @@ static void complete_indicators(struct Instance *instance, double *value) {
     if (isnan(value[i])) value[i] = completed[i];
 }
 
+/* How far beyond 0 an importer is told of a zero: at most, and in units of what rounding makes of the indicator. */
+static const double largest_shift = 1e-11, shift_in_noise = 1e5;
+
+/* Of an indicator that rounding the state changes by noise, its own operations by rounding; of neither, the largest. */
+static double shift_of(double noise, double rounding) {
+  double shift = fmax(shift_in_noise * noise, FLOOR_IN_NOISE * rounding);
+  return shift > 0.0 && shift < largest_shift ? shift : largest_shift;
+}
+
+/* shift[i] of each indicator, with workspace. Small ones, as of a gap in large units, are shifted by less. */
+static void find_shifts(struct Instance *instance, const double *value, double *shift) {
+  size_t count = indicator_count(lagrangian.switches);
+  double *rounding = shift + count, *rounded = rounding + count;
+  double time = instance->situation->time, later = time * (1.0 + 4.0 * DBL_EPSILON);
+  switching_roundings(instance, time, instance->state, instance->acceleration, rounding);
+  double factor = switching_round(instance->state, true, rounded);
+  bool known = switching_indicators(instance, later, rounded, shift);
+  for (size_t i = 0; i < count; i++)
+    shift[i] = known && !switching_is_force(instance, i) ? shift_of(factor * fabs(value[i] - shift[i]), rounding[i])
+                                                         : largest_shift;
+}
+
 /*
  * What an importer is told keeps its sign until the indicator is a little beyond 0, so that it is not 0 behind an event
  * (FMI 2.0, section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 leaves it on either side.
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
-  static const double shift = 1e-11;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   if (!switching_indicators(instance, instance->situation->time, instance->state, value)) return false;
+  size_t count = indicator_count(lagrangian.switches);
+  double *shift = instance->switching_work + count; /* the first so many may be the values */
   complete_indicators(instance, value);
-  for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
+  find_shifts(instance, value, shift);
+  for (size_t i = 0; i < count; i++) {
     double sign = switching_sign(instance, i);
-    value[i] = sign == 0.0 ? shift - fabs(value[i]) : value[i] + sign * shift;
+    value[i] = sign == 0.0 ? shift[i] - fabs(value[i]) : value[i] + sign * shift[i];
   }
   return true;
 }
