@@ -318,7 +318,7 @@ PLACES = [
     ("cardinals.slope[0] = way_before(scope, x, knots[0]);", "", pytest("test_tables_of_two", "values_and_derivatives")),
     ("if (*indicator < lagrangian.switches->branch_count) return true;", "", pytest("test_auto", "flights")),
     ("return was_set ? 0.0 : mode;", "return mode;", pytest("test_switching_from_outside", "is_set_to")),
-    ("value[i] + sign * shift;", "value[i];", pytest("test_switching_from_outside", "projection_moves or falls_through")),
+    ("value[i] + sign * shift[i];", "value[i];", pytest("test_switching_from_outside", "projection_moves or falls_through")),
     ("bool holds = switches->feels_forces;", "bool holds = false;", pytest("test_pieces", "size_of_a_force")),
     ("if (moved <= continuity_allowed_share(settlement)) return NULL;", "if (isfinite(moved)) return NULL;",
      pytest("test_pieces", "kink_in_a_constraint")),
