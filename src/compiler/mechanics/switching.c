@@ -120,14 +120,15 @@ static void append_watched(const struct Model *model, const struct SwitchingExpr
 }
 
 /* What rounding may make of the indicators of branches, of gaps, and of the velocities of frictions. */
-static Node *derive_roundings(const struct Model *model, const struct SwitchingExpressions *switching) {
-  const struct Switches *switches = &model->switches;
-  struct NodeList list = {0};
-  for (size_t i = 0; i < switching->branch_count; i++) append_node(&list, switching->branches[i]->indicator);
-  for (size_t i = 0; i < switches->contact_count; i++) append_node(&list, switches->contacts[i].gap);
-  for (size_t i = 0; i < switches->friction_count; i++) append_node(&list, switches->frictions[i].velocity);
-  roundings_of(model->graph, list.nodes, list.count, list.nodes);
-  return list.nodes;
+static void fill_roundings(const struct Model *model, const struct SwitchTable *counts,
+                           struct SwitchingExpressions *switching) {
+  Node *nodes = switching->roundings = allocate(indicator_count(counts), sizeof *nodes);
+  for (size_t i = 0; i < counts->branch_count; i++) nodes[i] = switching->branches[i]->indicator;
+  for (size_t i = 0; i < counts->contact_count; i++)
+    nodes[contact_indicator(counts, i)] = model->switches.contacts[i].gap;
+  for (size_t i = 0; i < counts->friction_count; i++)
+    nodes[friction_indicator(counts, i)] = model->switches.frictions[i].velocity;
+  roundings_of(model->graph, nodes, indicator_count(counts), nodes);
 }
 
 /* The energies and the momenta, where branches hold them. */
@@ -249,7 +250,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->watched_count = watched.count;
   switching->values = values.nodes;
   switching->value_count = values.count;
-  switching->roundings = derive_roundings(model, switching);
+  fill_roundings(model, &counts, switching);
   if (switching->indicator_count > 0) return switching;
   return NULL;
 }

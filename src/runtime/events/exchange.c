@@ -72,13 +72,11 @@ static double shift_of(double noise, double rounding) {
 static void find_shifts(struct Instance *instance, const double *value, double *shift) {
   size_t count = indicator_count(lagrangian.switches);
   double *rounding = shift + count, *rounded = rounding + count;
-  double time = instance->situation->time, later = time * (1.0 + 4.0 * DBL_EPSILON);
+  double time = instance->situation->time;
   switching_roundings(instance, time, instance->state, instance->acceleration, rounding);
-  double factor = switching_round(instance->state, true, rounded);
-  bool known = switching_indicators(instance, later, rounded, shift);
+  bool known = switching_noise(instance, time, instance->state, true, value, rounded, shift);
   for (size_t i = 0; i < count; i++)
-    shift[i] = known && !switching_is_force(instance, i) ? shift_of(factor * fabs(value[i] - shift[i]), rounding[i])
-                                                         : largest_shift;
+    shift[i] = known && !switching_is_force(instance, i) ? shift_of(shift[i], rounding[i]) : largest_shift;
 }
 
 /*

@@ -9,19 +9,19 @@
 static const double least_share = 0.1;
 
 /* Roundings make up to so many times what one of them makes. */
-#define NOISE_OF_DIFFERENCE 8.0
+static const double noise_of_difference = 8.0;
 /* A sum with larger terms may swallow a step of one last digit, and shows one of so many. */
-#define FURTHER 8.0
+static const double further = 8.0;
 
 /* The relative rounding of an operation, that of the library's functions included. */
 static const double rounding_of_operation = DBL_EPSILON;
 
 bool switching_is_force(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
-  if (indicator < switches->branch_count) return false;
-  size_t contact = indicator - switches->branch_count;
-  if (contact < switches->contact_count) return instance->parameter[switches->contacts[contact].mode] > 0.0;
-  return instance->parameter[switches->frictions[contact - switches->contact_count].mode] == 0.0;
+  size_t contacts = contact_indicator(switches, 0), frictions = friction_indicator(switches, 0);
+  if (indicator < contacts) return false;
+  if (indicator < frictions) return instance->parameter[switches->contacts[indicator - contacts].mode] > 0.0;
+  return instance->parameter[switches->frictions[indicator - frictions].mode] == 0.0;
 }
 
 /* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */
@@ -56,11 +56,22 @@ double switching_sign(const struct Instance *instance, size_t indicator) {
 }
 
 double switching_round(const double *state, bool otherwise, double *rounded) {
-  double distance = otherwise ? FURTHER : 1.0;
+  double distance = otherwise ? further : 1.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double size = fmax(fabs(state[i]), least_share * lagrangian.steps.nominal[i]);
     double change = distance * (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
     rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }
-  return NOISE_OF_DIFFERENCE / distance;
+  return noise_of_difference / distance;
+}
+
+bool switching_noise(struct Instance *instance, double time, const double *state, bool otherwise,
+                     const double *indicator, double *rounded, double *noise) {
+  double factor = switching_round(state, otherwise, rounded);
+  if (!switching_indicators(instance, time * (1.0 + 4.0 * DBL_EPSILON), rounded, noise)) return false;
+  for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
+    double change = factor * fabs(noise[i] - indicator[i]);
+    noise[i] = isfinite(change) ? change : 0.0;
+  }
+  return true;
 }

@@ -23,6 +23,13 @@ void switching_roundings(struct Instance *instance, double time, const double *s
  */
 double switching_round(const double *state, bool otherwise, double *rounded);
 
+/*
+ * What rounding the time and the state in one of these ways makes of the indicators there; rounded[state_count] is
+ * workspace. False where they have no values.
+ */
+bool switching_noise(struct Instance *instance, double time, const double *state, bool otherwise,
+                     const double *indicator, double *rounded, double *noise);
+
 /* 1, -1 or 0: the sign that an indicator has while its mode stays; 0 of a branch that rests at 0. */
 double switching_sign(const struct Instance *instance, size_t indicator);
 

@@ -5,6 +5,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "events/indicators.h"
 #include "events/search.h"
 #include "events/settle.h"
 #include "events/settlement.h"
@@ -123,14 +124,12 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
 
 static bool is_of_contact(size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
-  return indicator >= switches->branch_count && indicator - switches->branch_count < switches->contact_count;
+  return indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
 }
 
 /* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
 static bool is_bounce(const struct Instance *instance, size_t indicator) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  return is_of_contact(indicator) &&
-         instance->parameter[switches->contacts[indicator - switches->branch_count].mode] == 0.0;
+  return is_of_contact(indicator) && !switching_is_force(instance, indicator);
 }
 
 /* Takes an event into the progress of the step. */

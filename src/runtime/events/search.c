@@ -60,19 +60,16 @@ static double value_at(struct Search *search, size_t indicator, double time) {
 
 static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
-  double later = time * (1.0 + 4.0 * DBL_EPSILON), *exact = search->exact;
+  double *exact = search->exact;
   sample(search, time, NULL, search->values);
   switching_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
   for (size_t i = 0; i < count; i++)
     if (switching_is_force(search->instance, i)) search->noise[i] = 0.0;
   memcpy(exact, search->values, count * sizeof *exact);
   for (int way = 0; way < 2; way++) {
-    double factor = switching_round(search->state, way == 1, search->rounded);
-    bool known = switching_indicators(search->instance, later, search->rounded, search->values);
-    for (size_t i = 0; i < count && known; i++) {
-      double change = factor * fabs(search->values[i] - exact[i]);
-      if (isfinite(change)) search->noise[i] = fmax(search->noise[i], change);
-    }
+    bool known =
+        switching_noise(search->instance, time, search->state, way == 1, exact, search->rounded, search->values);
+    for (size_t i = 0; i < count && known; i++) search->noise[i] = fmax(search->noise[i], search->values[i]);
   }
 }
 

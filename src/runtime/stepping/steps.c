@@ -199,15 +199,16 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   bool ends_at_event = false;
   const char *law = NULL; /* that does not hold at the end */
-  double known;
-  const char *problem = reach(instance, step, &ends_at_event, &known);
+  const char *problem = reach(instance, step, &ends_at_event, reached);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
-    *reached = step->end; /* an observer may have shortened the step */
     if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
-    if (problem == NULL && law == NULL) return STEP_DONE;
+    if (problem == NULL && law == NULL) {
+      *reached = step->end; /* an observer may have shortened the step */
+      return STEP_DONE;
+    }
   }
-  *reached = problem != NULL ? known : last->start;
+  if (problem == NULL) *reached = last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
   if (law != NULL) return stop(instance, step, law, true, *reached);
