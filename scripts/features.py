@@ -1,4 +1,4 @@
-"""Writes the table of FMI features of all FMUs, read from their modelDescription.xml, into the README."""
+"""Writes the table of FMI features of all FMUs, read from their modelDescription.xml, into fmu/SYSTEMS.md."""
 
 import re
 from pathlib import Path
@@ -35,9 +35,9 @@ def table(folder=ROOT / "build" / "fmu"):
 
 
 def main():
-    readme = ROOT / "README.md"
-    text = readme.read_text()
-    readme.write_text(re.sub(r"(?<=<!-- features -->\n).*?(?=<!-- end -->)", table() + "\n", text, flags=re.S))
+    page = ROOT / "fmu" / "SYSTEMS.md"
+    text = page.read_text()
+    page.write_text(re.sub(r"(?<=<!-- features -->\n).*?(?=<!-- end -->)", table() + "\n", text, flags=re.S))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The README's examples work when they are pasted."""
+"""The examples of README.md and of the pages beside the systems work when they are pasted; what they list is there."""
 
 import re
 import zipfile
@@ -6,12 +6,16 @@ import zipfile
 import features
 import fmpy
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from building import build_by_cmake
 from fmu import BUILD, ROOT, all_names, lagc
 
 README = (ROOT / "README.md").read_text()
+SYSTEMS = (ROOT / "fmu" / "SYSTEMS.md").read_text()
+SOLVERS = (ROOT / "fmu" / "SOLVERS.md").read_text()
+PAGES = [ROOT / "README.md", ROOT / "src" / "README.md", *sorted((ROOT / "fmu").glob("*.md")), ROOT / "scripts" / "README.md"]
 
 
 def test_own_system(tmp_path):
@@ -32,9 +36,37 @@ def test_own_system(tmp_path):
 
 
 def test_linearization_as_printed():
-    command, expected = re.search(r"    \$ build/bin/(lagc .*)\n((?:    .*\n)+)", README).groups()
+    command, expected = re.search(r"    \$ build/bin/(lagc .*)\n((?:    .*\n)+)", SOLVERS).groups()
     printed = lagc(*command.split()[1:], cwd=ROOT).stdout
     assert "".join(line[4:] + "\n" for line in expected.splitlines()) in printed
+
+
+def anchors(page):
+    """Of the headings, as they are made of them where pages are shown."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", page.read_text(), flags=re.S), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def test_short_enough():
+    assert len(README.splitlines()) <= 130
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", re.sub(r"```.*?```", "", page.read_text(), flags=re.S)):
+        file, _, anchor = target.partition("#")
+        place = page.parent / file if file else page
+        assert place.exists(), target
+        assert not anchor or anchor in anchors(place), target
+
+
+def test_robot(tmp_path):
+    robot = re.search(r"```xml\n(<robot .*?</robot>\n)```", README, re.S).group(1)
+    (tmp_path / "arm.urdf").write_text(robot)
+    result = lagc(tmp_path / "arm.urdf", "-o", tmp_path)
+    assert result.returncode == 0 and result.stderr == ""
+    # The one equation, with the moment of inertia about the joint, 0.06 + 2 * 0.3^2.
+    assert "0.24*der(shoulder_velocity) = shoulder_torque" in (tmp_path / "documentation" / "index.html").read_text()
 
 
 def test_python_example(monkeypatch):
@@ -46,16 +78,16 @@ def test_python_example(monkeypatch):
 
 
 def test_every_system_is_in_the_table():
-    table = README[README.index("## The systems") : README.index("## Coupled with others")]
+    table = SYSTEMS[: SYSTEMS.index("## What each FMU offers")]
     assert set(re.findall(r"\b[A-Z][A-Za-z]+\b", table)) >= set(all_names())
 
 
 def test_table_of_features():
     """scripts/features brings it up to date."""
-    assert f"<!-- features -->\n{features.table()}\n<!-- end -->" in README
+    assert f"<!-- features -->\n{features.table()}\n<!-- end -->" in SYSTEMS
 
 
 def test_every_command_is_there():
-    for script in set(re.findall(r"scripts/(\w+(?:\.\w+)?)", README)):
+    for script in set(re.findall(r"scripts/([\w-]+(?:\.\w+)?)", "".join(page.read_text() for page in PAGES))):
         assert (ROOT / "scripts" / script).exists()
     assert (BUILD / "bin" / "lagc").exists()
