@@ -125,13 +125,14 @@ static void append_constraint_forces(struct Interface *interface, const struct M
                                      const struct Equations *equations) {
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
-    char *name = format_text("%s.force", constraint->name);
     const char *description = constraint->description != NULL ? constraint->description : constraint->name;
-    char *text = format_text("force of the constraint: %s", description);
+    bool is_of_joint = constraint->force_name != NULL; /* whose description is that of the force */
+    char *text = is_of_joint ? copy_text(description) : format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
-    append_result(interface, name, "", whole_force(model, i, force), text);
+    append_result(interface, constraint_force_name(constraint), "", whole_force(model, i, force), text);
     interface->variables[interface->count - 1].unit =
-        unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
+        is_of_joint ? copy_text(strcmp(constraint->unit, "m") == 0 ? "N" : "N.m")
+                    : unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
   }
 }
 

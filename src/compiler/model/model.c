@@ -57,6 +57,11 @@ Node unknown_of_row(const struct Model *model, size_t row) {
   return row < n ? model->unknowns.accelerations[row] : model->unknowns.forces[row - n];
 }
 
+char *constraint_force_name(const struct Variable *constraint) {
+  if (constraint->force_name != NULL) return constraint->force_name;
+  return format_text("%s.force", constraint->name);
+}
+
 char *variable_unit(const struct Variable *variable) {
   if (variable->unit != NULL) return copy_text(variable->unit);
   return dimension_is_whole(variable->dimension) ? unit_text(variable->dimension) : NULL;

@@ -17,6 +17,7 @@ struct Variable {
   double start, minimum, maximum, nominal; /* NAN where none was given */
   Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
+  char *force_name;                        /* of a constraint, where its force is not NAME.force; else NULL */
   bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
   long line;
 };
@@ -196,6 +197,9 @@ bool has_fixed_coordinates(const struct Model *model);
 
 /* The symbol of what a row of inertia.h is solved for: an acceleration, or the force of a constraint. */
 Node unknown_of_row(const struct Model *model, size_t row);
+
+/* The name of the force of a constraint. */
+char *constraint_force_name(const struct Variable *constraint);
 
 /* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. */
 char *variable_unit(const struct Variable *variable);

@@ -59,7 +59,7 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
   model->unknowns.forces = allocate(model->constraints.count, sizeof *model->unknowns.forces);
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
-    char *name = format_text("%s.force", constraint->name);
+    char *name = constraint_force_name(constraint);
     struct Dimension dimension = dimension_multiply(unit_of("J"), constraint->dimension, -1.0);
     int index = (int)(model->coordinates.count + i);
     Node node = model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);

@@ -74,6 +74,15 @@ struct Matrix matrix_without_displacements(struct Reader *reader, long line, con
   return matrix;
 }
 
+Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node term, struct Quantity *displaced,
+                struct Quantity *sum) {
+  struct Model *model = reader->model;
+  add_term(model, displaced, term);
+  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term);
+  add_term(model, sum, undisplaced);
+  return undisplaced;
+}
+
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
   char *text = text_of(node);
   struct Place place = {

@@ -94,6 +94,10 @@ Node without_displacements(struct Reader *reader, long line, const char *what, N
 struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector);
 struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
 
+/* Adds a term of an element to a sum as it is, and where nothing is displaced to another; returns the latter term. */
+Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node term, struct Quantity *displaced,
+                struct Quantity *sum);
+
 /* The text of an element as an expression; what names it in messages. */
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 

@@ -8,6 +8,3 @@ void declare_constraint(struct Reader *reader, xmlNodePtr node);
 
 /* Reads the expression of the next constraint; they come in the order in which they were declared. */
 void read_constraint(struct Reader *reader, xmlNodePtr node);
-
-/* Reports a constraint that holds nothing, or is not linear in the velocities; notes one that moves by itself. */
-void check_constraint(struct Reader *reader, const struct Variable *constraint);

@@ -17,6 +17,8 @@
 #include "read/elements/table_reader.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
+#include "read/space/joints.h"
+#include "read/space/springs.h"
 
 static void read_constant(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
@@ -105,12 +107,9 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
                         const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
-  add_term(reader->model, displaced, term.node);
   reader->model->given.inputs_move |=
       (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
-  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term.node);
-  add_term(reader->model, sum, undisplaced);
-  return undisplaced;
+  return add_energy(reader, node, what, term.node, displaced, sum);
 }
 
 static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
@@ -266,6 +265,7 @@ static const struct Element elements[] = {
     {"friction", declare_friction, NULL, NULL, read_friction, false},
     {"gravity", NULL, NULL, NULL, read_gravity, false},
     {"input", read_input, collect_value, NULL, NULL, false},
+    {"joint", declare_joint, NULL, NULL, read_joint, false},
     {"kinetic", NULL, NULL, NULL, read_kinetic, false},
     {"mode", declare_mode, NULL, NULL, NULL, false},
     {"output", NULL, NULL, NULL, read_output, false},
@@ -274,6 +274,7 @@ static const struct Element elements[] = {
     {"point", NULL, collect_components, read_body, NULL, false},
     {"potential", NULL, NULL, NULL, read_potential, false},
     {"solver", read_solver, NULL, NULL, NULL, true},
+    {"spring", NULL, collect_spring, NULL, read_spring, false},
     {"stop", declare_stop, NULL, NULL, read_stop, false},
     {"table", read_table, NULL, NULL, NULL, false},
     {"torque", NULL, NULL, NULL, read_torque, false},

@@ -7,6 +7,7 @@
 #include "read/names/definitions.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
+#include "read/space/springs.h"
 
 bool has_value(xmlNodePtr node, const struct Given *given) {
   if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
@@ -47,6 +48,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
   if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
     value = read_spatial(reader, node, name, expression->attribute);
+  else if (is_element(node, "spring")) value = read_spring_value(reader, node, expression->attribute);
   else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
   else if (is_parameter || is_input)
     expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,

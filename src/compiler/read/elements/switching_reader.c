@@ -7,8 +7,8 @@
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
-#include "read/elements/constraint_reader.h"
 #include "read/elements/forces.h"
 
 enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };

@@ -12,6 +12,7 @@
  *   power    = primary [ "^" sign ]
  *   primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
  *            | "sum" "(" index "," first "," last "," sum ")" | "der" "(" sum ")"
+ *            | "distance" "(" name "," name ")"
  *   name     = part { "." part }
  *   part     = identifier [ "[" index expression "]" ]
  */

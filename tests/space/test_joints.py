@@ -1,0 +1,172 @@
+"""
+<joint>: one free body, turned by a quaternion, hangs on the base by each type. What is read of it fulfils Newton's and Euler's laws with
+the forces and torques of the joint, which are told along the axes of the frame on the base, and holds what the type holds.
+"""
+
+import fmpy
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from building import build_systems
+from fmu import archive, lagc
+
+TYPES = {
+    "spherical": "x y z",
+    "universal": "x y z aboutZ",
+    "revolute": "x y z aboutX aboutY",
+    "cylindrical": "x y aboutX aboutY",
+    "prismatic": "x y aboutX aboutY aboutZ",
+    "planar": "z aboutX aboutY",
+    "fixed": "x y z aboutX aboutY aboutZ",
+}  # fmt: skip
+MASS, GRAVITY, INERTIA = 2.0, np.array([0.3, -0.5, -9.81]), np.array([0.2, 0.3, 0.12])
+WALL, WALL_TURNED = np.array([0.1, -0.2, 0.4]), Rotation.from_euler("YX", [1.2, 0.4])
+GRIP, GRIP_TURNED = np.array([0.2, 0.1, 0.6]), Rotation.from_euler("XY", [-0.7, 0.3])
+
+SYSTEM = """<system name="Hangs_{type}">
+{coordinates}
+<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="a b c d"/></frame>
+<body name="rod" in="f" mass="2" Ixx="0.2" Iyy="0.3" Izz="0.12"/>
+<frame name="grip" in="f"><translate x="0.2" y="0.1" z="0.6"/><rotate axis="x" angle="-0.7"/><rotate axis="y" angle="0.3"/></frame>
+<frame name="wall"><translate x="0.1" y="-0.2" z="0.4"/><rotate axis="y" angle="1.2"/><rotate axis="x" angle="0.4"/></frame>
+<gravity x="0.3" y="-0.5" z="-9.81"/>
+<joint name="hinge" type="{type}" from="wall" to="grip"/>
+<experiment stopTime="1"/>
+</system>"""
+
+
+def start_of(kind):
+    """A state in which the joint fits, with a velocity that it allows: turned by angles and moved along what is free."""
+    turns = {"spherical": (0.3, 0.5, -0.4), "universal": (0.4, 0.6, 0), "revolute": (0, 0, 0.8), "cylindrical": (0, 0, 0.8), "planar": (0, 0, 0.8)}
+    moves = {"cylindrical": (0, 0, 0.3), "prismatic": (0, 0, 0.3), "planar": (0.2, -0.1, 0)}
+    relative = Rotation.from_euler("XYZ", turns.get(kind, (0, 0, 0)))
+    body = WALL_TURNED * relative * GRIP_TURNED.inv()
+    place = WALL + WALL_TURNED.apply(moves.get(kind, (0, 0, 0))) - body.apply(GRIP)
+    d = body.as_quat()
+    return dict(zip("xyzabcd", map(float, [*place, d[3], *d[:3]])))
+
+
+def text_of(kind):
+    start = start_of(kind)
+    lines = [f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{start[q]!r}"/>' for q in "xyzabcd"]
+    return SYSTEM.format(type=kind, coordinates="\n".join(lines))
+
+
+@pytest.fixture(scope="module")
+def joints():
+    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG})
+
+
+def simulate(name, outputs, **words):
+    return fmpy.simulate_fmu(archive(name), output=outputs, output_interval=0.05, relative_tolerance=1e-10, **words)
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_joint_obeys_newton_and_euler(joints, kind):
+    held = TYPES[kind].split()
+    forces = [f"hinge.{'torque' + name[-1] if 'about' in name else 'force' + name.upper()}" for name in held]
+    names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
+    result = simulate(f"Hangs_{kind}", [*names, *forces, "totalEnergy"])
+    assert np.ptp(result["totalEnergy"]) < 1e-8
+    moved = 0.0
+    for row in result:
+        body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
+        place, grip = np.array([row[q] for q in "xyz"]), body.apply(GRIP)
+        between, relative = WALL_TURNED.inv().apply(place + grip - WALL), (WALL_TURNED.inv() * body * GRIP_TURNED).as_matrix()
+        misfit = dict(zip("xyz", between)) | {"aboutX": relative[1, 2], "aboutY": relative[0, 2], "aboutZ": relative[1, 0] if kind != "universal" else relative[0, 1]}
+        assert max(abs(misfit[name]) for name in held) < 1e-9
+        force, torque = np.zeros(3), np.zeros(3)
+        for name, of in zip(held, forces):
+            along = -row[of] * WALL_TURNED.as_matrix()[:, "XYZ".index(name[-1].upper())]
+            if kind == "universal" and name == "aboutZ":
+                # It turns about what stands across the x axis of the wall and the y axis of the grip.
+                along = -row[of] * np.cross(WALL_TURNED.as_matrix()[:, 0], (body * GRIP_TURNED).as_matrix()[:, 1])
+            if "about" in name:
+                torque += along
+            else:
+                force += along
+        acceleration = np.array([row[f"der(v{q})"] for q in "xyz"])
+        assert MASS * (acceleration - GRAVITY) == pytest.approx(force, abs=1e-7)
+        omega, alpha = (np.array([row[f"rod.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
+        spin = INERTIA * alpha + np.cross(omega, INERTIA * omega)
+        assert body.apply(spin) == pytest.approx(np.cross(grip, force) + torque, abs=1e-7)
+        moved = max(moved, np.linalg.norm(omega), np.linalg.norm([row[f"v{q}"] for q in "xyz"]))
+    assert moved > 0.5 or kind == "fixed"
+
+
+PINNED = """<system name="Pinned">
+<parameter name="g" start="9.81" unit="m/s2"/>
+<coordinate name="x" velocity="vx" unit="m" start="0.5*sin(2)"/>
+<coordinate name="y" velocity="vy" unit="m" start="-0.5*cos(2)"/>
+<coordinate name="phi" velocity="w" unit="rad" start="2"/>
+<body name="rod" mass="3" x="x" y="y" inertia="3*1^2/12" angle="phi"/>
+<point name="end" in="rod" y="0.5"/>
+<gravity y="-g"/>
+<joint name="hinge" type="pin" from="base" to="end"/>
+<output name="pull" unit="N">hinge.forceY</output>
+<experiment stopTime="1"/>
+</system>"""
+
+
+def test_pin_in_the_plane(joints):
+    # A rod of length 1 that hangs on its end: w^2 = 3 g (cos phi - cos 2), and the hinge carries what turns its centre.
+    result = simulate("Pinned", ["phi", "w", "hinge.forceX", "pull"])
+    phi, w, g, m, r = result["phi"], result["w"], 9.81, 3.0, 0.5
+    assert w**2 == pytest.approx(3 * g * (np.cos(phi) - np.cos(2)), abs=1e-8)
+    alpha = -1.5 * g * np.sin(phi)
+    assert result["hinge.forceX"] == pytest.approx(-m * r * (alpha * np.cos(phi) - w**2 * np.sin(phi)), abs=1e-7)
+    assert result["pull"] == pytest.approx(-m * (g + r * (alpha * np.sin(phi) + w**2 * np.cos(phi))), abs=1e-7)
+
+
+SPRUNG = """<system name="Sprung">
+<parameter name="k" start="30" unit="N/m"/>
+<parameter name="c" start="1.2" unit="N.s/m"/>
+<for index="i" from="1" to="2">
+<coordinate name="x[i]" velocity="vx[i]" unit="m" start="i*0.8"/>
+<coordinate name="y[i]" velocity="vy[i]" unit="m" start="i*0.6"/>
+<particle name="p[i]" mass="i*0.5" x="x[i]" y="y[i]"/>
+</for>
+<spring name="s" from="p[1]" to="p[2]" stiffness="k" length="0.7" damping="c"/>
+<spring name="tie" from="base" to="p[1]" stiffness="0.01*k"/>
+<output name="apart" unit="m">distance(p[1], p[2])</output>
+<output name="approach" unit="m/s">-der(distance(p[2], p[1]))</output>
+<experiment stopTime="2"/>
+</system>"""
+
+
+def test_spring(joints):
+    # Accelerations from the forces told, along the line between the ends.
+    outputs = ["x[1]", "y[1]", "x[2]", "y[2]", "vx[1]", "vy[1]", "vx[2]", "vy[2]", "der(vx[1])", "der(vy[2])", "s.length", "s.force", "tie.force", "apart", "approach"]
+    result = simulate("Sprung", outputs, start_values={"x[2]": 1.5, "y[2]": 2.0})
+    between = np.array([result["x[2]"] - result["x[1]"], result["y[2]"] - result["y[1]"]])
+    length = np.hypot(*between)
+    rate = np.sum(between * [result["vx[2]"] - result["vx[1]"], result["vy[2]"] - result["vy[1]"]], axis=0) / length
+    force = 30 * (length - 0.7) + 1.2 * rate
+    tie = 0.3 * np.hypot(result["x[1]"], result["y[1]"])
+    assert result["s.length"] == pytest.approx(length, rel=1e-12) and result["apart"] == pytest.approx(length, rel=1e-12)
+    assert result["approach"] == pytest.approx(-rate, abs=1e-11)
+    assert result["s.force"] == pytest.approx(force, abs=1e-10) and result["tie.force"] == pytest.approx(tie, rel=1e-12)
+    assert 0.5 * result["der(vx[1])"] == pytest.approx(force * between[0] / length - 0.3 * result["x[1]"], abs=1e-9)
+    assert 1.0 * result["der(vy[2])"] == pytest.approx(-force * between[1] / length, abs=1e-9)
+
+
+BAD = [
+    ('<joint name="h" type="pin" from="base" to="tip"/>', "there is nothing named 'tip' for this <joint>"),
+    ('<joint name="h" type="revolute" from="base" to="bob"/>', "the joint 'h' holds z, which nothing moves"),
+    ('<spring from="bob" to="base"/>', "<spring> has neither stiffness nor damping"),
+    ('<spring from="bob" to="tip" stiffness="k"/>', "there is no point 'tip'"),
+    ('<spring from="bob" to="base" stiffness="2*x"/>', "stiffness of <spring> cannot depend on coordinates"),
+    ('<output name="o">distance(bob)</output>', "expected ',' between the two points of distance"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("line, message", BAD)
+def test_refused(tmp_path, line, message):
+    file = tmp_path / "system.xml"
+    file.write_text(f"""<system name="Bad"><parameter name="k" start="1"/><coordinate name="x" velocity="v"/><coordinate name="y" velocity="w"/>
+<particle name="bob" mass="1" x="x" y="y"/>
+{line}
+</system>""")
+    result = lagc(file, "-o", tmp_path)
+    assert result.returncode == 1 and f"{file}:3: " in result.stderr and message in result.stderr, result.stderr
