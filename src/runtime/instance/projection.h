@@ -32,7 +32,8 @@ extern const struct Projection projection;
 /* Numbers of workspace that an instance needs for it. */
 static inline size_t projection_work_count(void) {
   if (lagrangian.constraints.projection == NULL) return 0;
-  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 2 * lagrangian.state_count;
+  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 2 * lagrangian.state_count +
+         indicator_count(lagrangian.switches);
 }
 
 #endif

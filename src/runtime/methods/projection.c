@@ -7,6 +7,7 @@
  */
 #include "instance/projection.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,6 +33,7 @@ struct Work {
   double *moved;                /* state_count: the coordinates so far */
   double *before;               /* state_count */
   double *first_slope;          /* of each constraint */
+  double *rounding;             /* what rounding may make of what each indicator looks at */
 };
 
 static struct Work work_of(const struct Instance *instance) {
@@ -42,6 +44,7 @@ static struct Work work_of(const struct Instance *instance) {
   work.moved = work.slope + lagrangian.constraints.count;
   work.before = work.moved + lagrangian.state_count;
   work.first_slope = work.before + lagrangian.state_count;
+  work.rounding = work.first_slope + lagrangian.constraints.count;
   return work;
 }
 
@@ -71,6 +74,26 @@ static bool evaluate_lack(struct Instance *instance, double time, const double *
   }
   return instance->singular == 0 && are_finite(work.change, lagrangian.coordinate_count) &&
          are_finite(work.lack, lagrangian.constraints.count);
+}
+
+/*
+ * Whether all that the coordinates lack is rounding: of gaps of closed contacts, whose terms may be many times as large as the
+ * coordinates. Moves by it would be no motion, and methods of variable order would go after it with ever shorter steps.
+ */
+static bool lacks_only_rounding(struct Instance *instance, double time, const double *state) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Work work = work_of(instance);
+  if (switches == NULL || switches->contact_count == 0) return false;
+  struct Point point = solver_point(instance, time, state);
+  switches->roundings(&point, instance->acceleration, work.rounding);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t constraint = switches->contacts[i].constraint;
+    double rounding = DBL_EPSILON * work.rounding[contact_indicator(switches, i)];
+    if (fabs(work.lack[constraint]) <= rounding) work.lack[constraint] = 0.0;
+  }
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
+    if (work.lack[j] != 0.0) return false;
+  return true;
 }
 
 static void move_positions(const struct Work *work, double *state, double share) {
@@ -121,9 +144,10 @@ static double project(struct Instance *instance, double time, double *state) {
     if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;
     before = size;
     size = size_of(work.change, state, 0);
-    bool is_done = size <= converged || (size <= rounded_away && size >= before);
+    bool is_rounded = size <= rounded_away && lacks_only_rounding(instance, time, state);
+    bool is_done = is_rounded || size <= converged || (size <= rounded_away && size >= before);
     if (is_done && !others_hold(&work, state, 0)) return INFINITY;
-    move_positions(&work, state, 1.0);
+    if (!is_rounded) move_positions(&work, state, 1.0);
     if (!is_done) continue;
     double velocities = project_velocities(instance, time, state);
     return fmax(size_of(work.moved, state, 0), velocities);
@@ -190,6 +214,7 @@ static size_t approach_positions(struct Instance *instance, double time, double 
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, target);
   if (!has_value) return find_without_value(&work);
+  lacks_only_rounding(instance, time, state);
   return find_lacking(&work, state, 0);
 }
 
