@@ -11,6 +11,7 @@
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
+#include "events/indicators.h"
 #include "events/settlement.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
@@ -21,6 +22,9 @@ static const double shortest_flight = 1000.0;
 static const double equal_share = 1e-9;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
+
+/* A gap below 0 by so many times what rounding makes of it may be found again: a search forgives FLOOR_IN_NOISE times. */
+static const double found_again = 0.25 * FLOOR_IN_NOISE;
 
 static const char no_impact[] = "a contact cannot take an impact there";
 
@@ -208,18 +212,26 @@ static bool part(struct Settlement *settlement) {
 }
 
 /*
- * An importer comes to a contact late, and an indicator that stays below 0 would not be seen again. Moves apart what is open
- * and stands in one another by so little, all at once; *lifts where there is any. False where that cannot be.
+ * Whether what an open contact stands in one another has to be taken up: an importer comes to it late, and an indicator that
+ * stays below 0 would not be seen again. Where time is coarse, one that is left without speed and force would be found again
+ * and again.
  */
+static bool has_to_lift(const struct Settlement *settlement, size_t contact) {
+  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
+  const double *value = settlement->value, *noise = settlement->noise;
+  if (contact_is_closed(settlement, contact) || !(value[gap] < -noise[gap])) return false;
+  if (!(value[gap] >= -largest_drift(settlement))) return false;
+  bool has_stopped = settlement->occasion == AT_EVENT && settlement->jumped && value[rate] <= noise[rate];
+  return settlement->occasion == IN_EXCHANGE || (has_stopped && value[gap] < -found_again * noise[gap]);
+}
+
+/* Moves all of these apart at once; *lifts where there is any. False where that cannot be. */
 static bool lift(struct Settlement *settlement, bool *lifts) {
-  const struct SwitchTable *switches = settlement->switches;
   *lifts = false;
-  if (settlement->occasion != IN_EXCHANGE || settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
+  if (settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
   settlement_keep_modes(settlement);
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = contact_value(settlement, i, CONTACT_GAP);
-    double noise = settlement->noise[contact_place(switches, i, CONTACT_GAP)];
-    if (contact_is_closed(settlement, i) || !(gap < -noise) || !(gap >= -largest_drift(settlement))) continue;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
+    if (!has_to_lift(settlement, i)) continue;
     set_contact(settlement, i, true);
     *lifts = true;
   }
