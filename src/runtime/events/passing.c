@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -13,20 +14,24 @@
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
+/* Room for the words that name an indicator. */
+enum { NAME_SIZE = 200 };
 /* So many windows in a communication step that may hide something have no end. */
 enum { UNSURE_LIMIT = 1000 };
 
 /* Events of the same indicator that come nearer than this share of the time may gather. */
 static const double crowding_share = 1e-6;
 
+/* Where events lie too close in a step of the solver, it is made so many times as short, and so often in a row. */
+enum { NEARER = 64, NEARER_LIMIT = 8 };
+
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
 
 static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
-static const char flutter[] =
-    "a contact opens and closes there without end, as where it opens with no speed and the errors of erk or bdf are "
-    "larger than its gap; expected method=\"taylor\" or \"radau\"";
+static const char flutter[] = "a contact opens and closes there without end";
+static const char too_close[] = "events lie closer there than can be told";
 static const char no_modes[] = "the parameters leave no acceleration there";
 
 /* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
@@ -119,7 +124,23 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     progress->searched = near;
     progress->gathered = 0;
   }
+  progress->reach *= 2.0;
+  progress->nearer = 0;
   return false;
+}
+
+/*
+ * Far from the start of a long step the solver's polynomial is rounded by its largest numbers, which hides bounces that are tiny
+ * against them: it starts anew from the last time that is known, with shorter steps. False where that does not help.
+ */
+static bool go_nearer(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
+  double reach = (instance->situation->last_step.end - progress->searched) / NEARER;
+  if (progress->unsure > UNSURE_LIMIT || ++progress->nearer > NEARER_LIMIT) return false;
+  if (solver_rests(progress->searched, reach)) return false;
+  if (!lagrangian.solver->interpolate(instance, progress->searched, instance->event_state)) return false;
+  instance->situation->last_step = (struct Span){progress->searched, progress->searched};
+  progress->reach = reach;
+  return start_anew(instance, step) == NULL;
 }
 
 static bool is_of_contact(size_t indicator) {
@@ -149,6 +170,57 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->searched = time;
 }
 
+/* What an indicator is of, in words. */
+static void name_indicator(size_t indicator, char *text, size_t size) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t friction = indicator - friction_indicator(switches, 0);
+  if (indicator < switches->branch_count)
+    snprintf(text, size, "%s, line %ld of system.xml,", switches->branches[indicator].function,
+             switches->branches[indicator].line);
+  else if (is_of_contact(indicator))
+    snprintf(text, size, "the contact '%s'", switches->contacts[indicator - contact_indicator(switches, 0)].name);
+  else snprintf(text, size, "the friction '%s'", switches->frictions[friction].name);
+}
+
+/* The step ends before what cannot be told. */
+static const char *lose(const struct Instance *instance, struct EventProgress *progress, size_t indicator) {
+  char name[NAME_SIZE];
+  progress->is_lost = true;
+  if (progress->unsure > UNSURE_LIMIT) {
+    const char *function = instance->limited_by;
+    log_message(instance, STATUS_DISCARD,
+                "time %.15g: what events look at may hide some of them there however closely it is followed%s%s; "
+                "expected a function that is not so narrow, or narrow ones at other places",
+                progress->searched, function != NULL ? ", by " : "", function != NULL ? function : "");
+    return too_close;
+  }
+  name_indicator(indicator, name, sizeof name);
+  log_message(instance, STATUS_DISCARD,
+              "time %.15g: %s comes to 0 and goes from it there faster than can be told; expected an expression that "
+              "does so less often",
+              progress->searched, name);
+  return too_close;
+}
+
+/* The step ends at events that do not end: an importer in event mode, whose step began at one, would go on from one more. */
+static const char *refuse_gathering(const struct Instance *instance, const struct CommunicationStep *step,
+                                    struct EventProgress *progress, size_t indicator) {
+  char name[NAME_SIZE];
+  const char *finer = lagrangian.solver->finer;
+  progress->is_lost = true;
+  if (instance->stops_at_events) progress->searched = step->start;
+  name_indicator(indicator, name, sizeof name);
+  if (!is_of_contact(indicator)) {
+    log_message(instance, STATUS_DISCARD, "time %.15g: %s switches there without end", progress->searched, name);
+    return gathering;
+  }
+  log_message(instance, STATUS_DISCARD,
+              "time %.15g: %s opens and closes there without end, as where it opens with no speed%s; expected %s",
+              progress->searched, name, finer != NULL ? " and the errors of the method are larger than its gap" : "",
+              finer != NULL ? finer : "a force or parameters for which it lifts or presses clearly");
+  return flutter;
+}
+
 /* Search, pass, settle, go on. */
 const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
@@ -156,11 +228,10 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
-  progress->is_lost = isnan(time);
-  if (progress->is_lost) return "an indicator of events oscillates there faster than can be told";
+  if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
   count_event(instance, step, time, indicator, progress);
   if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
-    return is_of_contact(indicator) ? flutter : gathering;
+    return refuse_gathering(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
   return pass_event(instance, step, time, indicator);
@@ -190,19 +261,11 @@ const char *switching_check(struct Instance *instance, double time) {
 
 void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
                        const struct EventProgress *progress) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  size_t i = progress->indicator, held = i - switches->branch_count;
+  char name[NAME_SIZE];
+  bool is_branch = progress->indicator < lagrangian.switches->branch_count;
   if (2 * progress->count < step->count) return;
-  double time = instance->situation->last_step.end;
-  if (i < switches->branch_count)
-    log_message(
-        instance, STATUS_DISCARD,
-        "time %g: there were %ld events in the step, the last of %s, line %ld of system.xml, as where the motion "
-        "follows a switch by going to and fro",
-        time, progress->count, switches->branches[i].function, switches->branches[i].line);
-  else
-    log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of '%s'", time,
-                progress->count,
-                held < switches->contact_count ? switches->contacts[held].name
-                                               : switches->frictions[held - switches->contact_count].name);
+  name_indicator(progress->indicator, name, sizeof name);
+  log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of %s%s",
+              instance->situation->last_step.end, progress->count, name,
+              is_branch ? " as where the motion follows a switch by going to and fro" : "");
 }

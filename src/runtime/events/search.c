@@ -256,13 +256,14 @@ bool switching_find(struct Instance *instance, double from, double to, const dou
     search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
     double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
                                                       : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
-    if (!(found < *time)) continue;
-    *time = found;
+    bool is_lost = search.windows > WINDOW_LIMIT;
+    if (!is_lost && !(found < *time)) continue;
+    *time = is_lost ? NAN : found;
     *indicator = i;
+    if (is_lost) return true;
     instance->departure = search.departure;
   }
-  if (search.windows > WINDOW_LIMIT) *time = NAN;
-  if (!isfinite(*time)) return isnan(*time);
+  if (!isfinite(*time)) return false;
   double before = value_at(&search, *indicator, 0.5 * (from + *time));
   instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
   return true;

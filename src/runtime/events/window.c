@@ -16,6 +16,7 @@ struct Window {
   double from, to;
   double *states, *accelerations; /* CHEBYSHEV_NODES rows */
   Series *x, *input, *work;
+  const char *function; /* that shortens it; NULL for none */
 };
 
 size_t switching_sample_count(void) {
@@ -60,6 +61,14 @@ static bool sample_accelerations(const struct Window *window) {
   return true;
 }
 
+/* The largest of them: what is left of one at rest, where others cancel in it, is their rounding. */
+static double largest_acceleration(const struct Window *window) {
+  size_t count = CHEBYSHEV_NODES * lagrangian.switches->watched_acceleration_count;
+  double largest = 0.0;
+  for (size_t i = 0; i < count; i++) largest = fmax(largest, fabs(window->accelerations[i]));
+  return largest;
+}
+
 /* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion. */
 static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
                            double *series) {
@@ -73,15 +82,16 @@ static bool expand_sampled(const struct Window *window, const double *samples, s
 }
 
 /* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
-static double sure_half(const struct Window *window) {
+static double sure_half(struct Window *window) {
   const struct SwitchTable *switches = lagrangian.switches;
   double middle = chebyshev_time(window->from, window->to, CHEBYSHEV_NODES / 2);
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
   bool is_resolved = sample_accelerations(window);
   for (size_t i = 0; i < states && is_resolved; i++)
     is_resolved = expand_sampled(window, window->states, states, i, lagrangian.steps.nominal[i], window->x[i]);
+  double largest = is_resolved ? largest_acceleration(window) : 0.0;
   for (size_t i = 0; i < forces && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->accelerations, forces, i, 0.0,
+    is_resolved = expand_sampled(window, window->accelerations, forces, i, largest,
                                  window->work[switches->watched_acceleration_row + i]);
   if (!is_resolved) return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
@@ -93,6 +103,7 @@ static double sure_half(const struct Window *window) {
       .order = CHEBYSHEV_DEGREE, .step = 0.5 * (window->to - window->from), .crosses = true, .surrounds = true};
   switches->watched_limit(&point, window->accelerations + CHEBYSHEV_NODES / 2 * forces, (const Series *)window->input,
                           (const Series *)window->x, window->work, &limit);
+  window->function = limit.function;
   return limit.step;
 }
 
@@ -105,7 +116,10 @@ bool switching_narrow(struct Instance *instance, double from, double *to, const 
     double length = *to - from, half = *samples != NULL ? sure_half(&window) : 0.0;
     if (half >= 0.5 * length) return true;
     double shorter = fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length);
-    if (shorter <= 16.0 * DBL_EPSILON * fabs(from) || !(from + shorter > from)) return false;
+    if (shorter <= 16.0 * DBL_EPSILON * fabs(from) || !(from + shorter > from)) {
+      instance->limited_by = window.function;
+      return false;
+    }
     *to = from + shorter;
   }
 }

@@ -27,6 +27,8 @@ struct EventProgress {
   double distance;  /* between the last two; 0 for none */
   long count;       /* of all in the step */
   int unsure;       /* windows in the step in which something may hide */
+  double reach;     /* in s: how far the solver may go at once, since events lie too close for more; 0 for any */
+  int nearer;       /* how often that was shortened since a step without events */
   size_t indicator; /* whose zero the last one was */
 };
 

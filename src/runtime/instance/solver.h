@@ -20,6 +20,7 @@ struct Solver {
   const char *name;         /* in messages */
   const char *remedy;       /* what to do after the message that it stopped; NULL for the usual */
   const char *alternatives; /* other methods that may not stop, and where; NULL for none */
+  const char *finer;        /* other methods, which err less between the ends of their steps; NULL for none */
   /* Every communication step does, so that it depends on nothing that the solver keeps. */
   bool starts_anew;
   /* Bytes that the solver keeps in the situation, at instance->saved; NULL for none. */

@@ -414,6 +414,7 @@ const double *radau_jacobian(const struct Instance *instance) {
 
 const struct Solver solver_radau = {.name = "Radau",
                                     .alternatives = "auto where rates are alike",
+                                    .finer = "<solver method=\"taylor\"/>",
                                     .saved_size = radau_saved_size,
                                     .could_save = radau_could_save,
                                     .create = radau_create,

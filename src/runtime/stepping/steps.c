@@ -110,7 +110,9 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   const struct Span *last = &instance->situation->last_step;
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
-  problem = lagrangian.solver->advance(instance, step);
+  struct CommunicationStep near = *step;
+  if (course->progress.reach > 0.0) near.end = fmin(step->end, last->end + course->progress.reach);
+  problem = lagrangian.solver->advance(instance, &near);
   if (problem != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, problem, &course->progress);
   if (problem != NULL) return problem;
   step->count++;

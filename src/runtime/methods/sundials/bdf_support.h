@@ -10,8 +10,9 @@
 /* The descriptor of a form of the matrix. */
 #define BDF_SOLVER(title, creator)                                                                                     \
   {                                                                                                                    \
-    .name = (title), .alternatives = "auto where inputs change often", .run = sundials_run, .create = (creator),       \
-    .destroy = sundials_destroy, .restart = bdf_restart, .advance = bdf_advance, .interpolate = bdf_interpolate        \
+    .name = (title), .alternatives = "auto where inputs change often", .finer = "<solver method=\"taylor\"/>",         \
+    .run = sundials_run, .create = (creator), .destroy = sundials_destroy, .restart = bdf_restart,                     \
+    .advance = bdf_advance, .interpolate = bdf_interpolate                                                             \
   }
 
 struct Bdf {

@@ -144,6 +144,7 @@ static bool interpolate(struct Instance *instance, double time, double *state) {
 
 const struct Solver solver_erk = {.name = "ERKStep",
                                   .alternatives = "auto where rates differ much",
+                                  .finer = "<solver method=\"taylor\"/>",
                                   .starts_anew = true,
                                   .run = sundials_run,
                                   .create = create,

@@ -1,0 +1,65 @@
+"""Contacts where numbers are coarse: late times, long steps behind tiny bounces, gaps that are the difference of large terms, lift-off without speed."""
+
+import pytest
+
+from fmu import DISCARD, Instance, build_systems
+
+SPRING = """<system name="{name}"><coordinate name="h" velocity="v" start="0.5"/><particle mass="1" x="h"/><potential>9*h^2/2</potential>
+  <stop coordinate="h" min="0" max="2"/><solver method="{method}"/></system>"""
+TINY = """<system name="{name}"><coordinate name="h" velocity="v" start="1e-9" velocityStart="0.001"/><particle mass="1" y="h"/><gravity y="-9.81"/>
+  <contact name="ground" gap="h" restitution="0.95"/><solver method="{method}"/></system>"""
+EARTH = """<system name="{name}"><coordinate name="x" velocity="vx" velocityStart="1"/><coordinate name="y" velocity="vy" start="0.01"/>
+  <particle mass="1" x="x" y="y"/><gravity y="-9.81"/><contact name="ground" gap="sqrt(x^2 + (y + 6.4e6)^2) - 6.4e6"/><solver method="{method}"/></system>"""
+DOME = """<system name="{name}"><coordinate name="x" velocity="vx" velocityStart="1"/><coordinate name="y" velocity="vy" start="1"/>
+  <particle mass="1" x="x" y="y"/><gravity y="-9.81"/><contact name="dome" gap="sqrt(x^2 + y^2) - 1"/><solver method="{method}"/></system>"""
+TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
+    ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "bdf"])
+] for method in methods}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("roundings-of-contacts", TEXTS)
+
+
+@pytest.mark.parametrize("steps", [1, 60])
+@pytest.mark.parametrize("method", ["taylor", "radau"])
+def test_a_spring_brings_a_body_to_rest_where_it_has_no_force(method, steps):
+    """The time of the impact is known to 2e-12 s, the place to 3e-12 m: it is no place from which the spring would move the body again."""
+    instance = Instance(f"Spring_{method}").initialize(start_time=1e4)
+    for k in range(steps):
+        instance.fmu.doStep(1e4 + 6 * k / steps, 6 / steps)
+    assert instance.get("h", "v") == pytest.approx([0, 0], abs=1e-15)
+
+
+def test_tiny_bounces_in_a_long_step():
+    """Behind which the ball would have fallen 44 m, but for the ground: these metres hide 1e-10 of them."""
+    instance = Instance("Tiny_erk").initialize()
+    instance.step(3)
+    assert instance.get("h", "v", "ground.force") == pytest.approx([0, 0, 9.81], abs=1e-12)
+
+
+@pytest.mark.parametrize("method", ["taylor", "erk", "bdf"])
+def test_sliding_over_the_earth(method):
+    """On a circle whose gap is told in pieces of 1e-9 m; about its top x = a t + O(t^3/R), at rest on it y = -x^2/2R."""
+    instance = Instance(f"Earth_{method}").initialize()
+    for _ in range(20):
+        instance.step(0.1)
+        x, y = instance.get("x", "y")
+        if instance.time > 0.1:
+            assert (x, y) == (pytest.approx(instance.time, abs=1e-5), pytest.approx(-(x**2) / 12.8e6, abs=3e-9))
+    assert instance.get("ground.force") == pytest.approx(9.81, abs=1e-5)
+
+
+def test_a_solver_recommends_others_only():
+    """The dome is left where cos(theta) = 2/3 + v^2/3g, without speed across it: bdf cannot tell it, taylor can."""
+    start, leaves = {"vx": 1.0}, (2 + 1 / 9.81) / 3
+    instance = Instance("Dome_bdf").initialize(start)
+    with instance.fails(DISCARD, "a contact opens and closes there without end$"):
+        instance.step(3)
+    [text] = [text for _, _, text in instance.messages if "contact 'dome'" in text]
+    assert '<solver method="taylor"/>' in text and "bdf" not in text
+    assert instance.get("y") == pytest.approx(leaves, abs=1e-4)
+    instance = Instance("Dome_taylor").initialize(start)
+    instance.step(0.6)
+    assert instance.get("dome.force") == 0 and instance.get("y") < leaves
