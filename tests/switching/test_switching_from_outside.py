@@ -27,6 +27,9 @@ SET = {
               [(0, 2), (1, -2), (0, 2), (0, 2)]),
     "Counted": (PUSHED + '<mode name="m"/><event when="u &gt;= 1"><set mode="m">m + 1</set></event><force coordinate="x">m</force>', "v",
                 [(0, 0), (1, 1), (0, 1), (1, 2)]),
+    "Tuned": (PUSHED.replace('input name="u"', 'parameter name="p" start="0"') + '<mode name="m"/><event when="p &gt;= 1"><set mode="m">m + 1</set></event>'
+              '<mode name="n"/><event when="p - 0.5" direction="both"><set mode="n">n + 1</set></event><force coordinate="x">m + 100*n</force>', "v",
+              [(0, 0), (1, 101), (0.5, 101), (1, 102), (0, 202)]),
     "Threshold": (RESTING + '<force coordinate="y">if(x &gt;= p, 10, 0) + if(x &gt; p, 1, 0) + 100*sign(x - p)</force>', "w",
                   [(0, 10), (1, -100), (0, 10), (-1, 111), (0, 10)]),
 }  # fmt: skip

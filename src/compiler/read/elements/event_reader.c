@@ -64,7 +64,8 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   char *direction = attribute(node, "direction");
   Node value;
   if (parse_when(reader->scope, when, place, &value)) {
-    event->condition = value;
+    bool is_tuned = graph_is_constant_in_time(graph, value) && rests_on_parameters(graph, value);
+    event->condition = is_tuned ? tuned_condition(reader->scope, value, xmlGetLineNo(node)) : value;
     if (direction != NULL)
       report_at(reader, node,
                 "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
@@ -77,8 +78,10 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
     event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
   }
   if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
-    report_at(reader, node,
-              "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs or time", when);
+    report_at(
+        reader, node,
+        "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs, parameters or time",
+        when);
 }
 
 /* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */

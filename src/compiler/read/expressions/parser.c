@@ -473,7 +473,8 @@ bool parse_when(struct Scope *scope, const char *text, struct Place place, Node 
   struct Quantity quantity;
   bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
   *value = is_right ? quantity.node : ZERO;
-  return is_right && (compares || graph_is_constant_in_time(scope->graph, quantity.node));
+  if (!is_right || compares) return is_right;
+  return graph_is_constant_in_time(scope->graph, *value) && !rests_on_parameters(scope->graph, *value);
 }
 
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {

@@ -51,9 +51,14 @@ static bool keeps_whole(const struct Scope *scope) {
   return scope->switches == NULL || scope->keeps_whole;
 }
 
+bool rests_on_parameters(const struct Graph *graph, Node node) {
+  return graph_depends_on(graph, node, PARAMETER) && !graph_depends_on(graph, node, MODE);
+}
+
 static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_side) {
   struct Graph *graph = scope->graph;
-  if (keeps_whole(scope) || graph_is_constant_in_time(graph, node)) return function(graph, SIGN, node, ZERO);
+  bool is_fixed = graph_is_constant_in_time(graph, node) && !(is_side && rests_on_parameters(graph, node));
+  if (keeps_whole(scope) || is_fixed) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
   Node mode = mode_of(scope, base, function_name, line, is_side);
@@ -64,8 +69,14 @@ Node branch_of(struct Scope *scope, Node node, const char *function_name, long l
   return sign_of(scope, node, function_name, line, false);
 }
 
+static const char of_event[] = "the event";
+
 Node side_of(struct Scope *scope, Node node, long line) {
-  return sign_of(scope, node, "the event", line, true);
+  return sign_of(scope, node, of_event, line, true);
+}
+
+Node tuned_condition(struct Scope *scope, Node node, long line) {
+  return mode_of(scope, node, of_event, line, false);
 }
 
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {

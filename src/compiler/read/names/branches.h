@@ -15,6 +15,12 @@ Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 /* The side of 0 on which the expression of an event is: struct Branch.is_side. */
 Node side_of(struct Scope *scope, Node node, long line);
 
+/* Whether a node that is constant in time changes where parameters are set, by these alone. */
+bool rests_on_parameters(const struct Graph *graph, Node node);
+
+/* Of a condition of parameters alone: a mode, by which an event knows whether it held before these were set. */
+Node tuned_condition(struct Scope *scope, Node node, long line);
+
 /* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
 enum { CONTACT_STATE = 1 << 29 };
 
