@@ -189,6 +189,16 @@ def test_a_motion_of_three_coordinates_without_inertia(tmp_path):
     assert result.returncode == 0, result.stderr
 
 
+def test_motions_without_inertia_one_after_the_other(tmp_path):
+    """A mass at a + b + c does not feel (1, -1, 0), which 'equal' holds, nor (1, 1, -2), which 'equal' does not feel either."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Two"><coordinate name="a" velocity="va"/><coordinate name="b" velocity="vb"/><coordinate name="c" velocity="vc"/>'
+        '<particle mass="1" x="a + b + c"/><constraint name="equal">a - b</constraint><constraint name="total">c - a - b</constraint></system>'
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
 def test_model_exchange(open_fmu):
     instance = open_fmu("Dumbbell", kind=FMU2Model)
     instance.initialize()

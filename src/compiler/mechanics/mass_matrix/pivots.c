@@ -56,12 +56,11 @@ static long ending_coordinate(const struct Inertia *inertia, const double *value
   return (long)found;
 }
 
-/* Whether M couples the coordinate with others. */
+/* Whether M couples the coordinate, which has no inertia of its own, with others. */
 static bool has_coupled_inertia(const struct Inertia *inertia, size_t coordinate) {
   const struct InertiaBlock *block = inertia_block_of(inertia, coordinate);
   for (size_t i = 0; i < block->count; i++)
-    if (block->coordinates[i] != coordinate && inertia_element(inertia, coordinate, block->coordinates[i]) != ZERO)
-      return true;
+    if (inertia_element(inertia, coordinate, block->coordinates[i]) != ZERO) return true;
   return false;
 }
 
