@@ -32,6 +32,14 @@ CURVES = """<system name="{name}">
 </table>
   <table name="line" interpolation="spline" argumentUnit="m">0 2
 1 5</table>
+  <table name="bent" argumentUnit="m">0 0
+1 2
+4 3</table>
+  <table name="bounded" argumentUnit="m">0 0
+1 2
+2 -8</table>
+  <output name="bentAtU">bent(u)</output>
+  <output name="boundedAtU">bounded(u)</output>
   <output name="monotoneAtU" unit="N">monotone(u)</output>
   <output name="splineAtU" unit="N">spline(u)</output>
   <output name="heldAtU" unit="N">held(u)</output>
@@ -76,6 +84,8 @@ def slope_outside(curve, u):
 
 FILE = "argument,force\n" + LINES
 MONOTONE, SPLINE = PchipInterpolator(X, Y), CubicSpline(X, Y)
+# Whose slopes at the left end are a parabola's, and three times the secant, as far as that may be.
+BENT, BOUNDED = PchipInterpolator([0, 1, 4], [0, 2, 3]), PchipInterpolator([0, 1, 2], [0, 2, -8])
 ARGUMENTS = sorted([*X, *np.linspace(-3, 5, 57)])
 
 
@@ -97,6 +107,8 @@ def test_values_and_derivatives(name, open_fmu):
         values = [outside(MONOTONE, u), outside(SPLINE, u), held, np.interp(u, X, Y), np.nan, 2 + 3 * u, straight_on(u), 2 + 3 * u]
         values[4] = u * u if 0 <= u <= 3 else 0.0 if u < 0 else 9 + 6 * (u - 3)
         np.testing.assert_allclose(instance.get(*names), values, rtol=1e-13, atol=1e-13)
+        ends = [curve(np.clip(u, *x)) + curve(np.clip(u, *x), 1) * (u - np.clip(u, *x)) for curve, x in ((BENT, (0, 4)), (BOUNDED, (0, 2)))]
+        np.testing.assert_allclose(instance.get("bentAtU", "boundedAtU"), ends, rtol=1e-13, atol=1e-13)
         along = instance.fmu.getDirectionalDerivative(instance.vr(*names[:2]), instance.vr("u"), [1.0])
         np.testing.assert_allclose(along, [slope_outside(MONOTONE, u), slope_outside(SPLINE, u)], rtol=1e-12, atol=1e-12)
         if X[0] < u < X[-1]:
