@@ -34,7 +34,7 @@ def start_value(text):
     try:
         return name, float(value)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{value}' for '{name}' is no number") from None
+        raise argparse.ArgumentTypeError(f"'{value}' for '{name}' is not a number") from None
 
 
 def print_problem(environment, instance_name, status, category, message):
@@ -49,7 +49,7 @@ def simulate(fmu, start, **options):
     known, free = [variable.name for variable in description.modelVariables], settable(description)
     for name in start:
         if name not in free:
-            what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is no variable of {description.modelName}"
+            what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is not a variable of {description.modelName}"
             raise Problem(f"{what}{why_not(name, description)}; these can be: {', '.join(free)}")
     scene = read_scene(fmu)
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]

@@ -83,8 +83,8 @@ def test_directional_derivatives_by_differences(name, open_fmu):
 def test_directional_derivative_refuses(open_fmu):
     instance = open_fmu("DampedPendulum").initialize()
     for unknown, known, seed, message in (
-        ("theta", "der(omega)", 1.0, "'der\\(omega\\)' is no known"),
-        ("m", "theta", 1.0, "'m' is no unknown"),
+        ("theta", "der(omega)", 1.0, "'der\\(omega\\)' is not a known"),
+        ("m", "theta", 1.0, "'m' is not an unknown"),
         ("der(omega)", "theta", float("nan"), "finite"),
     ):
         with instance.fails(ERROR, message):
@@ -142,7 +142,7 @@ def test_input_derivative_orders(order, open_fmu):
     with instance.fails(ERROR, f"order {order} for 'Fx' is out of range"):
         instance.fmu.setRealInputDerivatives(instance.vr("Fx"), [order], [1.0])
     instance.reset().initialize()
-    with instance.fails(ERROR, "is no input"):
+    with instance.fails(ERROR, "is not an input"):
         instance.fmu.setRealInputDerivatives(instance.vr("x"), [1], [1.0])
 
 

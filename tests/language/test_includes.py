@@ -132,7 +132,7 @@ INCLUDED = " (included as 'part' on line 3 of system.xml)"
     ("<parameter name='sin' start='1'/>", "parts/part.xml:2: the name 'sin' belongs to the language itself; expected another name" + INCLUDED),
     ("<particle name='a' mass='1' x='1'/>\n<particle name='a' mass='1' x='1'/>", "a particle or body named 'part.a' is already defined on line 2"),
     ("<define name='a'>b</define>\n<define name='b'>a</define>", "parts/part.xml:2: definitions need each other in a circle: part.a -> part.b -> part.a"),
-    ("<potentail>1</potentail>", "parts/part.xml:2: <potentail> is no element of <system>; did you mean 'potential'?" + INCLUDED),
+    ("<potentail>1</potentail>", "parts/part.xml:2: <potentail> is not an element of <system>; did you mean 'potential'?" + INCLUDED),
     ("<include file='../system.xml' as='again'/>", "files include each other in a circle: system.xml -> parts/part.xml -> parts/../system.xml"),
     ("<include file='nothing.xml' as='again'/>", "parts/part.xml:2: the file 'parts/nothing.xml' cannot be read: No such file or directory"),
     ("<coordinate name='x' velocity='v'/>", "system.xml:3: the coordinate 'part.x' has no inertia"),
@@ -145,7 +145,7 @@ def test_mistakes_in_a_part(inside, message, tmp_path):
 @pytest.mark.parametrize("inside, message", [
     ('<parameter name="Q" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'Q'; expected one of its names"),
     ('<parameter name="masss" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'masss'; did you mean 'mass'?"),
-    ('<parameter name="F" start="1"/>', "system.xml:3: 'F' is no <parameter> of 'parts/part.xml'; expected <input name=...>"),
+    ('<parameter name="F" start="1"/>', "system.xml:3: 'F' is not a <parameter> of 'parts/part.xml'; expected <input name=...>"),
     ('<parameter name="mass" value="1" start="2"/>', "a <parameter> with a value and a start"),
     ('<parameter name="mass" value="lost"/>', "system.xml:3: value of <parameter>: unknown name 'lost'"),
     ('<parameter name="mass" value="part.x"/>', "system.xml:3: value of <parameter> cannot depend on coordinates, but 'part.x' does"),

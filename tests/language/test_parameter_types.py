@@ -147,13 +147,13 @@ def test_given_in_an_include(tmp_path):
 
 
 @pytest.mark.parametrize("line, message", [
-    ('<parameter name="a" type="Integer" start="2.5"/>', "'a': 2.5 is no Integer; expected a whole number"),
-    ('<parameter name="a" type="Integer" start="3e9"/>', "'a': 3e+09 is no Integer"),
-    ('<parameter name="a" type="Integer" start="2" max="2.5"/>', "'a': 2.5 is no Integer"),
+    ('<parameter name="a" type="Integer" start="2.5"/>', "'a': 2.5 is not an Integer; expected a whole number"),
+    ('<parameter name="a" type="Integer" start="3e9"/>', "'a': 3e+09 is not an Integer"),
+    ('<parameter name="a" type="Integer" start="2" max="2.5"/>', "'a': 2.5 is not an Integer"),
     ('<parameter name="a" type="Integer" start="2" max="1"/>', "'a': start 2 is outside min and max"),
     ('<parameter name="a" type="Integer" start="true"/>', "start: unknown name 'true'"),
     ('<parameter name="a" type="Integer" start="2" unit="m"/>', "'a' has a unit and type=\"Integer\", which has none"),
-    ('<parameter name="a" type="Boolean" start="2"/>', "'a': 2 is no Boolean; expected true or false"),
+    ('<parameter name="a" type="Boolean" start="2"/>', "'a': 2 is not a Boolean; expected true or false"),
     ('<parameter name="a" type="Boolean" start="True"/>', "did you mean 'true'?"),
     ('<parameter name="a" type="Boolean" start="true" min="0"/>', "'a': a Boolean has neither min nor max"),
     ('<parameter name="a" type="Bool" start="true"/>', "type=\"Bool\" of <parameter> is not known; expected Real, Integer or Boolean"),

@@ -163,7 +163,7 @@ def test_a_file_that_changes_is_built_anew(tmp_path):
     ("<table name='f' file='ok.csv' interpolation='cubic'/>", "interpolation=\"cubic\" of <table> is not known; expected monotone, spline or linear"),
     ("<table name='f' file='ok.csv'/><table name='f' file='ok.csv'/>", "the name 'f' is already defined"),
     ("<table name='sin' file='ok.csv'/>", "the name 'sin' belongs to the language itself"),
-    ("<table name='f' file='ok.csv'/><potential>f*x</potential>", "'f' is no variable but a table; expected its argument in parentheses, as in f(...)"),
+    ("<table name='f' file='ok.csv'/><potential>f*x</potential>", "'f' is not a variable but a table; expected its argument in parentheses, as in f(...)"),
     ("<table name='f' file='ok.csv'/><potential>f(x, 2)</potential>", "expected ')' after the argument of a table, found ','"),
     ("<table name='f' file='ok.csv'/><potential>f()</potential>", "expected a number, a name or '(', found ')'"),
     ("<table name='force' file='ok.csv'/><potential>forse(x)</potential>", "unknown function 'forse'; did you mean 'force'?"),

@@ -154,7 +154,7 @@ def test_energy_in_a_potential(name, open_fmu):
     ("<table name='f' arguments='2' file='head.csv'/>", "head.csv:2: the knot 1 does not follow 1; expected finite numbers, each larger"),
     ("<table name='f' arguments='2' file='huge.csv'/>", "huge.csv:2: the value inf is not finite"),
     ("<table name='f' arguments='2' file='large.csv'/>", "large.csv:32: the table has more than 1000 values"),
-    ("<table name='f' arguments='2'>0 1 2 3 4 x</table>", "'x' is no number; expected the knots of the first argument in the first line"),
+    ("<table name='f' arguments='2'>0 1 2 3 4 x</table>", "'x' is not a number; expected the knots of the first argument in the first line"),
     ("<table name='f' arguments='2'><point x='0' y='1'/></table>", "a &lt;point&gt; in the table 'f' of two arguments; expected lines, or a file"),
     ("<table name='f' arguments='3' file='ok.csv'/>", "arguments=\"3\" of <table> is not known; expected 1 or 2"),
     ("<table name='f' arguments='2' file='ok.csv'/><potential>f(x)</potential>", "expected ',' between the two arguments of a table, found ')'"),

@@ -18,7 +18,7 @@ SIMULATE = [sys.executable, str(ROOT / "scripts" / "simulate.py")]
     ("der(theta)=1", "'der(theta)' of SimplePendulum cannot be set; these can be: theta, omega, m, l, g"),
     ("solverSteps=3", "'solverSteps' of SimplePendulum cannot be set"),
     ("totalEnergy=3", "'totalEnergy' of SimplePendulum cannot be set"),
-    ("q=3", "'q' is no variable of SimplePendulum; these can be: theta"),
+    ("q=3", "'q' is not a variable of SimplePendulum; these can be: theta"),
 ])  # fmt: skip
 def test_what_cannot_be_set(word, message, tmp_path):
     result = subprocess.run([*SIMULATE, fmu.archive("SimplePendulum"), word], capture_output=True, text=True, cwd=tmp_path)

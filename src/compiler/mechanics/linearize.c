@@ -92,7 +92,7 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
     double velocity = values[point_of(model, model->velocities.items[i].node)];
     double acceleration = values[accelerations[i]];
     if (fabs(velocity) > 1e-9 || !(fabs(acceleration) < 1e-9))
-      report_warning(diagnostics, 0, "the point is no equilibrium: %s = %g, der(%s) = %g there",
+      report_warning(diagnostics, 0, "the point is not an equilibrium: %s = %g, der(%s) = %g there",
                      model->velocities.items[i].name, velocity, model->velocities.items[i].name, acceleration);
   }
 }

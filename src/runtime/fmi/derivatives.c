@@ -49,13 +49,14 @@ static enum Status set_seed(struct Instance *instance, struct Direction *directi
   case VARIABLE_STATE: direction->state[variable->index] = value; return STATUS_DONE;
   case VARIABLE_INPUT: direction->input[variable->index] = value; return STATUS_DONE;
   case VARIABLE_PARAMETER: direction->parameter[variable->index] = value; return STATUS_DONE;
-  default: return refuse_call(instance, "'%s' is no known; expected a state, an input or a parameter", variable->name);
+  default:
+    return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
 }
 
 static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable) {
   if (is_unknown(variable)) return STATUS_DONE;
-  return refuse_call(instance, "'%s' is no unknown; expected an output or a state derivative", variable->name);
+  return refuse_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
 }
 
 /* Reads the unknowns' derivatives along the direction. */

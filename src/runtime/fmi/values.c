@@ -71,7 +71,8 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER);
     if (variable == NULL) return STATUS_ERROR;
-    if (variable->kind != VARIABLE_STATISTIC) return refuse_call(instance, "'%s' is no count", variable->name);
+    if (variable->kind != VARIABLE_STATISTIC)
+      return refuse_call(instance, "'%s' is not of the type Int64", variable->name);
     value[i] = instance->situation->statistics[variable->index];
   }
   return STATUS_DONE;
@@ -169,7 +170,7 @@ enum Status values_set_whole(struct Instance *instance, const unsigned *referenc
 static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value) {
   const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
-  if (variable->kind != VARIABLE_INPUT) return refuse_call(instance, "'%s' is no input", variable->name);
+  if (variable->kind != VARIABLE_INPUT) return refuse_call(instance, "'%s' is not an input", variable->name);
   if (order < 1 || order > INPUT_ORDER)
     return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
                        INPUT_ORDER);

@@ -180,7 +180,7 @@ const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char
   const char *element = (const char *)node->name, *as = (const char *)given->node->name;
   if (!given->is_used && strcmp(element, as) != 0) {
     struct Source *present = source_enter(reader, given->source);
-    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' is no <%s> of '%s'; expected <%s name=...>",
+    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
                  name + strlen(given->target->prefix), as, given->target->file, element);
     source_enter(reader, present);
   }

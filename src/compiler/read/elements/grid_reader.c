@@ -49,7 +49,7 @@ static void take_head(struct Grid *grid, const char *line) {
   surface->x = table_numbers(rest, &surface->columns, &rest);
   if (*rest == '\0' && surface->columns > 0) return;
   report_error(grid->lines.reader->diagnostics, grid->lines.line,
-               "'%.40s' is no number; expected the knots of the first argument in the first line", rest);
+               "'%.40s' is not a number; expected the knots of the first argument in the first line", rest);
   grid->lines.wrong = true;
 }
 

@@ -47,11 +47,12 @@ static void check_type(struct Reader *reader, const struct Variable *variable) {
   const double numbers[] = {variable->start, variable->minimum, variable->maximum};
   for (size_t i = 0; i < 3 && variable->type == TYPE_INTEGER; i++)
     if (!isnan(numbers[i]) && !is_whole(numbers[i]))
-      report_error(diagnostics, variable->line, "'%s': %g is no Integer; expected a whole number of at most 9 digits",
-                   variable->name, numbers[i]);
+      report_error(diagnostics, variable->line,
+                   "'%s': %g is not an Integer; expected a whole number of at most 9 digits", variable->name,
+                   numbers[i]);
   if (variable->type != TYPE_BOOLEAN) return;
   if (variable->start != 0.0 && variable->start != 1.0)
-    report_error(diagnostics, variable->line, "'%s': %g is no Boolean; expected true or false", variable->name,
+    report_error(diagnostics, variable->line, "'%s': %g is not a Boolean; expected true or false", variable->name,
                  variable->start);
   if (!isnan(variable->minimum) || !isnan(variable->maximum))
     report_error(diagnostics, variable->line, "'%s': a Boolean has neither min nor max; expected none", variable->name);

@@ -48,7 +48,7 @@ static Node parse_relation(struct Parser *parser) {
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {
     if (graph_is_constant_in_time(graph, left.node)) return left.node;
-    FAIL(parser, "%s: a condition that is no comparison; expected one such as x > 0", parser->place.what);
+    FAIL(parser, "%s: a condition that is not a comparison; expected one such as x > 0", parser->place.what);
     return ZERO;
   }
   struct Quantity right = parse_sum(parser);

@@ -54,7 +54,7 @@ static void enter(struct Parser *parser) {
 static struct Quantity parse_literal(struct Parser *parser) {
   char *end;
   if (parser->next[0] == '0' && (parser->next[1] == 'x' || parser->next[1] == 'X')) {
-    FAIL(parser, "%s: '0x' is no number here; expected a decimal number", parser->place.what);
+    FAIL(parser, "%s: '0x' is not a number here; expected a decimal number", parser->place.what);
     return nothing;
   }
   double value = strtod(parser->next, &end);
@@ -64,7 +64,7 @@ static struct Quantity parse_literal(struct Parser *parser) {
     return nothing;
   }
   if (end == parser->next || !isfinite(value) || isalnum((unsigned char)*end) || *end == '_' || *end == '.') {
-    FAIL(parser, "%s: '%.12s' is no number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
+    FAIL(parser, "%s: '%.12s' is not a number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
          parser->place.what, parser->next);
     return nothing;
   }
@@ -85,7 +85,7 @@ static long parse_whole(struct Parser *parser, const char *what) {
   if (parser->failed) return 0;
   double number = graph_is_constant(parser->graph, value.node) ? graph_value(parser->graph, value.node) : NAN;
   if (number == floor(number) && fabs(number) < 1e9) return (long)number;
-  FAIL(parser, "%s: %s is no whole number known when compiling", parser->place.what, what);
+  FAIL(parser, "%s: %s is not a whole number that is known at build time", parser->place.what, what);
   return 0;
 }
 
@@ -490,7 +490,7 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place, bool
   char *name = NULL;
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
   if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
-    FAIL(&parser, "%s: '%s' is no name; expected letters, digits and _, or name[index]%s", place.what, text,
+    FAIL(&parser, "%s: '%s' is not a name; expected letters, digits and _, or name[index]%s", place.what, text,
          parts ? ", also of what is included, as in motor.theta" : "");
   if (!parser.failed) return name;
   return NULL;

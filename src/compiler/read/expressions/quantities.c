@@ -75,7 +75,8 @@ static void check_power(struct Parser *parser, Node base, Node exponent) {
   bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
   double b = graph_value(graph, base), n = graph_value(graph, exponent);
   if (base_given && exponent_given && graph->not_finite && n == 0.5)
-    FAIL(parser, "%s: sqrt(%g) is no real number; expected an argument %s", parser->place.what, b, domain_text(POWER));
+    FAIL(parser, "%s: sqrt(%g) is not a real number; expected an argument %s", parser->place.what, b,
+         domain_text(POWER));
   else if (base_given && exponent_given && graph->not_finite)
     FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->place.what, b, n,
          b < 0 ? "a positive base, or sign(x)*abs(x)^n for an odd root" : "another base or exponent");

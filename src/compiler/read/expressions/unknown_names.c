@@ -74,11 +74,11 @@ void report_reserved(struct Parser *parser, const char *name) {
     FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
          name, name);
   else if (is_table || is_function_name(name))
-    FAIL(parser, "%s: '%s' is no variable but a %s; expected its argument in parentheses, as in %s(...)",
+    FAIL(parser, "%s: '%s' is not a variable but a %s; expected its argument in parentheses, as in %s(...)",
          parser->place.what, name, is_table ? "table" : "function", name);
   else
-    FAIL(parser, "%s: '%s' is no variable but a result, which expressions cannot use; expected %s", parser->place.what,
-         name, expected_names(parser));
+    FAIL(parser, "%s: '%s' is not a variable but a result, which expressions cannot use; expected %s",
+         parser->place.what, name, expected_names(parser));
 }
 
 /* Those of one argument first. */
@@ -111,10 +111,10 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
   else if (is_known(parser, name))
-    FAIL(parser, "%s: '%s' is no function; write * for a product", parser->place.what, name);
+    FAIL(parser, "%s: '%s' is not a function; write * for a product", parser->place.what, name);
   else if (*hint_for_function(name) != '\0')
     FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
   else if (is_known(parser, indexed))
-    FAIL(parser, "%s: '%s' is no function; write %s[...] for an index", parser->place.what, name, name);
+    FAIL(parser, "%s: '%s' is not a function; write %s[...] for an index", parser->place.what, name, name);
   else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
 }

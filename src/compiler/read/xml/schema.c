@@ -134,7 +134,7 @@ static void report_element(const struct Check *check, xmlNodePtr element) {
   bool is_known = find_declared(xmlDocGetRootElement(check->schema), "element", name) != NULL;
   char *what_then = remedy(name, choices_in(check, element->parent, "element"));
   report_error(check->diagnostics, xmlGetLineNo(element), "<%s> %s <%s>; %s", name,
-               is_known ? "cannot stand in" : "is no element of", parent, *hint != '\0' ? hint : what_then);
+               is_known ? "cannot stand in" : "is not an element of", parent, *hint != '\0' ? hint : what_then);
 }
 
 /* The first element, or the first text that is not blank, in an element; NULL where there is none. */
@@ -201,7 +201,7 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
     what_then = format_text("is too long; expected at most %s characters", (const char *)error->str3);
     break;
   case XML_SCHEMAV_CVC_PATTERN_VALID:
-    what_then = format_text("is no name; expected letters a to z, digits and _, with no digit first%s",
+    what_then = format_text("is not a name; expected letters a to z, digits and _, with no digit first%s",
                             strstr(error->str2, "\\[") != NULL ? ", and an index as in name[1]" : "");
     break;
   case XML_SCHEMAV_CVC_ENUMERATION_VALID: {
@@ -210,7 +210,7 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
     break;
   }
   case XML_SCHEMAV_CVC_MINEXCLUSIVE_VALID: what_then = copy_text("is not above 0; expected a positive number"); break;
-  default: what_then = copy_text("is no number; expected one such as 2, 0.5 or 1e-3");
+  default: what_then = copy_text("is not a number; expected one such as 2, 0.5 or 1e-3");
   }
   report_error(check->diagnostics, xmlGetLineNo(element), "%s %s", what, what_then);
   xmlFree(value);
