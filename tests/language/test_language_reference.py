@@ -272,13 +272,13 @@ def compile_with(line, folder):
     return lagc("system.xml", "-o", "out", cwd=folder)
 
 
-@pytest.mark.parametrize("line, message", rows("is\nrefused with"))
+@pytest.mark.parametrize("line, message", rows("## What is refused"))
 def test_refused_as_it_says(line, message, tmp_path):
     result = compile_with(line, tmp_path)
     assert result.returncode == 1 and message in result.stderr, result.stderr
 
 
-@pytest.mark.parametrize("line, message", rows("give a warning:"))
+@pytest.mark.parametrize("line, message", rows("These are likely mistakes"))
 def test_warned_as_it_says(line, message, tmp_path):
     result = compile_with(line, tmp_path)
     assert result.returncode == 0 and "warning" in result.stderr and message in result.stderr, result.stderr
