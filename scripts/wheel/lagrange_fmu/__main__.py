@@ -1,0 +1,5 @@
+"""python -m lagrange_fmu is the command lagrange-fmu."""
+
+from .command import main
+
+main()

@@ -1,0 +1,12 @@
+"""What several commands ask for."""
+
+SYSTEM = {"metavar": "SYSTEM", "help": "SYSTEM.xml, a robot's .urdf, or a folder with a system.xml in it"}
+SYSTEM_OR_FMU = SYSTEM | {"help": SYSTEM["help"] + "; or an FMU"}
+
+
+def add_fmi(parser):
+    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="the version of FMI; 2 where none is given")
+
+
+def add_output(parser, what):
+    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help=f"where {what}; else the current folder")
