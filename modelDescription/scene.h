@@ -1,6 +1,6 @@
 /*
- * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/animation,
- * src/icon). It stands in what FMI leaves to the tool: VendorAnnotations of FMI 2.0, Annotations of FMI 3.0.
+ * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/animation).
+ * It stands in what FMI leaves to the tool: VendorAnnotations of FMI 2.0, Annotations of FMI 3.0.
  *
  *   <gravity x="" y="" z="-g"/>                           where it was given
  *   <frame name="arm" in="base"/>                         at arm.x, arm.y, arm.z, turned by arm.R11 to arm.R33

@@ -1,5 +1,5 @@
-# lagrange_add_fmu, for CMakeLists.txt and for projects that find the installed package. Before it: the targets lagrange-fmu::lagc
-# and lagrange-fmu::icon, the target lagrange_runtime, which this machine's libraries are linked with, and the variables
+# lagrange_add_fmu, for CMakeLists.txt and for projects that find the installed package. Before it: the target lagrange-fmu::lagc,
+# the target lagrange_runtime, which this machine's libraries are linked with, and the variables
 # lagrange_global_names, a file with what nm says of the runtime, lagrange_licenses, a folder of collect_licenses(), and
 # lagrange_sundials, a folder of cross.py (or none).
 get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
@@ -108,11 +108,11 @@ function(add_archive name version folder system platforms)
                      COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
                              -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D NAMES=${lagrange_global_names}
                              -D LICENSES=${lagrange_licenses} -P ${scripts}/pack.cmake
-                     DEPENDS ${folder}/model.png ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
+                     DEPENDS ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
                              ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.cmake ${lagrange_root}/LICENSE
                      COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${fmu})
-  add_dependencies(${target} icon_${name}) # else each FMU would draw it
+  add_dependencies(${target} derive_${name}) # else each FMU would derive it
 endfunction()
 
 # lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the
@@ -158,24 +158,20 @@ function(lagrange_add_fmu name system)
     set(form --form ${fmu_FORM})
   endif()
   add_custom_command(OUTPUT ${folder}/system.c
-                     BYPRODUCTS ${folder}/modelDescription.xml ${folder}/documentation/index.html
+                     BYPRODUCTS ${folder}/modelDescription.xml ${folder}/documentation/index.html ${folder}/model.png
                      COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form}
                      DEPENDS lagrange-fmu::lagc ${dependencies}
                      COMMENT "Deriving ${name}" VERBATIM)
+  add_custom_target(derive_${name} DEPENDS ${folder}/system.c)
 
   add_library(equations_${name} OBJECT ${folder}/system.c)
+  add_dependencies(equations_${name} derive_${name})
   set_target_properties(equations_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden C_STANDARD 11)
   # Generated functions of one type take arguments that not all of them need.
   target_compile_options(equations_${name} PRIVATE -Wno-unused-parameter -falign-functions=64 ${lagrange_compact})
   target_link_libraries(equations_${name} PRIVATE lagrange_runtime)
 
-  # This machine's library of FMI 2.0 also draws model.png.
   add_library_here(${name} 2 ${folder})
-  add_custom_command(OUTPUT ${folder}/model.png
-                     COMMAND lagrange-fmu::icon $<TARGET_FILE:system_${name}> ${folder}/modelDescription.xml ${folder}/model.png
-                     DEPENDS lagrange-fmu::icon system_${name} ${folder}/system.c
-                     COMMENT "Drawing ${name}" VERBATIM)
-  add_custom_target(icon_${name} DEPENDS ${folder}/model.png)
   if(3 IN_LIST fmu_FMI_VERSIONS AND NOT fmu_PLATFORMS)
     add_library_here(${name} 3 ${folder})
   endif()

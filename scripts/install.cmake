@@ -3,7 +3,6 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_DATADIR}/lagrange-fmu)
 install(PROGRAMS $<TARGET_FILE:lagc> DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(PROGRAMS $<TARGET_FILE:icon> DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/lagrange-fmu)
 install(FILES src/compiler/lagc.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES LICENSE DESTINATION ${package})
 install(DIRECTORY include DESTINATION ${package} FILES_MATCHING PATTERN "*.h")
@@ -17,7 +16,7 @@ install(DIRECTORY ${lagrange_licenses} DESTINATION ${package})
 install(DIRECTORY ${lagrange_sundials} DESTINATION ${package} OPTIONAL)
 configure_package_config_file(scripts/lagrange-fmu-config.cmake.in lagrange-fmu-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lagrange-fmu
-                              PATH_VARS package CMAKE_INSTALL_BINDIR CMAKE_INSTALL_LIBEXECDIR)
+                              PATH_VARS package CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(lagrange-fmu-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/lagrange-fmu-config.cmake ${CMAKE_BINARY_DIR}/lagrange-fmu-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lagrange-fmu)

@@ -1,6 +1,6 @@
 # Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D NAMES=...
 #                     -P pack.cmake
-# FOLDER holds what lagc wrote, and model.png; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
+# FOLDER holds what lagc wrote; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
 # FMI, 2 or 3; NAMES lists the global names of the compiled runtime; LICENSES is the folder of collect_licenses().
 cmake_minimum_required(VERSION 3.18)
 
@@ -29,7 +29,7 @@ if(VERSION EQUAL 2)
   file(COPY ${FOLDER}/modelDescription.xml ${FOLDER}/model.png DESTINATION ${content})
 else()
   file(COPY ${FOLDER}/fmi3/modelDescription.xml DESTINATION ${content})
-  file(COPY ${FOLDER}/fmi3/terminalsAndIcons.xml DESTINATION ${content}/terminalsAndIcons)
+  file(COPY ${FOLDER}/fmi3/terminalsAndIcons.xml ${FOLDER}/fmi3/icon.svg DESTINATION ${content}/terminalsAndIcons)
   configure_file(${FOLDER}/model.png ${content}/terminalsAndIcons/icon.png COPYONLY)
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/licenses.cmake)

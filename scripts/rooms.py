@@ -42,6 +42,7 @@ LAGC = House(
     src/compiler/program
     src/compiler/write
     modelDescription
+    modelDescription/drawing
     modelDescription/page
     src/compiler
     """.split(),

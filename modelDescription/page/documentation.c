@@ -7,8 +7,8 @@
 
 #include "base/memory.h"
 #include "mechanics_sections.h"
+#include "drawing/svg.h"
 #include "page.h"
-#include "sketch.h"
 #include "value_sections.h"
 #include "variables_section.h"
 #include "xml_output.h"
@@ -103,7 +103,7 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterStartElement(writer, BAD_CAST "main");
   page_element(page, "h1", page->model->name);
   if (page->model->description != NULL) page_element(page, "p", page->model->description);
-  write_sketch(page);
+  write_sketch(page->writer, page->drawing);
   xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
   xmlTextWriterEndElement(writer);
   write_as_it_is(page, "script", page_script);
@@ -111,12 +111,14 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterEndElement(writer);
 }
 
-bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary) {
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary,
+                         const struct Drawing *drawing) {
   struct Page page = {.program = program,
                       .model = program->model,
                       .equations = program->equations,
                       .interface = program->interface,
-                      .summary = summary};
+                      .summary = summary,
+                      .drawing = drawing};
   xmlBufferPtr sections = xmlBufferCreate();
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
   page.writer = sections != NULL ? xmlNewTextWriterMemory(sections, 0) : NULL;

@@ -4,9 +4,11 @@
 
 #include <libxml/tree.h>
 
+#include "drawing/shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
 
-bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary);
+bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary,
+                         const struct Drawing *drawing);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <libxml/xmlwriter.h>
 
+#include "drawing/shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
 
@@ -14,6 +15,7 @@ struct Page {
   const struct Equations *equations;
   const struct Interface *interface;
   const struct Summary *summary;
+  const struct Drawing *drawing;
   const char **headings; /* of the sections so far, for the contents */
   size_t heading_count;
 };

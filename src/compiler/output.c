@@ -7,13 +7,33 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "base/platform.h"
+#include "drawing/png.h"
+#include "drawing/svg.h"
+#include "drawing/system_drawing.h"
 #include "fmi3_description.h"
 #include "licenses.h"
 #include "model_description.h"
 #include "page/documentation.h"
 #include "write/code.h"
 
-enum File { DESCRIPTION, DESCRIPTION_OF_FMI3, TERMINALS, BUILD_DESCRIPTION, DOCUMENTATION, LICENSE, CODE, FILE_COUNT };
+enum File {
+  DESCRIPTION,
+  DESCRIPTION_OF_FMI3,
+  TERMINALS,
+  ICON,
+  BUILD_DESCRIPTION,
+  DOCUMENTATION,
+  LICENSE,
+  PICTURE,
+  CODE,
+  FILE_COUNT
+};
+
+/* What a file holds; NULL for no file. */
+struct Content {
+  const char *bytes;
+  size_t length;
+};
 
 /* What names the files of a run that has not come to its end. */
 static const char unfinished[] = ".unfinished";
@@ -36,10 +56,10 @@ static bool create_directory(const char *path) {
   return make_directory(path);
 }
 
-static bool write_file(const char *path, const char *text) {
+static bool write_file(const char *path, const struct Content *content) {
   FILE *file = fopen(path, "wb");
   if (file == NULL) return false;
-  bool written = fputs(text, file) >= 0;
+  bool written = fwrite(content->bytes, 1, content->length, file) == content->length;
   return fclose(file) == 0 && written;
 }
 
@@ -48,9 +68,11 @@ static const char *const names[FILE_COUNT] = {
     [DESCRIPTION] = "modelDescription.xml",
     [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
     [TERMINALS] = "fmi3/terminalsAndIcons.xml",
+    [ICON] = "fmi3/icon.svg",
     [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
     [DOCUMENTATION] = "documentation/index.html",
     [LICENSE] = "documentation/licenses/license.txt",
+    [PICTURE] = "model.png",
     [CODE] = "system.c",
 };
 
@@ -65,26 +87,25 @@ static void remove_all(const char *directory, const char *suffix) {
   }
 }
 
-/* A file without a text is left out. */
-static bool write_beside(const char *directory, const char *const *texts) {
+static bool write_beside(const char *directory, const struct Content *contents) {
   bool written = true;
   for (int i = 0; i < FILE_COUNT && written; i++) {
-    if (texts[i] == NULL) continue;
+    if (contents[i].bytes == NULL) continue;
     char *path = path_of(directory, i, unfinished);
-    written = write_file(path, texts[i]);
+    written = write_file(path, &contents[i]);
   }
   return written;
 }
 
 /* Puts what was written beside in the place of an earlier run's files. */
-static bool move_in(const char *directory, const char *const *texts) {
+static bool move_in(const char *directory, const struct Content *contents) {
   bool moved = true;
   char *mark = path_of(directory, FILE_COUNT - 1, "");
   remove(mark);
   for (int i = 0; i < FILE_COUNT && moved; i++) {
     char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
     remove(to); /* not everywhere does rename do that */
-    if (texts[i] != NULL) moved = rename(from, to) == 0;
+    if (contents[i].bytes != NULL) moved = rename(from, to) == 0;
   }
   return moved;
 }
@@ -102,20 +123,24 @@ static bool create_directories(const char *directory) {
   return created;
 }
 
-static void write_all(const char *directory, const char *const *texts, struct Diagnostics *diagnostics) {
-  if (create_directories(directory) && write_beside(directory, texts) && move_in(directory, texts)) return;
+static void write_all(const char *directory, const struct Content *contents, struct Diagnostics *diagnostics) {
+  if (create_directories(directory) && write_beside(directory, contents) && move_in(directory, contents)) return;
   report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
                strerror(errno));
   remove_all(directory, unfinished);
 }
 
+static struct Content text_content(const char *text) {
+  return (struct Content){text, strlen(text)};
+}
+
 static bool write_buffers(const struct Program *program, const struct Summary *summary, const char *guid,
-                          const xmlBufferPtr *buffers) {
+                          const struct Drawing *drawing, const xmlBufferPtr *buffers) {
   return model_description_write(buffers[DESCRIPTION], program, guid) &&
          fmi3_description_write(buffers[DESCRIPTION_OF_FMI3], program, guid) &&
          fmi3_terminals_write(buffers[TERMINALS], program) &&
-         fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) &&
-         documentation_write(buffers[DOCUMENTATION], program, summary);
+         fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) && write_icon(buffers[ICON], drawing) &&
+         documentation_write(buffers[DOCUMENTATION], program, summary, drawing);
 }
 
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
@@ -126,23 +151,25 @@ void output_write(const struct Program *program, const struct Summary *summary, 
     return;
   }
   xmlBufferPtr anonymous = xmlBufferCreate(), buffers[FILE_COUNT];
-  const char *texts[FILE_COUNT];
+  struct Content contents[FILE_COUNT];
   char guid[GUID_LENGTH];
   char *code = text_of(program, code_write), *licenses = text_of(program, licenses_write);
   for (int i = 0; i < FILE_COUNT; i++) buffers[i] = xmlBufferCreate();
   bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
-  written = written && write_buffers(program, summary, guid, buffers);
-  for (int i = 0; i < FILE_COUNT; i++) texts[i] = (const char *)xmlBufferContent(buffers[i]);
+  struct Drawing drawing = drawing_of(program->model, program->equations);
+  written = written && write_buffers(program, summary, guid, &drawing, buffers);
+  for (int i = 0; i < FILE_COUNT; i++) contents[i] = text_content((const char *)xmlBufferContent(buffers[i]));
   const struct Method *method = program->equations->method;
-  if (method != NULL && method->uses_library) texts[BUILD_DESCRIPTION] = NULL;
-  texts[LICENSE] = licenses;
-  texts[CODE] = file;
+  if (method != NULL && method->uses_library) contents[BUILD_DESCRIPTION].bytes = NULL;
+  contents[LICENSE] = text_content(licenses);
+  contents[CODE] = text_content(file);
+  contents[PICTURE].bytes = (const char *)png_of(&drawing, &contents[PICTURE].length);
   limit = graph_limit(program->model->graph);
   if (limit != NULL)
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
-  else if (written) write_all(directory, texts, diagnostics);
+  else if (written) write_all(directory, contents, diagnostics);
   else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
   xmlBufferFree(anonymous);
   for (int i = 0; i < FILE_COUNT; i++) xmlBufferFree(buffers[i]);

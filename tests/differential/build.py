@@ -7,7 +7,7 @@ from pathlib import Path
 import fmpy
 
 import fmu
-from building import SPEED, icon_words, library_in, library_words, pack_words
+from building import SPEED, library_in, library_words, pack_words
 
 TIME_LIMIT = 300  # s, for one program
 
@@ -51,11 +51,9 @@ def compile_system(system, folder):
 def pack(system, folder, library):
     """As users get it: packed, and unpacked by FMPy."""
     archive, content = folder / f"{system.name}.fmu", folder / "fmu"
-    packed = pack_words(content, library, archive, 2)
-    for command, what in ((icon_words(content, library), "icon"), (packed, "pack.cmake")):
-        result = run(command, what)
-        if result.returncode != 0:
-            raise Wrong(f"{what}: {result.stderr[:1000]}")
+    result = run(pack_words(content, library, archive, 2), "pack.cmake")
+    if result.returncode != 0:
+        raise Wrong(f"pack.cmake: {result.stderr[:1000]}")
     unpacked = fmpy.extract(str(archive), str(folder / "unpacked"))
     source = Path(unpacked) / "sources" / f"{system.name}.c"
     if source.exists() and (complaints := fmu.complaints_about(source, system.plan.compiler)):

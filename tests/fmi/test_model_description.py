@@ -268,22 +268,6 @@ def test_the_archive(name):
         assert (info.external_attr >> 16) & 0o170000 in (0, 0o100000)
 
 
-def test_the_icon(name):
-    """A drawing with a curve on it: more than the paper, the axes and the starting point."""
-    from matplotlib.image import imread
-
-    image = imread(fmu.unpacked(name) / "model.png")
-    assert image.shape[:2] == (128, 128)
-    blue = (image[:, :, 2] > image[:, :, 0] + 0.3).sum()
-    assert 100 < blue < 128 * 128 / 2
-
-
-def test_icons_differ():
-    icons = {(fmu.unpacked(name) / "model.png").read_bytes() for name in fmu.all_names()}
-    # The three carts fall in the same way without their inputs, and so do their linearizations.
-    assert len(icons) >= len(fmu.all_names()) - 3
-
-
 def test_the_documentation_page(name):
     """The page shows energies, equations, and every variable with its unit; of very many, it says how many are left out."""
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()

@@ -62,10 +62,10 @@ def test_from_nothing_to_a_motion(tmp_path):
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
 def test_it_is_the_fmu_of_the_tree(name, tmp_path):
-    """But for the compiler of the binary, and the picture."""
+    """But for the compiler of the binary."""
     succeed("build", ROOT / "fmu" / name, cwd=tmp_path)
     with zipfile.ZipFile(tmp_path / f"{name}.fmu") as built, zipfile.ZipFile(fmu.archive(name)) as packed:
-        assert built.namelist() == [member for member in packed.namelist() if member != "model.png"]
+        assert built.namelist() == packed.namelist()
         for member in built.namelist():
             assert member.startswith("binaries/") or built.read(member) == packed.read(member), member
     motions = [fmpy.simulate_fmu(str(path), fmi_type="CoSimulation") for path in (tmp_path / f"{name}.fmu", fmu.archive(name))]
@@ -74,17 +74,15 @@ def test_it_is_the_fmu_of_the_tree(name, tmp_path):
 
 
 def test_fmi3(tmp_path):
-    """The picture apart, it is what the tree packs, for all that is not compiled."""
+    """It is what the tree packs, for all that is not compiled."""
     succeed("build", ROOT / "fmu" / "DoublePendulum", "--fmi", "3", "--platforms", "linux64", "aarch64-linux", cwd=tmp_path)
     path = tmp_path / "DoublePendulum.fmu"
     with zipfile.ZipFile(path) as built, zipfile.ZipFile(fmi3.archive("DoublePendulum")) as packed:
         libraries = {f"binaries/{folder}/DoublePendulum.so" for folder in ("x86_64-linux", "aarch64-linux")}
-        others = set(packed.namelist()) - {"binaries/x86_64-linux/DoublePendulum.so", "terminalsAndIcons/icon.png"}
+        others = set(packed.namelist()) - {"binaries/x86_64-linux/DoublePendulum.so"}
         assert set(built.namelist()) == libraries | others
-        for member in others - {"terminalsAndIcons/terminalsAndIcons.xml"}:
+        for member in others:
             assert built.read(member) == packed.read(member), member
-        # Without a picture, nothing refers to one.
-        assert b"GraphicalRepresentation" not in built.read("terminalsAndIcons/terminalsAndIcons.xml")
     second, third = (fmpy.simulate_fmu(str(archive), fmi_type="CoSimulation", stop_time=1) for archive in (fmu.archive("DoublePendulum"), path))
     np.testing.assert_allclose(third["theta2"], second["theta2"], rtol=1e-8, atol=1e-8)
 

@@ -161,27 +161,6 @@ def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
     assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
 
 
-BLUE, RED = (0.05, 0.35, 0.65), (0.85, 0.25, 0.15)
-
-
-def pixels(name, colour):
-    """How many pixels of the icon have the colour, or nearly."""
-    with zipfile.ZipFile(fmu.archive(name)) as archive:
-        image = matplotlib.image.imread(io.BytesIO(archive.read("model.png")))
-    return np.count_nonzero(np.all(np.abs(image[..., :3] - colour) < 0.02, axis=-1))
-
-
-def test_an_icon_that_takes_too_much_work_shows_the_start(open_fmu):
-    """The solver's limit of steps in the build leaves no curve to draw, only the mark of the start."""
-    assert pixels("StiffErk", BLUE) == 0 and pixels("StiffErk", RED) > 0
-    assert pixels("StiffBdf", BLUE) > 0
-
-
-def test_the_icon_of_a_fast_motion_is_no_block(open_fmu):
-    """A hundred turns of a spiral would fill a disk of 8000 pixels; the first ones alone are drawn."""
-    assert 300 < pixels("Spiral", BLUE) < 2500
-
-
 def test_events_cost_erk_no_digits():
     """The state at an event lies inside of a step; a dense output of lower order than the step would lose digits."""
     system = (

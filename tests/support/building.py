@@ -1,6 +1,6 @@
 """
 Systems that tests write themselves become FMUs without CMake, which would take as long as the C compiler for each of them: lagc, one
-call of a compiler with the flags of scripts/fmu.cmake, icon and pack.cmake, by what the build has made.
+call of a compiler with the flags of scripts/fmu.cmake, and pack.cmake, by what the build has made.
 """
 
 import fcntl
@@ -40,7 +40,7 @@ def alone(lock):
 def bring_up_to_date(build):
     """What systems take from another build; its lock is that of scripts/build."""
     with alone(build / "build.lock"):
-        tools = ["lagc", "icon", "core", "fmi2", "fmi3", "solvers", "list_global_names"]
+        tools = ["lagc", "core", "fmi2", "fmi3", "solvers", "list_global_names"]
         subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
 
 
@@ -62,7 +62,7 @@ def runtime(version):
 @functools.cache
 def runtime_digest():
     """Another one where the runtime is another."""
-    files = [BUILD / "bin" / "icon", BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
+    files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
     files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts").glob("*.cmake"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
 
@@ -75,10 +75,6 @@ def library_words(source, library, version, compiler="gcc", speed=SPEED):
     """What compiles a system.c and links the library of its FMU."""
     return [compiler, *speed, *WARNINGS, *COMPILED, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", source, *runtime(version), *LINKED,
             f"-Wl,-Map={source.parent}/link.map", f"-Wl,--version-script={ROOT}/src/runtime/fmi{version}/exports.map", "-o", library]  # fmt: skip
-
-
-def icon_words(folder, library):
-    return [BUILD / "bin" / "icon", library, folder / "modelDescription.xml", folder / "model.png"]
 
 
 def pack_words(folder, library, archive, version):
@@ -106,15 +102,11 @@ def build_system(build, name, versions, words):
     if stamp.exists() and stamp.read_text() == digest:
         return
     stamp.unlink(missing_ok=True)
-    # The library of FMI 2.0 also draws model.png.
-    for version in sorted({2, *versions}):
+    for version in versions:
         library = library_in(folder, name, version)
         library.parent.mkdir(parents=True, exist_ok=True)
         run(library_words(folder / "system.c", library, version))
-        if version == 2:
-            run(icon_words(folder, library))
-        if version in versions:
-            run(pack_words(folder, library, archive_of(build, name, version), version))
+        run(pack_words(folder, library, archive_of(build, name, version), version))
     stamp.write_text(digest)
 
 

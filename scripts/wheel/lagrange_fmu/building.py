@@ -69,12 +69,6 @@ def compile_libraries(folder, name, platforms, fmi, content):
             raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
 
 
-def leave_out_icon(file):
-    """What draws it is not in the package."""
-    text = file.read_text(encoding="utf-8")
-    file.write_text(re.sub(r"  <GraphicalRepresentation>.*?</GraphicalRepresentation>\n", "", text, flags=re.S), encoding="utf-8")
-
-
 def copy_licenses(file, target):
     """Of libraries that are linked into the FMU: lagc's license.txt names the files."""
     target.mkdir(parents=True)
@@ -88,7 +82,9 @@ def write_descriptions(folder, name, fmi, content):
     files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
     if fmi == 3:
         files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
-        leave_out_icon(folder / "fmi3" / "terminalsAndIcons.xml")
+        files |= {"terminalsAndIcons/icon.svg": "fmi3/icon.svg", "terminalsAndIcons/icon.png": "model.png"}
+    else:
+        files["model.png"] = "model.png"
     licenses = Path("documentation/licenses")
     files[licenses / "license.txt"] = licenses / "license.txt"
     copy_licenses(folder / licenses / "license.txt", content / licenses)

@@ -1,0 +1,110 @@
+#include "configurations.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "algebra/differentiate.h"
+#include "base/memory.h"
+
+/* Constraints g(q) = 0 with their derivatives. */
+struct Levels {
+  Node *level, **slope;
+  size_t count;
+};
+
+Node *slopes_of(const struct Model *model, Node node) {
+  Node *slopes = allocate(model->coordinates.count + 1, sizeof *slopes);
+  gradient_of(model->graph, node, COORDINATE, model->coordinates.count, slopes);
+  return slopes;
+}
+
+/* What contacts and frictions hold is not at every time. */
+static bool belongs_to_switch(const struct Switches *switches, size_t constraint) {
+  bool belongs = false;
+  for (size_t i = 0; i < switches->contact_count; i++) belongs |= switches->contacts[i].constraint == constraint;
+  for (size_t i = 0; i < switches->friction_count; i++) belongs |= switches->frictions[i].constraint == constraint;
+  return belongs;
+}
+
+static struct Levels levels_of(const struct Model *model, const struct Equations *equations) {
+  const struct Constraints *constraints = equations->constraints;
+  struct Levels levels = {.count = 0};
+  if (constraints == NULL || model->coordinates.count > MOST_COORDINATES) return levels;
+  levels.level = allocate(constraints->count + 1, sizeof *levels.level);
+  levels.slope = allocate(constraints->count + 1, sizeof *levels.slope);
+  for (size_t j = 0; j < constraints->count; j++) {
+    if (constraints->position[j] == ZERO || belongs_to_switch(&model->switches, j)) continue;
+    levels.level[levels.count] = constraints->position[j];
+    levels.slope[levels.count++] = slopes_of(model, constraints->position[j]);
+  }
+  return levels;
+}
+
+static bool can_move(const struct Model *model, size_t coordinate) {
+  bool is_driven = model->given.drive_count > 0 && model->given.drives[coordinate].given;
+  return !is_driven && !model->coordinates.items[coordinate].is_fixed;
+}
+
+void solve_small(size_t n, double *matrix, double *x) {
+  size_t *pivot = allocate(n + 1, sizeof *pivot);
+  bool *is_used = allocate(n + 1, sizeof *is_used);
+  for (size_t k = 0; k < n; k++) {
+    size_t row = n;
+    for (size_t i = 0; i < n; i++)
+      if (!is_used[i] && (row == n || fabs(matrix[i * n + k]) > fabs(matrix[row * n + k]))) row = i;
+    pivot[k] = row;
+    if (!(fabs(matrix[row * n + k]) > 1e-10)) pivot[k] = n;
+    if (pivot[k] == n) continue;
+    is_used[row] = true;
+    for (size_t i = 0; i < n; i++) {
+      double factor = i == row ? 0.0 : matrix[i * n + k] / matrix[row * n + k];
+      for (size_t j = k; j < n && factor != 0.0; j++) matrix[i * n + j] -= factor * matrix[row * n + j];
+      x[i] -= factor * x[row];
+    }
+  }
+  double *solution = allocate(n + 1, sizeof *solution);
+  for (size_t k = 0; k < n; k++)
+    if (pivot[k] < n) solution[k] = x[pivot[k]] / matrix[pivot[k] * n + k];
+  for (size_t k = 0; k < n; k++) x[k] = solution[k];
+  release(solution);
+  release(is_used);
+  release(pivot);
+}
+
+/* One step of Newton's method, the shortest: J J^T p = g, q less J^T p. Returns the largest |g| before it. */
+static double step(const struct Model *model, const struct Levels *levels, const double *values, double *symbols) {
+  size_t n = levels->count, coordinates = model->coordinates.count;
+  double *matrix = allocate(n * n, sizeof *matrix), *pull = allocate(n, sizeof *pull), largest = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    pull[i] = values[levels->level[i]];
+    largest = fmax(largest, fabs(pull[i]));
+    for (size_t j = 0; j < n; j++)
+      for (size_t k = 0; k < coordinates; k++)
+        if (can_move(model, k)) matrix[i * n + j] += values[levels->slope[i][k]] * values[levels->slope[j][k]];
+  }
+  solve_small(n, matrix, pull);
+  for (size_t k = 0; k < coordinates; k++)
+    for (size_t i = 0; i < n && can_move(model, k); i++)
+      symbols[model->graph->vertices[model->coordinates.items[k].node].left] -= values[levels->slope[i][k]] * pull[i];
+  release(matrix);
+  release(pull);
+  return largest;
+}
+
+double *values_at(const struct Model *model, const struct Equations *equations, const double *offsets) {
+  enum { MOST_STEPS = 30 };
+  struct Levels levels = levels_of(model, equations);
+  double *symbols = start_values(model);
+  for (size_t k = 0; k < model->coordinates.count && offsets != NULL; k++)
+    symbols[model->graph->vertices[model->coordinates.items[k].node].left] += offsets[k];
+  double *values = graph_evaluate(model->graph, symbols);
+  for (int i = 0; i < MOST_STEPS && levels.count > 0; i++) {
+    double largest = step(model, &levels, values, symbols);
+    if (largest < 1e-13) return values;
+    release(values);
+    values = graph_evaluate(model->graph, symbols);
+    if (!isfinite(largest)) return NULL;
+    if (largest < 1e-11) return values;
+  }
+  return levels.count == 0 ? values : NULL;
+}

@@ -1,0 +1,132 @@
+#include "png.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum { SIDE = 128, ROW = 1 + 3 * SIDE, IMAGE = SIDE * ROW }; /* each row begins with the number of its filter, 0 */
+
+/* --- Pixels -------------------------------------------------------------------------------------------------------- */
+
+/* From a spot to the line between two others, or to the first where they are one. */
+static double distance_to_line(struct Spot spot, struct Spot from, struct Spot to) {
+  double right = to.right - from.right, up = to.up - from.up, length = right * right + up * up;
+  double along = length > 0.0 ? ((spot.right - from.right) * right + (spot.up - from.up) * up) / length : 0.0;
+  along = fmin(fmax(along, 0.0), 1.0);
+  return hypot(spot.right - from.right - along * right, spot.up - from.up - along * up);
+}
+
+/* To the nearest of a shape's lines; of a polygon the last one leads back to its beginning. */
+static double distance_to_shape(const struct Shape *shape, struct Spot spot, bool *is_inside) {
+  double distance = INFINITY;
+  bool has_left = false, has_right = false;
+  size_t lines = shape->count == 1 || shape->is_filled ? shape->count : shape->count - 1;
+  for (size_t i = 0; i < lines; i++) {
+    struct Spot from = shape->points[i], to = shape->points[(i + 1) % shape->count];
+    double side = (to.right - from.right) * (spot.up - from.up) - (to.up - from.up) * (spot.right - from.right);
+    has_left |= side > 0.0;
+    has_right |= side < 0.0;
+    distance = fmin(distance, distance_to_line(spot, from, to));
+  }
+  *is_inside = shape->is_filled && shape->count > 2 && has_left != has_right;
+  return distance;
+}
+
+/* How much of a pixel the shape covers, as far as the distance from its edge tells. */
+static double coverage(const struct Shape *shape, struct Spot spot) {
+  const double scale = (double)SIDE / PICTURE_SIZE;
+  const struct LookStyle *style = &looks[shape->look];
+  bool is_polygon = shape->is_filled && shape->count > 1, is_inside;
+  double distance = distance_to_shape(shape, spot, &is_inside);
+  double beyond = is_polygon ? (is_inside ? -distance : distance) : distance - fmax(style->width / 2.0, 0.5 / scale);
+  return fmin(fmax(0.5 - scale * beyond, 0.0), 1.0) * (is_polygon ? style->opacity : 1.0);
+}
+
+static void paint(unsigned char *pixel, const unsigned char *colour, double share) {
+  for (int i = 0; i < 3; i++) pixel[i] = (unsigned char)lround(pixel[i] + share * (colour[i] - pixel[i]));
+}
+
+static double clip(double place) {
+  return fmin(fmax(place, 0.0), SIDE);
+}
+
+/* Looks only where it may be. */
+static void paint_shape(unsigned char *image, const struct Shape *shape) {
+  const double scale = (double)SIDE / PICTURE_SIZE, width = looks[shape->look].width + 2.0;
+  struct Rectangle all = rectangle_of(&(struct Drawing){(struct Shape *)shape, 1});
+  for (int row = (int)clip(scale * (all.least.up - width)); row < clip(scale * (all.most.up + width)); row++)
+    for (int column = (int)clip(scale * (all.least.right - width)); column < clip(scale * (all.most.right + width));
+         column++) {
+      struct Spot spot = {(column + 0.5) / scale, (row + 0.5) / scale};
+      paint(image + row * ROW + 1 + 3 * column, looks[shape->look].colour, coverage(shape, spot));
+    }
+}
+
+/* --- The file ------------------------------------------------------------------------------------------------------ */
+
+static void append(unsigned char *file, size_t *length, const void *bytes, size_t count) {
+  if (count > 0) memcpy(file + *length, bytes, count);
+  *length += count;
+}
+
+static void append_number(unsigned char *file, size_t *length, uint32_t number) {
+  const unsigned char bytes[] = {(unsigned char)(number >> 24), (unsigned char)(number >> 16),
+                                 (unsigned char)(number >> 8), (unsigned char)number};
+  append(file, length, bytes, sizeof bytes);
+}
+
+static uint32_t crc32_of(const unsigned char *bytes, size_t count) {
+  uint32_t remainder = 0xffffffffu;
+  for (size_t i = 0; i < count; i++) {
+    remainder ^= bytes[i];
+    for (int bit = 0; bit < 8; bit++) remainder = (remainder >> 1) ^ (remainder & 1 ? 0xedb88320u : 0u);
+  }
+  return ~remainder;
+}
+
+static uint32_t adler32_of(const unsigned char *bytes, size_t count) {
+  uint32_t low = 1, high = 0;
+  for (size_t i = 0; i < count; i++) {
+    low = (low + bytes[i]) % 65521;
+    high = (high + low) % 65521;
+  }
+  return high << 16 | low;
+}
+
+static void append_chunk(unsigned char *file, size_t *length, const char *type, const unsigned char *bytes,
+                         size_t count) {
+  append_number(file, length, (uint32_t)count);
+  size_t start = *length;
+  append(file, length, type, 4);
+  append(file, length, bytes, count);
+  append_number(file, length, crc32_of(file + start, *length - start));
+}
+
+/* As zlib stores what it does not compress, in one block: the FMU's archive compresses it. */
+static size_t store(const unsigned char *image, unsigned char *stored) {
+  const unsigned char head[] = {0x78, 0x01, 0x01, IMAGE & 0xff, IMAGE >> 8, ~IMAGE & 0xff, ~IMAGE >> 8 & 0xff};
+  size_t length = 0;
+  append(stored, &length, head, sizeof head);
+  append(stored, &length, image, IMAGE);
+  append_number(stored, &length, adler32_of(image, IMAGE));
+  return length;
+}
+
+unsigned char *png_of(const struct Drawing *drawing, size_t *length) {
+  static const unsigned char signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  static const unsigned char header[] = {0, 0, 0, SIDE, 0, 0, 0, SIDE, 8, 2, 0, 0, 0}; /* 8 bits of red, green, blue */
+  unsigned char *image = allocate(IMAGE, 1), *stored = allocate(IMAGE + 32, 1), *file = allocate(IMAGE + 128, 1);
+  memset(image, 0xff, IMAGE);
+  for (int row = 0; row < SIDE; row++) image[row * ROW] = 0;
+  for (size_t i = 0; i < drawing->count; i++) paint_shape(image, &drawing->shapes[i]);
+  *length = 0;
+  append(file, length, signature, sizeof signature);
+  append_chunk(file, length, "IHDR", header, sizeof header);
+  append_chunk(file, length, "IDAT", stored, store(image, stored));
+  append_chunk(file, length, "IEND", NULL, 0);
+  release(image);
+  release(stored);
+  return file;
+}

@@ -1,0 +1,78 @@
+#include "shapes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+const struct LookStyle looks[LOOK_COUNT] = {
+    [GROUND] = {"ground", 1.0, 0.12, {120, 120, 110}},  [AXIS] = {"axis", 0.8, 0.0, {190, 196, 208}},
+    [SOLID] = {"solid", 0.0, 0.35, {26, 95, 180}},      [EDGE] = {"solid", 0.8, 0.0, {26, 95, 180}},
+    [LINK] = {"link", 1.8, 0.0, {104, 112, 133}},       [BAR] = {"body", 4.5, 0.0, {26, 95, 180}},
+    [BASE] = {"base", 5.0, 0.0, {29, 36, 51}},          [HOLE] = {"hole", 2.8, 0.0, {255, 255, 255}},
+    [PARTICLE] = {"particle", 9.0, 0.0, {26, 95, 180}}, [JOINT] = {"base", 3.4, 0.0, {29, 36, 51}},
+    [BOX] = {"body", 2.0, 0.15, {26, 95, 180}},         [SIGNAL] = {"base", 2.0, 0.0, {29, 36, 51}},
+};
+
+void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count) {
+  struct Shape shape = {look, is_filled, allocate(count, sizeof *points), count};
+  for (size_t i = 0; i < count; i++) shape.points[i] = points[i];
+  drawing->shapes = make_room(drawing->shapes, drawing->count, sizeof *drawing->shapes);
+  drawing->shapes[drawing->count++] = shape;
+}
+
+void append_line(struct Drawing *drawing, enum Look look, struct Spot from, struct Spot to) {
+  append_shape(drawing, look, false, (struct Spot[]){from, to}, 2);
+}
+
+struct Rectangle rectangle_of(const struct Drawing *drawing) {
+  struct Rectangle all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  for (size_t i = 0; i < drawing->count; i++)
+    for (size_t j = 0; j < drawing->shapes[i].count; j++) {
+      struct Spot spot = drawing->shapes[i].points[j];
+      all.least = (struct Spot){fmin(all.least.right, spot.right), fmin(all.least.up, spot.up)};
+      all.most = (struct Spot){fmax(all.most.right, spot.right), fmax(all.most.up, spot.up)};
+    }
+  return all;
+}
+
+bool fit_drawing(struct Drawing *drawing) {
+  const double margin = 14.0;
+  struct Rectangle all = rectangle_of(drawing);
+  double size = fmax(all.most.right - all.least.right, all.most.up - all.least.up);
+  double pixels = (PICTURE_SIZE - 2.0 * margin) / size;
+  for (size_t i = 0; i < drawing->count; i++)
+    for (size_t j = 0; j < drawing->shapes[i].count; j++) {
+      struct Spot *spot = &drawing->shapes[i].points[j];
+      spot->right = PICTURE_SIZE / 2.0 + pixels * (spot->right - (all.least.right + all.most.right) / 2.0);
+      spot->up = PICTURE_SIZE / 2.0 - pixels * (spot->up - (all.least.up + all.most.up) / 2.0);
+    }
+  return isnormal(size) && isnormal(pixels);
+}
+
+static int compare_spots(const void *first, const void *second) {
+  const struct Spot *a = first, *b = second;
+  if (a->right != b->right) return a->right < b->right ? -1 : 1;
+  return (a->up > b->up) - (a->up < b->up);
+}
+
+static double turn(struct Spot a, struct Spot b, struct Spot c) {
+  return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
+}
+
+/* One side of Andrew's chain, in the order of the points or backwards, behind what is there. */
+static size_t append_side(const struct Spot *points, size_t count, bool backwards, struct Spot *hull, size_t length) {
+  size_t first = length;
+  for (size_t i = 0; i < count; i++) {
+    struct Spot point = points[backwards ? count - 1 - i : i];
+    while (length >= first + 2 && turn(hull[length - 2], hull[length - 1], point) <= 0.0) length--;
+    hull[length++] = point;
+  }
+  return length - 1; /* its last point begins the other side */
+}
+
+size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull) {
+  qsort(points, count, sizeof *points, compare_spots);
+  return append_side(points, count, true, hull, append_side(points, count, false, hull, 0));
+}

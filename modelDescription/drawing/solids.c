@@ -1,0 +1,103 @@
+#include "solids.h"
+
+#include <math.h>
+
+enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both ends of a cylinder */
+
+/* A body's place, the directions of its axes, and half of its sides along them. */
+struct Solid {
+  double middle[3], axis[3][3], half[3];
+};
+
+struct Spot seen(const struct View *view, const double position[3]) {
+  struct Spot spot = {0.0, 0.0};
+  for (int i = 0; i < 3; i++) {
+    spot.right += view->right[i] * position[i];
+    spot.up += view->up[i] * position[i];
+  }
+  return spot;
+}
+
+static struct Spot corner(const struct View *view, const struct Solid *solid, const double along[3]) {
+  double position[3];
+  for (int i = 0; i < 3; i++) {
+    position[i] = solid->middle[i];
+    for (int axis = 0; axis < 3; axis++) position[i] += along[axis] * solid->half[axis] * solid->axis[axis][i];
+  }
+  return seen(view, position);
+}
+
+/* The axis of a body of revolution, that of two equal moments of inertia; -1 for none. */
+static int axis_of_revolution(const double moment[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    double first = moment[(axis + 1) % 3], second = moment[(axis + 2) % 3];
+    if (fabs(first - second) <= 1e-3 * fmax(first, second)) return axis;
+  }
+  return -1;
+}
+
+/* A cylinder of radius r and length h has the moments m r^2/2 and m (3 r^2 + h^2)/12; a box m (b^2 + c^2)/12. */
+static void set_sides(struct Solid *solid, const double moment[3], double mass, int axis) {
+  for (int i = 0; i < 3; i++) {
+    double across = moment[(i + 1) % 3] + moment[(i + 2) % 3] - moment[i];
+    solid->half[i] = sqrt(fmax(1.5 * across / mass, 0.0));
+  }
+  if (axis < 0) return;
+  double radius = sqrt(2.0 * moment[axis] / mass);
+  solid->half[(axis + 1) % 3] = solid->half[(axis + 2) % 3] = radius;
+  solid->half[axis] = sqrt(fmax(3.0 * moment[(axis + 1) % 3] / mass - 0.75 * radius * radius, 0.0));
+}
+
+static void append_filled(struct Drawing *drawing, struct Spot *points, size_t count) {
+  struct Spot hull[RINGS + 2];
+  size_t size = convex_hull(points, count, hull);
+  append_shape(drawing, SOLID, true, hull, size);
+  hull[size] = hull[0];
+  append_shape(drawing, EDGE, false, hull, size + 1);
+}
+
+static void append_cylinder(struct Drawing *drawing, const struct View *view, const struct Solid *solid, int axis) {
+  struct Spot rings[RINGS];
+  for (int i = 0; i < RINGS; i++) {
+    double angle = 2.0 * acos(-1.0) * (i % ROUND) / (ROUND - 1), along[3];
+    along[axis] = i < ROUND ? -1.0 : 1.0;
+    along[(axis + 1) % 3] = cos(angle);
+    along[(axis + 2) % 3] = sin(angle);
+    rings[i] = corner(view, solid, along);
+  }
+  for (int end = 0; end < 2; end++) append_shape(drawing, EDGE, false, rings + (size_t)end * ROUND, ROUND);
+  append_filled(drawing, rings, RINGS);
+}
+
+static void append_box(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
+  struct Spot corners[8];
+  for (int i = 0; i < 8; i++)
+    corners[i] = corner(view, solid, (double[]){i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
+  for (int i = 0; i < 8; i++)
+    for (int bit = 1; bit < 8; bit *= 2)
+      if (!(i & bit)) append_line(drawing, EDGE, corners[i], corners[i | bit]);
+  append_filled(drawing, corners, 8);
+}
+
+void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
+                  const double *values) {
+  const struct Matrix *turn = &model->mechanism.frames[body->frame].pose.rotation;
+  struct Solid solid;
+  double moment[3], mass = values[body->mass.node], sum = 0.0;
+  for (int i = 0; i < 3; i++) {
+    moment[i] = values[body->tensor.row[i].along[i]];
+    solid.middle[i] = values[body->position[i].node];
+    for (int axis = 0; axis < 3; axis++) solid.axis[axis][i] = values[turn->row[i].along[axis]];
+    sum += moment[i] + fabs(solid.middle[i]);
+  }
+  if (!(mass > 0.0) || !isfinite(sum) || !(moment[0] + moment[1] + moment[2] > 0.0)) return;
+  if (moment[0] == 0.0 && moment[1] == 0.0) { /* in the plane: a bar, as for want of a better shape */
+    solid.half[0] = sqrt(3.0 * moment[2] / mass);
+    append_line(drawing, BAR, corner(view, &solid, (double[]){-1, 0, 0}), corner(view, &solid, (double[]){1, 0, 0}));
+    return;
+  }
+  int axis = axis_of_revolution(moment);
+  set_sides(&solid, moment, mass, axis);
+  if (axis >= 0) append_cylinder(drawing, view, &solid, axis);
+  else append_box(drawing, view, &solid);
+}

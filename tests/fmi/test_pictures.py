@@ -1,0 +1,83 @@
+"""The drawing of a system that its FMU carries: model.png, icon.svg, and the same on the documentation page."""
+
+import math
+import re
+
+import fmi3
+import fmu
+import numpy as np
+import pytest
+from lxml import etree
+from matplotlib.image import imread
+
+SIDE = 160  # of the drawing, in its own pixels; the PNG has 128
+
+
+def shapes(name, element, look):
+    """The points of all circles, lines or polygons of a look, as rows of right and down."""
+    svg = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "icon.svg").getroot()
+    found = [shape for shape in svg if etree.QName(shape).localname == element and shape.get("class") == look]
+    text = lambda shape: f"{shape.get('cx')},{shape.get('cy')}" if element == "circle" else shape.get("points")
+    return [np.array([[float(number) for number in point.split(",")] for point in text(shape).split()]) for shape in found]
+
+
+def test_all_of_it_is_seen_and_the_page_shows_the_same(name):
+    image = imread(fmu.unpacked(name) / "model.png")[..., :3]
+    assert image.shape == (128, 128, 3)
+    assert 60 < np.count_nonzero(image.min(axis=2) < 0.9) < 128**2 / 1.5
+    frame = np.ones((128, 128), bool)
+    frame[2:-2, 2:-2] = False
+    assert np.all(image[frame] == 1)  # nothing is cut
+    svg = (fmi3.unpacked(name) / "terminalsAndIcons" / "icon.svg").read_text()
+    page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
+    drawn = lambda text: re.findall(r'(?:points|cx|cy|r)="[^"]*"', text)
+    assert drawn(svg) == drawn(page[page.index('<svg class="sketch"') : page.index("</svg>")])
+
+
+@pytest.mark.parametrize("name", ["DoublePendulum", "BouncingBall", "ElasticPendulum"])
+def test_the_png_is_the_svg(name):
+    """A particle is where the SVG has it, and as large: the disk's pixels are as many as its area."""
+    image = imread(fmu.unpacked(name) / "model.png")[..., :3]
+    particles = shapes(name, "circle", "particle")
+    blue = np.array([26, 95, 180]) / 255
+    for [[right, down]] in particles:
+        assert image[int(down * 0.8), int(right * 0.8)] == pytest.approx(blue, abs=0.01)
+    whole = np.count_nonzero(np.all(abs(image - blue) < 0.01, axis=2))
+    assert whole == pytest.approx(len(particles) * math.pi * (4.5 * 0.8 - 0.5) ** 2, rel=0.35)
+
+
+def test_the_loop_is_closed_at_the_start():
+    """The bars' ends meet, 0.9 m from each other at the pivots, where the start values alone would leave them apart."""
+    crank, coupler, rocker = shapes("FourBar", "polyline", "body")
+    metre = np.linalg.norm(coupler[1] - coupler[0]) / 0.8
+    assert crank[1] == pytest.approx(coupler[0], abs=0.15)
+    assert coupler[1] == pytest.approx(rocker[1], abs=0.15)
+    assert np.linalg.norm(rocker[0] - crank[0]) == pytest.approx(0.9 * metre, abs=0.3)
+
+
+def test_a_rod_that_a_constraint_holds():
+    [[pivot]], [[bob]] = shapes("PendulumCartesian", "circle", "hole"), shapes("PendulumCartesian", "circle", "particle")
+    [rod] = shapes("PendulumCartesian", "polyline", "link")
+    assert sorted(map(tuple, rod)) == sorted([tuple(pivot), tuple(bob)])
+
+
+def test_floor_and_stop():
+    """The floor is a level line under the ball, through the origin, and the stop a piece of the pendulum's circle's radius."""
+    [[origin]], floor = shapes("BouncingBall", "circle", "hole"), shapes("BouncingBall", "polyline", "ground")[-1]
+    assert floor[:, 1] == pytest.approx([origin[1]] * 2, abs=0.06) and floor[0, 0] < origin[0] < floor[1, 0]
+    [[pivot]], stop = shapes("HardStopPendulum", "circle", "hole"), shapes("HardStopPendulum", "polyline", "ground")[-1]
+    [[bob]] = shapes("HardStopPendulum", "circle", "particle")
+    middle = stop.mean(axis=0)
+    assert np.linalg.norm(middle - pivot) == pytest.approx(np.linalg.norm(bob - pivot), abs=0.3)
+    along, out = stop[1] - stop[0], middle - pivot
+    assert abs(along[0] * out[1] - along[1] * out[0]) < 0.02 * np.linalg.norm(along) * np.linalg.norm(out)
+
+
+def test_a_disk_is_an_ellipse():
+    """Seen under the angle whose cosine is n.e: the axes of the ellipse are R and R |n.e|, so that its area is pi R^2 |n.e|."""
+    [disk] = shapes("RollingDisk", "polygon", "solid")
+    x, y = disk.T
+    area = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    radius = np.linalg.norm(disk - disk.mean(axis=0), axis=1).max()
+    least = np.linalg.norm(disk - disk.mean(axis=0), axis=1).min()
+    assert area == pytest.approx(math.pi * radius * least, rel=0.03)
