@@ -17,6 +17,11 @@ from .problem import Problem
 from .variables import settable, start_values, why_not
 
 
+EVENTS = "events"  # the FMU's variable that counts them
+FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at most
+MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
+
+
 @dataclass
 class Motion:
     fmu: Path
@@ -24,7 +29,7 @@ class Motion:
     scene: list  # the elements to be seen
     start: dict  # the start values of all that have one
     outputs: np.ndarray  # structured: time and the outputs
-    values: np.ndarray  # likewise, with where the elements are
+    values: np.ndarray  # likewise, with where the elements are, and the number of events where there may be some
 
 
 def start_value(text):
@@ -57,7 +62,7 @@ def simulate(fmu, start, **options):
         values = simulate_fmu(
             fmu,
             start_values=start,
-            output=outputs + variables_of(scene, known),
+            output=outputs + variables_of(scene, known) + [name for name in (EVENTS,) if name in known and name not in outputs],
             fmi_type="CoSimulation",
             logger=print_problem,
             debug_logging=True,
@@ -68,25 +73,52 @@ def simulate(fmu, start, **options):
     return Motion(fmu, description, scene, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
 
 
-def draw(description, result, path):
-    """One axis a unit, one line an output."""
+def panels_of(description, result):
+    """(unit, names) of what is drawn together: outputs of one unit, unless one of them would be a flat line beside the other; all but zero goes with any."""
+    unit_of = {variable.name: variable.unit or "1" for variable in description.modelVariables}
+    size = {name: np.nanmax(abs(result[name])) for name in result.dtype.names[1:]}
+    most = {unit: max(size[name] for name in size if unit_of[name] == unit) for unit in map(unit_of.get, size)}
+    size = {name: value if value > 1e-9 * most[unit_of[name]] else 0.0 for name, value in size.items()}
+    panels = []
+    for name in result.dtype.names[1:]:
+        for unit, names in panels:
+            sizes = [size[other] for other in (*names, name) if size[other] > 0]
+            if unit == unit_of[name] and (not sizes or max(sizes) <= FLAT * min(sizes)):
+                names.append(name)
+                break
+        else:
+            panels.append((unit_of[name], [name]))
+    return sorted(panels, key=lambda panel: list(unit_of.values()).index(panel[0]))
+
+
+def event_times(values):
+    """Between which results an event was: the later one's time."""
+    if EVENTS not in values.dtype.names:
+        return []
+    return values["time"][1:][np.diff(values[EVENTS]) > 0]
+
+
+def figure_of(description, result, events):
+    """A panel for outputs of one unit and size, their names beside it; dotted lines are events."""
     from matplotlib.figure import Figure
 
-    unit_of = {variable.name: variable.unit or "1" for variable in description.modelVariables}
-    units = list(dict.fromkeys(unit_of[name] for name in result.dtype.names[1:]))
-    figure = Figure(figsize=(8, 1.2 + 1.8 * len(units)))
-    axes = figure.subplots(len(units), sharex=True, squeeze=False)
-    for unit, axis in zip(units, axes[:, 0]):
-        for name in result.dtype.names[1:]:
-            if unit_of[name] == unit:
-                axis.plot(result["time"], result[name], label=name)
+    panels = panels_of(description, result)
+    figure = Figure(figsize=(9, 1.2 + 1.9 * len(panels)), layout="constrained")
+    axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+    for (unit, names), axis in zip(panels, axes):
+        for time in events if len(events) <= MOST_EVENTS else []:
+            axis.axvline(time, color="#999", linestyle=":", linewidth=0.8, zorder=0)
+        for i, name in enumerate(names):
+            axis.plot(result["time"], result[name], linewidth=1.2, label=name if i < MOST_NAMES or len(names) == MOST_NAMES + 1 else "_")
+        if len(names) > MOST_NAMES + 1:
+            axis.plot([], [], " ", label=f"and {len(names) - MOST_NAMES} others")
         axis.set_ylabel(f"[{unit}]")
         axis.grid(alpha=0.3)
-        axis.legend(loc="upper right", ncols=2, fontsize="small")
-    axes[0, 0].set_title(description.description or description.modelName)
-    axes[-1, 0].set_xlabel("time [s]")
-    figure.tight_layout()
-    figure.savefig(path, dpi=120)
+        axis.legend(loc="upper left", bbox_to_anchor=(1, 1.03), fontsize="small", frameon=False)
+    words = "events are dotted" if len(events) <= MOST_EVENTS else "events are too many to be marked"
+    axes[0].set_title((description.description or description.modelName) + (f"\n{words}" if len(events) else ""))
+    axes[-1].set_xlabel("time [s]")
+    return figure
 
 
 def write_results(motion, folder):
@@ -97,7 +129,7 @@ def write_results(motion, folder):
     np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
     written = {"FMU": Path(motion.fmu).resolve(), "CSV": csv, "plot": plot, "animation": animation}
     try:
-        draw(motion.description, result, plot)
+        figure_of(motion.description, result, event_times(motion.values)).savefig(plot, dpi=120)
     except ModuleNotFoundError:
         plot.unlink(missing_ok=True)
         written["plot"] = "none, since matplotlib is not installed: pip install matplotlib"
