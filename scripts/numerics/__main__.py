@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
-from html_page import bullets, page, paragraphs, table, write_csv
+from html_page import bullets, folded, page, paragraphs, table, write_csv
 from numerics import footprint
 from numerics.failures import failure
 from numerics.mechanisms import comparison as mechanisms
+from numerics.overview import Run, overview
 from numerics.plots import SWITCHING_STYLES, energy_plot, events_plot, legend, mechanism_legend, mechanism_plot
 from numerics.plots import stiff_legend, stiff_plot, work_precision_plot
 from numerics.space import accelerations
@@ -31,6 +32,7 @@ class Section(NamedTuple):
     summary: list  # for the first screen: sentences, and (sentence, items)
     content: str  # HTML
     wrong: int = 0  # how many wrong results of our FMUs it found
+    runs: list = []  # for the comparison on the first screen
 
 
 def machine_section(quick, progress):
@@ -54,7 +56,9 @@ def error_section(quick, progress):
     systems = list(dict.fromkeys(s.system for s in samples))
     plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
     content = paragraphs([*failed, *sentences, "Left is loose, right is accurate; low is fast."]) + legend() + plots
-    return Section([*work_precision.summary(samples), *missing_peers(samples)], content + ratio_tables(samples))
+    ends = {name: work_precision.SCENARIOS[name][1] for name in systems}
+    runs = [Run("Smooth systems", s.system, s.method, s.seconds, s.error_at_end) for s in samples if s.step in (0.0, ends[s.system])]
+    return Section([*work_precision.summary(samples), *missing_peers(samples)], content + ratio_tables(samples), runs=runs)
 
 
 def stability_rows(progress):
@@ -114,8 +118,9 @@ def stiff_section(quick, progress):
             "with fixed steps, as mass points with springs, dampers, or a distance; \"largest difference\" of the rope is that to the other method.")  # fmt: skip
     plots = "".join(paragraphs([failures[problem.name]]) if problem.name in failures else stiff_plot(samples, problem)
                     for problem in stiff.problems(quick))  # fmt: skip
-    content = paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text]) + stiff_legend(stiff.PEERS)
-    return Section(sentences, content + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows))
+    content = folded("in words", paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text])) + stiff_legend(stiff.PEERS)
+    runs = [Run("Stiff systems", s.problem, s.method, s.seconds, s.error) for s in samples if s.way == "one step" or s.method in stiff.PEERS]
+    return Section(sentences, content + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows), runs=runs)
 
 
 def mechanisms_section(quick, progress):
@@ -125,7 +130,7 @@ def mechanisms_section(quick, progress):
     write_csv(FOLDER / "mechanism_ratios.csv", mechanisms.HEADER, rows)
     sentences = mechanisms.summary(rows)
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
-    plots = ""
+    plots, runs = "", []
     for problem in mechanisms.chosen(quick):
         if problem.system in failures:
             plots += paragraphs([failures[problem.system]])
@@ -133,11 +138,13 @@ def mechanisms_section(quick, progress):
         measure = problem.levels[0][0]
         points = {method: mechanisms.points_of(samples, problem.system, method, measure) for method in mechanisms.METHODS}
         plots += mechanism_plot(problem.title, mechanisms.text_of(problem, measure), points)
+        names = {"taylor": "FMU"}  # and radau is no program of others
+        runs += [Run("Mechanisms", problem.title, names.get(method, method), *pair) for method, pairs in points.items() for pair in pairs]
     level, times, ratios = slice(0, len(mechanisms.LEVEL)), mechanisms.TIMES, mechanisms.FASTEST
     tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
               table(mechanisms.HEADER[level][:4] + mechanisms.HEADER[ratios], [row[level][:4] + row[ratios] for row in rows])]  # fmt: skip
-    content = paragraphs([*sentences, *absent, *mechanisms.NOTES]) + mechanism_legend() + f'<div class="plots">{plots}</div>'
-    return Section(sentences, content + "".join(tables) + accelerations_part(quick, progress))
+    content = folded("in words", paragraphs([*sentences, *absent, *mechanisms.NOTES])) + mechanism_legend() + f'<div class="plots">{plots}</div>'
+    return Section(sentences, content + "".join(tables) + accelerations_part(quick, progress), runs=runs)
 
 
 def switching_section(quick, progress):
@@ -148,16 +155,18 @@ def switching_section(quick, progress):
     write_csv(FOLDER / "switching_ratios.csv", switching.HEADER, rows)
     sentences = switching.summary(rows, samples)
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
-    plots = ""
+    plots, runs = "", []
     for problem in switching.PROBLEMS:
         points = {method: switching.points_of(samples, problem, method) for method in switching.METHODS}
         plots += mechanism_plot(problem.title, "largest error of a position", points, SWITCHING_STYLES) if any(points.values()) else ""
+        runs += [Run("Switching", problem.title, method, *pair) for method, pairs in points.items() for pair in pairs]
     for problem in switching.GROWING:
         points = {method: [(count, s.error) for count, s in counted if (s.problem, s.method) == (problem.name, method)] for method in switching.METHODS}
         title = f"{problem.title}, tolerance {switching.TOLERANCE:g}"
         plots += events_plot(title, points, SWITCHING_STYLES) if any(points.values()) else ""
-    first = paragraphs([*failures, *absent, *switching.NOTES]) + mechanism_legend(SWITCHING_STYLES)
-    return Section(sentences, first + f'<div class="plots">{plots}</div>' + table(switching.HEADER, rows) + table(switching.COUNTED, counted_rows))
+    first = paragraphs(failures) + folded("in words", paragraphs([*absent, *switching.NOTES])) + mechanism_legend(SWITCHING_STYLES)
+    return Section(sentences, first + f'<div class="plots">{plots}</div>' + table(switching.HEADER, rows) + table(switching.COUNTED, counted_rows),
+                   runs=runs)  # fmt: skip
 
 
 def accelerations_part(quick, progress):
@@ -224,8 +233,9 @@ def write_page(sections):
              "include Python, as their users see them, but no loading and no compilation.")  # fmt: skip
     summary = [line for section in sections.values() for line in section.summary]
     first = "".join(paragraphs([line]) if isinstance(line, str) else paragraphs([line[0]]) + bullets(line[1]) for line in [*summary, times])
+    comparison = overview([run for section in sections.values() for run in section.runs])
     others = [(title, section.content) for title, section in sections.items()]
-    (FOLDER / "index.html").write_text(page([("lagrange-fmu: error against run time, stability, footprint", first), *others]))
+    (FOLDER / "index.html").write_text(page([("lagrange-fmu: error against run time", comparison + folded("in words", first)), *others]))
 
 
 def main(words=None):

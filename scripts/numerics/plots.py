@@ -5,21 +5,30 @@ import math
 import matplotlib.pyplot as plt
 import numpy as np
 
-from html_page import svg
+from html_page import INK, svg, with_tips
 from numerics.work_precision.scenarios import SCENARIOS
 
 COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "#588157"}
-STIFF_COLOURS = {"auto": "#c1121f", "radau": "#8338ec", "taylor": "#f4a261", "bdf": "#588157"}
+STIFF_COLOURS = {"auto": "#c1121f", "radau": "#5a6acf", "taylor": "#f4a261", "bdf": "#588157"}
 STYLES = ["-", "--", ":"]  # of the ways of communication
-MARKERS = {"SciPy DOP853": "s", "SciPy LSODA": "v", "SciPy Radau": "^", "FMPy CVode (model exchange)": "D",
-           "heyoka": "*", "MuJoCo RK4": "P", "MuJoCo Euler": "X"}  # fmt: skip
-MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#8338ec", "o"), "exudyn generalized-alpha": ("#2a6f97", "s"),
-                    "exudyn trapezoidal, index 2": ("#2a6f97", "v"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
-SWITCHING_STYLES = {"FMU": ("#c1121f", "o"), "FMU, one step": ("#f4a261", "o"), "CVODE in C (model exchange)": ("#8338ec", "D"),
-                    "FMPy CVode (model exchange)": ("#999", "D"), "SciPy DOP853 with events": ("#999", "s"),
-                    "heyoka with events": ("#2a6f97", "*"), "MuJoCo RK4": ("#588157", "P"), "MuJoCo implicitfast": ("#588157", "X")}  # fmt: skip
-PEER_STYLES = {peer: ("#999", marker) for peer, marker in MARKERS.items()} | MECHANISM_STYLES
+PEER_STYLES = {"SciPy DOP853": ("#e09f3e", "s"), "SciPy LSODA": ("#9c6644", "v"), "SciPy Radau": ("#6b705c", "^"), "FMPy CVode (model exchange)": ("#8338ec", "D"),
+               "heyoka": ("#d62976", "*"), "MuJoCo RK4": ("#0a9396", "P"), "MuJoCo Euler": ("#4cc9f0", "X"), "MuJoCo implicitfast": ("#4cc9f0", "X"),
+               "exudyn generalized-alpha": ("#2d6a4f", "s"), "exudyn trapezoidal, index 2": ("#52b788", "v")}  # fmt: skip
+MARKERS = ["SciPy DOP853", "SciPy LSODA", "SciPy Radau", "FMPy CVode (model exchange)", "heyoka", "MuJoCo RK4", "MuJoCo Euler"]
+MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#5a6acf", "o")} | {
+    peer: PEER_STYLES[peer] for peer in ("exudyn generalized-alpha", "exudyn trapezoidal, index 2", "MuJoCo RK4", "MuJoCo implicitfast")}  # fmt: skip
+SWITCHING_STYLES = {"FMU": ("#c1121f", "o"), "FMU, one step": ("#f4a261", "o"), "CVODE in C (model exchange)": ("#b07d4f", "D"),
+                    "FMPy CVode (model exchange)": PEER_STYLES["FMPy CVode (model exchange)"], "SciPy DOP853 with events": PEER_STYLES["SciPy DOP853"],
+                    "heyoka with events": PEER_STYLES["heyoka"], "MuJoCo RK4": PEER_STYLES["MuJoCo RK4"],
+                    "MuJoCo implicitfast": PEER_STYLES["MuJoCo implicitfast"]}  # fmt: skip
 LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk": "built with erk", "bdf": "built with bdf"}
+
+
+def draw(axes, points, method, style="-", **looks):
+    """Points (seconds, error), which show themselves under the pointer."""
+    [line] = axes.loglog(points[:, 1], points[:, 0], style, **looks)
+    with_tips(line, [f"{method}: {seconds:.3g} s, error {error:.2g}" for seconds, error in points])
+
 
 def front(points):
     """Those that no other point beats in both error and time, by ascending time."""
@@ -39,16 +48,16 @@ def curve(samples, name, method, step):
 def work_precision_plot(samples, name):
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     end = SCENARIOS[name][1]
-    for method, marker in MARKERS.items():
+    for method in MARKERS:
         points = curve(samples, name, method, 0.0)
         if points is not None:
-            axes.loglog(points[:, 1], points[:, 0], color="#999", marker=marker, markersize=5, linewidth=1)
+            colour, marker = PEER_STYLES[method]
+            draw(axes, points, method, color=colour, marker=marker, markersize=5, linewidth=1)
     for method, colour in COLOURS.items():
         for step, style in ((end, "-"), (0.01, "--")):
             points = curve(samples, name, method, step)
             if points is not None:
-                axes.loglog(points[:, 1], points[:, 0], style, color=colour, marker="o", markersize=3,
-                            linewidth=2 if method == "shipped" else 1)  # fmt: skip
+                draw(axes, points, LABELS[method], style, color=colour, marker="o", markersize=3, linewidth=2 if method == "shipped" else 1)
     axes.set_xlabel("largest error at the communication points")
     axes.set_ylabel("run time [s]")
     axes.set_xlim(left=1e-16, right=1e1)
@@ -65,8 +74,9 @@ def legend():
     for method, colour in COLOURS.items():
         for style, what in (("-", "one step"), ("--", "steps of 0.01 s")):
             axes.plot([], [], style, color=colour, marker="o", markersize=3, label=f"{LABELS[method]}, {what}")
-    for method, marker in MARKERS.items():
-        axes.plot([], [], color="#999", marker=marker, label=method)
+    for method in MARKERS:
+        colour, marker = PEER_STYLES[method]
+        axes.plot([], [], color=colour, marker=marker, label=method)
     axes.axis("off")
     axes.legend(ncols=4, fontsize=8, loc="center", frameon=False)
     return svg(figure)
@@ -80,8 +90,7 @@ def stiff_plot(samples, problem):
         for method, (colour, marker) in methods.items():
             points = front([(s.seconds, max(s.error, 1e-17)) for s in samples if (s.problem, s.way, s.method) == (problem.name, way, method)])
             if len(points):
-                axes.loglog(points[:, 1], points[:, 0], style, color=colour, marker=marker, markersize=4,
-                            linewidth=2 if method == "auto" else 1)  # fmt: skip
+                draw(axes, points, f"{method}, {way}", style, color=colour, marker=marker, markersize=4, linewidth=2 if method == "auto" else 1)
     axes.set_xlabel("largest error at the communication points")
     axes.set_ylabel("run time [s]")
     axes.invert_xaxis()
@@ -100,7 +109,7 @@ def stiff_legend(peers):
         colour, marker = PEER_STYLES[method]
         axes.plot([], [], color=colour, marker=marker, label=method)
     for style, way in zip(STYLES, ("one step", "many steps", "an input that changes at every step")):
-        axes.plot([], [], style, color="#444", label=way)
+        axes.plot([], [], style, color=INK, label=way)
     axes.axis("off")
     axes.legend(ncols=5, fontsize=8, loc="center", frameon=False)
     return svg(figure)
@@ -113,7 +122,7 @@ def mechanism_plot(title, measure, points, styles=MECHANISM_STYLES):
         if pairs:
             best = front([(seconds, max(error, 1e-17)) for seconds, error in pairs])
             colour, marker = styles[method]
-            axes.loglog(best[:, 1], best[:, 0], color=colour, marker=marker, markersize=4, linewidth=2 if method == next(iter(styles)) else 1)
+            draw(axes, best, method, color=colour, marker=marker, markersize=4, linewidth=2 if method == next(iter(styles)) else 1)
     axes.set_xlabel(measure)
     axes.set_ylabel("run time [s]")
     axes.invert_xaxis()
@@ -130,7 +139,8 @@ def events_plot(title, points, styles):
         if pairs:
             counts, errors = zip(*pairs)
             colour, marker = styles[method]
-            axes.loglog(counts, np.maximum(errors, 1e-17), color=colour, marker=marker, markersize=4)
+            [line] = axes.loglog(counts, np.maximum(errors, 1e-17), color=colour, marker=marker, markersize=4)
+            with_tips(line, [f"{method}: {count} events, error {error:.2g}" for count, error in pairs])
     axes.set_xlabel("events")
     axes.set_ylabel("largest error of a position")
     axes.grid(alpha=0.3)

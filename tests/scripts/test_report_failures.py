@@ -73,7 +73,7 @@ def test_a_stiff_problem_without_a_reference(folder, monkeypatch, capsys):
     monkeypatch.setattr(stiff, "right_states", right_states)
     monkeypatch.setattr(stiff, "sample", sample)
     monkeypatch.setattr(stiff, "sample_peers", lambda problem, quick: [])
-    _, content, wrong = report.stiff_section(True, lambda what: None)
+    _, content, wrong, _ = report.stiff_section(True, lambda what: None)
     assert "<p>Left out, Lost: it did not come to the end.</p>" in content and "<td>Found</td>" in content and wrong == 0
     assert content.count("<svg") == 2 and set(asked) == {"Found"}  # the legend is one
     with open(folder / "stiff.csv") as file:
