@@ -1,0 +1,70 @@
+// Sliders: parameters, inputs and start values.
+"use strict";
+
+// What a slider's range is: [low, high, whether its scale is logarithmic].
+function rangeOf({ start, min, max, unit }) {
+  const low = min ?? -Infinity, high = max ?? Infinity;
+  if (isFinite(low) && isFinite(high)) return [low, high, low > 0 && high / low >= 100];
+  if (unit === "rad") return [Math.max(low, Math.min(-Math.PI, start)), Math.min(high, Math.max(Math.PI, start)), false];
+  if (start > 0) return [Math.max(low, start / 10), Math.min(high, start * 10), low >= 0 || !isFinite(low)];
+  const size = 2 * Math.abs(start) || 1;
+  return [Math.max(low, -size), Math.min(high, size), false];
+}
+
+class Control {
+  // variable: name, unit, description, start, min, max, type; act is told of each new value.
+  constructor(variable, act) {
+    this.variable = variable;
+    this.value = variable.start;
+    [this.low, this.high, this.isLogarithmic] = rangeOf(variable);
+    this.element = document.createElement("div");
+    this.element.className = "control";
+    this.element.title = variable.description || "";
+    const name = document.createElement("span"), unit = document.createElement("small");
+    name.className = "name";
+    unit.textContent = variable.unit && variable.unit !== "1" ? ` ${variable.unit}` : "";
+    name.append(variable.name, unit);
+    this.number = Object.assign(document.createElement("input"), { type: "number", step: "any", value: String(variable.start) });
+    this.number.setAttribute("aria-label", variable.name);
+    this.slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 1000, step: 1 });
+    this.slider.setAttribute("aria-label", variable.name);
+    this.words = document.createElement("div");
+    this.words.className = "words";
+    this.element.append(name, this.number, this.slider, this.words);
+    this.show();
+    this.slider.addEventListener("input", () => this.choose(this.valueAt(this.slider.value / 1000), act));
+    this.number.addEventListener("change", () => Number.isFinite(this.number.valueAsNumber) && this.choose(this.number.valueAsNumber, act));
+    this.slider.addEventListener("dblclick", () => this.choose(variable.start, act));
+  }
+
+  valueAt(share) {
+    const { low, high } = this, value = this.isLogarithmic ? low * (high / low) ** share : low + share * (high - low);
+    if (this.variable.type !== "Real") return Math.round(value);
+    return Number(value.toPrecision(3));
+  }
+
+  choose(value, act) {
+    this.value = value;
+    this.show();
+    act(value);
+  }
+
+  show() {
+    const { low, high, value } = this;
+    this.number.value = String(value);
+    const share = this.isLogarithmic ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
+    this.slider.value = String(1000 * Math.min(1, Math.max(0, share)));
+  }
+
+  say(words) {
+    this.words.textContent = words;
+  }
+}
+
+function section(title, controls, isOpen) {
+  const details = document.createElement("details"), summary = document.createElement("summary");
+  summary.textContent = title;
+  details.open = isOpen;
+  details.append(summary, ...controls.map((control) => control.element));
+  return details;
+}

@@ -1,0 +1,36 @@
+/* What a page needs beside the functions of FMI: an instance with callbacks, and what the FMU has said. FMU_SOURCE is the FMU's one file. */
+#include FMU_SOURCE
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPORT(name) __attribute__((export_name(name)))
+
+enum { ROOM = 4000 };
+
+static char messages[ROOM]; /* since they were last forgotten, one a line; what does not fit is left out */
+
+static void write_message(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status,
+                          fmi2String category, fmi2String format, ...) {
+  (void)environment, (void)instance, (void)status, (void)category;
+  size_t used = strlen(messages);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(messages + used, ROOM - 1 - used, format, arguments);
+  va_end(arguments);
+  memcpy(messages + strlen(messages), "\n", 2);
+}
+
+static const fmi2CallbackFunctions callbacks = {write_message, calloc, free, NULL, NULL};
+
+EXPORT("instantiate") fmi2Component instantiate(const char *guid) {
+  return fmi2Instantiate("live", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
+}
+
+EXPORT("messages") char *get_messages(void) { return messages; }
+
+EXPORT("forgetMessages") void forget_messages(void) { messages[0] = '\0'; }
+
+EXPORT("allocate") void *get_memory(size_t size) { return malloc(size); }

@@ -1,0 +1,65 @@
+// What was seen so far: samples of all variables that are read, the oldest forgotten first.
+"use strict";
+
+const NUMBERS = 4e6; // that are kept
+
+class History {
+  constructor(width) {
+    this.width = width;
+    this.most = Math.max(200, Math.min(20000, Math.floor(NUMBERS / (width + 1))));
+    this.clear();
+  }
+
+  clear() {
+    this.times = [];
+    this.samples = []; // of each: one array for each run
+    this.runs = 1;
+  }
+
+  add(time, runs) {
+    this.runs = runs.length;
+    this.times.push(time);
+    this.samples.push(runs);
+    if (this.times.length > 1.2 * this.most) {
+      this.times.splice(0, this.times.length - this.most);
+      this.samples.splice(0, this.samples.length - this.most);
+    }
+  }
+
+  // Without what is not before this time.
+  cut(time) {
+    let length = this.times.length;
+    while (length > 0 && this.times[length - 1] >= time - 1e-12 * Math.abs(time)) length--;
+    this.times.length = this.samples.length = length;
+  }
+
+  get length() {
+    return this.times.length;
+  }
+
+  time(i) {
+    return this.times[i];
+  }
+
+  value(i, place, run) {
+    const runs = this.samples[i];
+    return (runs[run] || runs[0])[place];
+  }
+
+  // The last sample not after a time.
+  placeOf(time, first = 0, last = this.length) {
+    let low = first, high = last - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    return Math.max(first, low);
+  }
+
+  csv(names) {
+    const rows = this.times.map((time, i) => [time, ...this.samples[i].flatMap((run) => [...run])].join(","));
+    const columns = Array.from({ length: this.runs }, (_, run) => names.map((name) => (run === 0 ? name : `ghost ${name}`))).flat();
+    return `${["time", ...columns].map((name) => (/[",]/.test(name) ? `"${name}"` : name)).join(",")}\n${rows.join("\n")}\n`;
+  }
+}

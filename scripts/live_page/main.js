@@ -1,0 +1,252 @@
+// The page: what runs in the worker is shown, what is set goes to it.
+"use strict";
+
+const $ = (id) => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+const { description } = data;
+const shownVariables = data.shown.map((place) => description.variables[place]);
+const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
+const history = new History(shownVariables.length);
+const controls = new Map(); // by the place of the variable
+const plots = [];
+const live = (window.live = { history, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null }); // for tests, and the curious
+let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
+
+async function unpacked(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
+async function load(text) {
+  const script = document.createElement("script");
+  script.src = URL.createObjectURL(new Blob([await unpacked(text)], { type: "text/javascript" }));
+  await new Promise((done) => {
+    script.onload = done;
+    document.head.append(script);
+  });
+}
+
+const order = (name, content = {}) => worker.postMessage({ name, ...content });
+
+// The value of a formula of parameters; NaN where it holds more than that.
+function valueOf(formula) {
+  const text = formula.replace(/[A-Za-z_][\w.]*(\[[^\]]*\])*(?!\w*\()/g, (name) => {
+    const place = description.variables.findIndex((variable) => variable.name === name);
+    if (place < 0) return name === "pi" ? "Math.PI" : /^e\d*$/i.test(name) ? name : "NaN";
+    return `(${controls.get(place)?.value ?? description.variables[place].start})`;
+  });
+  try {
+    return Number(new Function(...["sin", "cos", "tan", "sqrt", "exp", "log", "abs", "min", "max"], `return ${text.replace(/\^/g, "**")}`)(Math.sin, Math.cos, Math.tan, Math.sqrt, Math.exp, Math.log, Math.abs, Math.min, Math.max));
+  } catch {
+    return NaN;
+  }
+}
+
+function say(words) {
+  $("words").hidden = !words;
+  $("words").textContent = words;
+}
+
+const answers = {
+  ready() {
+    live.ready();
+  },
+  preview({ rows }) {
+    if (!data.hasScene) return;
+    scene.build(rows.length ? rows : history.samples.map((runs) => runs[0]));
+    $("turning").parentElement.hidden = !scene.plane;
+  },
+  samples({ times, rows, isFresh }) {
+    if (isFresh) history.cut(times[0]);
+    if (history.length > 0 && history.runs !== rows[0].length) history.clear();
+    times.forEach((time, i) => history.add(time, rows[i]));
+    viewed = null;
+    $("past").max = Math.max(0, history.length - 1);
+    $("past").value = $("past").max;
+  },
+  pace({ reached, isBehind }) {
+    pace = [0.95 * pace[0] + 0.05 * Number(isBehind), 0.95 * pace[1] + reached];
+  },
+  paused() {
+    setPlaying(false);
+  },
+  accepted({ about }) {
+    if (about === "start") for (const control of controls.values()) control.say("");
+    else controls.get(about)?.say("");
+    say("");
+  },
+  refused({ words, about }) {
+    if (controls.has(about)) controls.get(about).say(words);
+    else say(words);
+  },
+  ran(message) {
+    live.answers.ran(message);
+  },
+};
+
+function setPlaying(isPlaying) {
+  playing = isPlaying;
+  $("play").textContent = isPlaying ? "Pause" : "Play";
+}
+
+function play() {
+  if (!playing) order("play");
+  else order("pause");
+  setPlaying(!playing);
+}
+
+function setSpeed() {
+  const speed = Number((10 ** Number($("speed").value)).toPrecision(2));
+  $("speedShown").textContent = `× ${speed}`;
+  order("speed", { value: speed });
+}
+
+function addControls() {
+  const kinds = [["input", "Inputs"], ["parameter", "Parameters"], ["start", "Start values"]];
+  for (const [role, title] of kinds) {
+    const found = description.variables.map((variable, place) => [variable, place]).filter(([variable]) => variable.role === role);
+    if (found.length === 0) continue;
+    const made = found.map(([variable, place]) => {
+      const control = new Control(variable, (value) => set(place, value));
+      controls.set(place, control);
+      return control;
+    });
+    $("controls").append(section(title, made, role !== "start" || found.length <= 12));
+  }
+}
+
+let waiting = false;
+
+function set(place, value) {
+  order("set", { place, value });
+  const { role, isFixed } = description.variables[place];
+  if ((role !== "start" && !isFixed) || waiting) return;
+  // Seen at once where nothing has moved yet, or at the next start.
+  if (history.length <= 1) {
+    waiting = true;
+    setTimeout(() => {
+      waiting = false;
+      order("reset");
+    }, 50);
+  }
+}
+
+// The arrow keys push the first two inputs as long as they are held.
+function keys() {
+  const inputs = [...controls].filter(([place]) => description.variables[place].role === "input").slice(0, 2);
+  const pushes = new Map();
+  inputs.forEach(([place, control], i) => {
+    pushes.set(i === 0 ? "ArrowLeft" : "ArrowDown", [place, control, -1]);
+    pushes.set(i === 0 ? "ArrowRight" : "ArrowUp", [place, control, 1]);
+    control.element.querySelector(".name").append(Object.assign(document.createElement("small"), { textContent: i === 0 ? " keys ← →" : " keys ↓ ↑" }));
+  });
+  const push = (event, share) => {
+    if (["INPUT", "SELECT"].includes(event.target.tagName) || !pushes.has(event.key) || event.repeat) return;
+    event.preventDefault();
+    const [place, control, sign] = pushes.get(event.key), { variable } = control;
+    const value = share === 0 ? variable.start : variable.start + share * (sign > 0 ? control.high - variable.start : control.low - variable.start);
+    control.choose(value, (chosen) => set(place, chosen));
+  };
+  document.addEventListener("keydown", (event) => push(event, 0.5));
+  document.addEventListener("keyup", (event) => push(event, 0));
+  const actions = { " ": play, ".": () => order("step"), ",": () => order("back"), r: () => order("reset") };
+  document.addEventListener("keydown", (event) => {
+    if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName) || !actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+  });
+}
+
+function addPlots() {
+  for (const { places, across } of data.plots) {
+    const plot = new Plot(history, shownVariables, places, across);
+    plots.push(plot);
+    $("plots").append(plot.element);
+  }
+}
+
+function frame() {
+  if (history.length > 0) {
+    const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
+    $("clock").textContent = `${history.time(at).toFixed(2)} s`;
+    $("pace").textContent = playing && pace[0] > 0.5 ? "slower than wished" : "";
+    if (scene && scene.objects) scene.draw(history, at);
+    const first = history.placeOf(history.time(history.length - 1) - data.window);
+    for (const plot of plots) plot.draw(first, history.length, at);
+  }
+  requestAnimationFrame(frame);
+}
+
+function save(name, content, type) {
+  const link = Object.assign(document.createElement("a"), { download: name, href: URL.createObjectURL(new Blob([content], { type })) });
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+// What differs from the author's values, by names.
+const settings = () => [...controls].filter(([place, control]) => control.value !== description.variables[place].start);
+
+function addActions() {
+  $("play").addEventListener("click", play);
+  for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => order(name));
+  $("speed").addEventListener("input", setSpeed);
+  $("past").addEventListener("input", () => (viewed = Number($("past").value)));
+  $("fit").addEventListener("click", () => scene && scene.fit());
+  $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
+  for (const name of ["names", "trails", "forces"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
+  $("csv").addEventListener("click", () => save(`${description.name}.csv`, history.csv(live.names), "text/csv"));
+  $("picture").addEventListener("click", () => scene && scene.renderer.domElement.toBlob((picture) => save(`${description.name}.png`, picture, "image/png")));
+  $("link").addEventListener("click", () => {
+    const words = new URLSearchParams(settings().map(([place, control]) => [description.variables[place].name, control.value]));
+    window.history.replaceState(null, "", `#${words}`);
+    if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
+  });
+  $("licenses").addEventListener("click", () => {
+    $("licenseWords").querySelector("pre").textContent = data.licenses;
+    $("licenseWords").showModal();
+  });
+  window.addEventListener("resize", () => scene && scene.objects && scene.resize());
+}
+
+// Values of the address behind its #: name=value&name=value.
+function settingsOfAddress() {
+  const byName = new Map(description.variables.map((variable, place) => [variable.name, place])), found = [];
+  for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
+    const place = byName.get(name), value = Number(text);
+    if (!controls.has(place) || !Number.isFinite(value)) continue;
+    controls.get(place).choose(value, () => {});
+    found.push([place, value]);
+  }
+  return found;
+}
+
+// For tests: the time, all that is shown and the seconds it took, behind steps of the author's length without pacing.
+live.run = (until) =>
+  new Promise((done) => {
+    live.answers.ran = done;
+    order("run", { until });
+  });
+
+async function begin() {
+  addControls();
+  addPlots();
+  addActions();
+  keys();
+  if (data.hasScene) {
+    await load(data.renderer);
+    scene = live.scene = new Scene($("scene"), data.scene, (name) => columnOf.get(name) ?? -1, valueOf);
+    scene.wished = { trails: true, names: false, turning: false, forces: true };
+  } else $("view").remove();
+  document.body.classList.toggle("plain", !data.hasScene);
+  const started = new Promise((done) => (live.ready = done));
+  worker = new Worker(URL.createObjectURL(new Blob([data.worker], { type: "text/javascript" })));
+  worker.onmessage = (event) => answers[event.data.name](event.data);
+  setSpeed();
+  const wasm = await unpacked(data.wasm), references = data.shown.map((place) => description.variables[place].reference);
+  worker.postMessage({ name: "begin", wasm, description, references, set: settingsOfAddress() }, [wasm]);
+  await started;
+  requestAnimationFrame(frame);
+  document.body.dataset.ready = "true";
+}
+
+live.started = begin();

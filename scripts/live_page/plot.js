@@ -1,0 +1,152 @@
+// A plot of variables against time, or against another one, on a canvas.
+"use strict";
+
+const COLORS = ["#2f7ed8", "#d9622b", "#2ca05a", "#8e5bd0", "#c23b6e", "#8a7a1f", "#17a2b8", "#7f7f7f"];
+
+// Steps of 1, 2 or 5 times a power of ten, about this many.
+function ticksOf(low, high, count) {
+  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough * (1 - 1e-9)), ticks = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) ticks.push(i * step);
+  return ticks;
+}
+
+function shown(value, digits = 4) {
+  if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) return value.toExponential(Math.max(0, digits - 2)).replace("e+", "e");
+  return String(Number(value.toPrecision(digits)));
+}
+
+class Plot {
+  // history: see history.js; choices: names and units of what can be drawn; across: the place of a variable, or -1 for the time.
+  constructor(history, choices, places, across = -1) {
+    Object.assign(this, { history, choices, places, across, cursor: null });
+    this.element = document.createElement("div");
+    this.element.className = "plot";
+    this.canvas = document.createElement("canvas");
+    this.legend = document.createElement("div");
+    this.legend.className = "legend";
+    this.element.append(this.legend, this.canvas);
+    this.canvas.addEventListener("pointermove", (event) => (this.cursor = [event.offsetX, event.offsetY]));
+    this.canvas.addEventListener("pointerleave", () => (this.cursor = null));
+    this.writeLegend();
+  }
+
+  selection(title, first, chosen, act) {
+    const select = document.createElement("select");
+    select.title = title;
+    select.append(new Option(first, ""));
+    this.choices.forEach((choice, place) => select.append(new Option(choice.name, place, false, place === chosen)));
+    select.addEventListener("change", () => {
+      act(select.value === "" ? -1 : Number(select.value));
+      this.writeLegend();
+    });
+    return select;
+  }
+
+  writeLegend() {
+    const items = this.places.map((place, i) => {
+      const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b");
+      mark.style.background = COLORS[i % COLORS.length];
+      item.append(mark, `${this.choices[place].name}${this.choices[place].unit ? ` [${this.choices[place].unit}]` : ""} `, value);
+      item.title = "click to leave it out";
+      item.addEventListener("click", () => {
+        this.places.splice(i, 1);
+        this.writeLegend();
+      });
+      return item;
+    });
+    const adding = this.selection("another variable", "+ variable", -1, (place) => place >= 0 && !this.places.includes(place) && this.places.push(place));
+    const across = this.selection("against what", "against time", this.across, (place) => (this.across = place));
+    this.values = items.map((item) => item.lastChild);
+    this.legend.replaceChildren(...items, adding, across);
+  }
+
+  rangeOf(first, last, column) {
+    let low = Infinity, high = -Infinity;
+    for (let i = first; i < last; i++) {
+      const value = column(i);
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+    if (!(high >= low)) return [0, 1];
+    const room = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
+    return [low - room, high + room];
+  }
+
+  // The samples from first to last, with a mark at one of them.
+  draw(first, last, marked) {
+    const ratio = window.devicePixelRatio || 1, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {
+      this.canvas.width = Math.round(width * ratio);
+      this.canvas.height = Math.round(height * ratio);
+    }
+    const pen = this.canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
+    const [ink, grid] = ["--faint", "--grid"].map((name) => style.getPropertyValue(name));
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    pen.font = "11px system-ui, sans-serif";
+    const { history, across } = this, column = (place, run) => (i) => history.value(i, place, run);
+    const horizontal = across < 0 ? (i) => history.time(i) : column(across, 0);
+    const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + 1e-9)] : this.rangeOf(first, last, horizontal);
+    const ranges = this.places.map((place) => this.rangeOf(first, last, column(place, 0)));
+    const range = ranges.length ? [Math.min(...ranges.map((one) => one[0])), Math.max(...ranges.map((one) => one[1]))] : [0, 1];
+    const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => shown(tick));
+    const left = 8 + Math.max(20, ...labels.map((label) => pen.measureText(label).width)), bottom = height - 18;
+    const x = (value) => left + ((value - span[0]) / (span[1] - span[0])) * (width - left - 8);
+    const y = (value) => bottom - ((value - range[0]) / (range[1] - range[0])) * (bottom - 6);
+    this.drawGrid(pen, { ticks, labels, across: ticksOf(...span, Math.max(2, width / 80)), x, y, left, bottom, width, ink, grid });
+    pen.save();
+    pen.beginPath();
+    pen.rect(left, 0, width - left, bottom);
+    pen.clip();
+    for (let run = history.runs - 1; run >= 0; run--)
+      this.places.forEach((place, i) => {
+        const along = across < 0 ? horizontal : column(across, run);
+        this.drawLine(pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(place, run)), COLORS[i % COLORS.length], run);
+      });
+    pen.restore();
+    const at = this.cursor && across < 0 ? history.placeOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
+    if (at !== null && at < last) this.drawMarks(pen, at, x(horizontal(at)), y, bottom, ink);
+    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(history.value(at, this.places[i], 0), 5) : ""));
+  }
+
+  drawGrid(pen, { ticks, labels, across, x, y, left, bottom, width, ink, grid }) {
+    pen.lineWidth = 1;
+    pen.strokeStyle = grid;
+    pen.fillStyle = ink;
+    pen.beginPath();
+    for (const tick of ticks) pen.moveTo(left, y(tick)), pen.lineTo(width, y(tick));
+    for (const tick of across) pen.moveTo(x(tick), 0), pen.lineTo(x(tick), bottom);
+    pen.stroke();
+    pen.textAlign = "right";
+    ticks.forEach((tick, i) => pen.fillText(labels[i], left - 4, y(tick) + 4));
+    pen.textAlign = "center";
+    for (const tick of across) if (x(tick) > left + 8 && x(tick) < width - 12) pen.fillText(shown(tick), x(tick), bottom + 14);
+  }
+
+  drawLine(pen, first, last, x, y, color, run) {
+    pen.beginPath();
+    const every = Math.max(1, Math.floor((last - first) / 3000));
+    for (let i = first; i < last; i += every) pen.lineTo(x(i), y(i));
+    if (last > first) pen.lineTo(x(last - 1), y(last - 1));
+    pen.strokeStyle = color;
+    pen.globalAlpha = run === 0 ? 1 : 0.4;
+    pen.lineWidth = run === 0 ? 1.6 : 3;
+    pen.stroke();
+    pen.globalAlpha = 1;
+  }
+
+  drawMarks(pen, at, x, y, bottom, ink) {
+    pen.strokeStyle = ink;
+    pen.beginPath();
+    pen.moveTo(x, 0);
+    pen.lineTo(x, bottom);
+    pen.stroke();
+    this.places.forEach((place, i) => {
+      pen.beginPath();
+      pen.arc(x, y(this.history.value(at, place, 0)), 3, 0, 7);
+      pen.fillStyle = COLORS[i % COLORS.length];
+      pen.fill();
+    });
+  }
+}

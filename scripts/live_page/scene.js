@@ -1,0 +1,381 @@
+// The system in space, by three.js: frames, bodies, particles and points where the variables say that they are, and what holds them together.
+"use strict";
+
+const AXES = ["x", "y", "z"];
+const TRAIL = 240; // samples
+const TRAILS = 8; // at most
+
+class Scene {
+  // things: the elements of <scene>; column(name): the place of a variable in a sample, -1 for none; value(formula): of parameters.
+  constructor(container, things, column, value) {
+    Object.assign(this, { container, column, value, labels: [], arrows: [], wished: {} });
+    this.gravity = things.find((thing) => thing.tag === "gravity");
+    this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
+    this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
+    this.surfaces = things.filter((thing) => thing.tag === "surface");
+    this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
+    this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
+    this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
+    this.turns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    container.append(this.renderer.domElement);
+    this.world = new THREE.Scene();
+    this.world.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 0.75));
+    this.light = new THREE.DirectionalLight(0xffffff, 0.55);
+    this.world.add(this.light);
+  }
+
+  position(sample, i, target = new THREE.Vector3()) {
+    if (i === undefined) return target.set(0, 0, 0);
+    const [x, y, z] = this.columns[i].map((place) => (place < 0 ? 0 : sample[place]));
+    return target.set(x, y, z);
+  }
+
+  // The axes of a frame, or of what is in it.
+  turn(sample, i, target = new THREE.Matrix4()) {
+    if (i === undefined) return target.identity();
+    const angle = this.angles[i], turns = this.turns[i];
+    if (angle >= 0) return target.makeRotationZ(sample[angle]);
+    if (turns.every((place) => place < 0)) return this.turn(sample, this.byName.get(this.things[i].in), target);
+    const r = turns.map((place) => (place < 0 ? 0 : sample[place]));
+    return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
+  }
+
+  // Of a joint: where it is on the thing it holds.
+  jointPosition(sample, joint, target) {
+    const i = this.byName.get(joint.of);
+    target.set(Number(joint.x || 0), Number(joint.y || 0), Number(joint.z || 0)).applyMatrix4(this.turn(sample, i));
+    return target.add(this.position(sample, i));
+  }
+
+  upwards() {
+    const along = this.gravity ? AXES.map((axis) => -this.value(this.gravity[axis] || "0")) : [0, 0, 0];
+    const largest = Math.max(...along.map(Math.abs));
+    if (largest > 0) return along.map((a) => (Math.abs(a) === largest ? Math.sign(a) : 0));
+    return this.plane ? (this.plane.includes(1) ? [0, 1, 0] : [0, 0, 1]) : [0, 0, 1];
+  }
+
+  // The two axes in which all moves where that is a plane, looked for in these samples.
+  findPlane(samples) {
+    const still = [2, 1, 0].find((axis) => {
+      const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
+      const turnsAbout = (sample, turns) => turns[0] < 0 || Math.abs(sample[turns[4 * axis]] - 1) < 1e-9;
+      return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`] || 0)) &&
+        this.turns.every((turns) => samples.every((sample) => turnsAbout(sample, turns)));
+    });
+    return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
+  }
+
+  // Builds what is seen, of a size for all of these samples.
+  build(samples) {
+    this.plane = this.findPlane(samples);
+    this.up = this.upwards();
+    this.box = new THREE.Box3();
+    const point = new THREE.Vector3();
+    for (const sample of samples) {
+      this.things.forEach((_, i) => this.box.expandByPoint(this.position(sample, i, point)));
+      for (const holder of this.holders) if (holder.tag === "joint") this.box.expandByPoint(this.jointPosition(sample, holder, point));
+    }
+    const size = this.box.getSize(new THREE.Vector3()).length();
+    if (this.holders.some((holder) => !holder.from && holder.tag === "rod") || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size) this.box.expandByPoint(point.set(0, 0, 0));
+    this.solids = this.things.map((thing) => this.solidOf(thing));
+    const largest = Math.max(0, ...this.solids.filter(Boolean).map(sizeOf));
+    for (const sample of samples) this.things.forEach((_, i) => this.solids[i] && this.box.expandByPoint(this.position(sample, i, point)));
+    if (largest > 0) this.box.expandByScalar(largest);
+    this.radius = 0.5 * this.box.getSize(point).length() || 1;
+    if (!this.box.isEmpty() && this.radius === 0) this.box.expandByScalar(1);
+    this.makeColors();
+    this.addGround();
+    this.objects = this.things.map((thing, i) => this.addThing(thing, i));
+    this.rods = this.holders.map((holder) => this.addRod(holder)).filter(Boolean);
+    this.addSurfaces();
+    this.addTrails();
+    this.makeCamera();
+    this.resize();
+  }
+
+  makeColors() {
+    this.isDark = matchMedia("(prefers-color-scheme: dark)").matches;
+    this.material = (color, more = {}) => new THREE.MeshStandardMaterial({ color, roughness: 0.6, metalness: 0.1, ...more });
+    this.rodMaterial = this.material(this.isDark ? 0xa9b4c4 : 0x6d7786);
+  }
+
+  colorOf(i) {
+    return COLORS[i % COLORS.length];
+  }
+
+  solidOf(thing) {
+    if (thing.tag !== "body" || (thing.inertia !== undefined && this.isJointed(thing.name))) return null;
+    const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
+    if (thing.inertia !== undefined) {
+      const moment = entry("inertia");
+      return mass > 0 && moment > 0 ? { kind: "cylinder", radius: Math.sqrt((2 * moment) / mass), length: 0, axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] } : null;
+    }
+    const [xx, xy, xz, yy, yz, zz] = ["Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz"].map(entry);
+    const tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    if (mass > 0) return solidOf(mass, tensor);
+    // Only its shape is known: of a size to be seen.
+    const size = 0.5 * this.box.getSize(new THREE.Vector3()).length() || 1, solid = solidOf(1, tensor);
+    if (!solid) return null;
+    return solidOf((sizeOf(solid) / (0.35 * size)) ** 2, tensor);
+  }
+
+  isJointed(name) {
+    return this.holders.some((holder) => holder.tag === "joint" && holder.of === name);
+  }
+
+  addThing(thing, i) {
+    const group = new THREE.Group(), solid = this.solids[i];
+    const masses = this.things.map((one) => this.value(one.mass || "0")).filter(Number.isFinite), heaviest = Math.max(...masses, 0) || 1;
+    const crowd = 1 / (1 + this.things.length / 12);
+    if (solid) group.add(this.meshOf(solid, i));
+    else if (thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name))) {
+      const mass = this.value(thing.mass || "0"), share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
+      const radius = Number(thing.radius) || 0.07 * this.radius * crowd * (0.35 + 0.65 * share);
+      group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 24, 16), this.material(this.colorOf(i))));
+    } else if (thing.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
+    else if (thing.tag === "frame") {
+      group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
+      if (!this.plane) group.add(new THREE.AxesHelper(0.12 * this.radius));
+    }
+    group.matrixAutoUpdate = false;
+    this.world.add(group);
+    this.addLabel(thing.name);
+    return group;
+  }
+
+  meshOf(solid, i) {
+    const thin = 0.03 * this.radius, mesh = new THREE.Group(), material = this.material(this.colorOf(i), { transparent: true, opacity: 0.92 });
+    const marked = this.material(this.isDark ? 0x14171c : 0xffffff);
+    if (solid.kind === "ball") mesh.add(new THREE.Mesh(new THREE.SphereBufferGeometry(solid.radius, 32, 24), material));
+    else if (solid.kind === "box") mesh.add(new THREE.Mesh(new THREE.BoxBufferGeometry(...solid.sides.map((side) => Math.max(side, thin))), material));
+    else {
+      const radius = Math.max(solid.radius, thin / 3), length = Math.max(solid.length, thin);
+      const cylinder = new THREE.Mesh(new THREE.CylinderBufferGeometry(radius, radius, length, 48), material);
+      cylinder.rotation.x = Math.PI / 2; // from three's axis y to the third one
+      mesh.add(cylinder);
+      const stripe = new THREE.Mesh(new THREE.BoxBufferGeometry(0.9 * radius, 0.07 * radius, 1.02 * length), marked); // to see it turn
+      stripe.position.x = 0.5 * radius;
+      if (solid.length < 3 * solid.radius) mesh.add(stripe);
+    }
+    mesh.applyMatrix(new THREE.Matrix4().makeBasis(...properAxes(solid.axes).map((axis) => new THREE.Vector3(...axis))));
+    return mesh;
+  }
+
+  // A rod between two things, or from a planar body's centre to its joint.
+  addRod(holder) {
+    const thickness = 0.014 * this.radius / (1 + this.things.length / 60);
+    const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);
+    this.world.add(mesh);
+    let knob = null;
+    if (holder.tag === "joint") {
+      knob = new THREE.Mesh(new THREE.SphereBufferGeometry(1.6 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
+      this.world.add(knob);
+    }
+    if (holder.tag === "rod" && !holder.from) {
+      knob = new THREE.Mesh(new THREE.SphereBufferGeometry(2 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
+      this.world.add(knob);
+    }
+    return { holder, mesh, knob };
+  }
+
+  placeRods(sample) {
+    const from = new THREE.Vector3(), to = new THREE.Vector3(), way = new THREE.Vector3(), y = new THREE.Vector3(0, 1, 0);
+    for (const { holder, mesh, knob } of this.rods) {
+      if (holder.tag === "joint") {
+        this.position(sample, this.byName.get(holder.of), from);
+        this.jointPosition(sample, holder, to);
+        knob.position.copy(to);
+      } else {
+        this.position(sample, this.byName.get(holder.from), from);
+        this.position(sample, this.byName.get(holder.to), to);
+        if (knob) knob.position.copy(from);
+      }
+      const length = way.subVectors(to, from).length();
+      mesh.visible = length > 1e-9 * this.radius;
+      if (!mesh.visible) continue;
+      mesh.position.addVectors(from, to).multiplyScalar(0.5);
+      mesh.quaternion.setFromUnitVectors(y, way.normalize());
+      mesh.scale.set(1, length, 1);
+    }
+  }
+
+  // Planes that things hit: normal . position = distance.
+  addSurfaces() {
+    for (const surface of this.surfaces) {
+      const normal = new THREE.Vector3(...AXES.map((axis) => Number(surface[`n${axis}`] || 0))), size = 2.2 * this.radius;
+      const centre = this.box.getCenter(new THREE.Vector3()), distance = Number(surface.distance || 0);
+      const middle = centre.clone().addScaledVector(normal, distance - normal.dot(centre));
+      if (surface.x !== undefined) middle.set(...AXES.map((axis) => Number(surface[axis] || 0)));
+      const extent = surface.x !== undefined ? 0.25 * this.radius : size, thickness = 0.03 * this.radius;
+      const plate = new THREE.Mesh(new THREE.BoxBufferGeometry(extent, thickness, this.plane ? 0.4 * this.radius : extent), this.material(this.isDark ? 0x4b5565 : 0xb4bcc8, { transparent: true, opacity: 0.85 }));
+      plate.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
+      plate.position.copy(middle).addScaledVector(normal, -thickness / 2);
+      this.world.add(plate);
+    }
+  }
+
+  addTrails() {
+    const moving = this.things.map((thing, i) => i).filter((i) => !["frame"].includes(this.things[i].tag) && !this.isJointed(this.things[i].name) && this.columns[i].some((c) => c >= 0));
+    const chosen = moving.length <= TRAILS ? moving : moving.slice(-1);
+    this.trails = chosen.map((i) => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * TRAIL), 3));
+      const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: this.colorOf(i), transparent: true, opacity: 0.7 }));
+      line.frustumCulled = false;
+      this.world.add(line);
+      return { i, line };
+    });
+  }
+
+  placeTrails(history, at) {
+    const point = new THREE.Vector3(), count = Math.min(TRAIL, at + 1);
+    for (const { i, line } of this.trails) {
+      line.visible = Boolean(this.wished.trails);
+      if (!line.visible) continue;
+      const attribute = line.geometry.attributes.position;
+      for (let k = 0; k < count; k++) {
+        this.position(history.samples[at - count + 1 + k][0], i, point);
+        attribute.setXYZ(k, point.x, point.y, point.z);
+      }
+      attribute.needsUpdate = true;
+      line.geometry.setDrawRange(0, count);
+    }
+  }
+
+  addGround() {
+    const size = 2 ** Math.ceil(Math.log2(2.4 * this.radius)), color = this.isDark ? [0x4b5565, 0x2b313b] : [0xb9c2ce, 0xe2e6ec];
+    const grid = new THREE.GridHelper(2 * size, 20, ...color), up = new THREE.Vector3(...this.up);
+    const centre = this.box.getCenter(new THREE.Vector3());
+    if (this.plane) {
+      const axis = [0, 1, 2].find((one) => !this.plane.includes(one)), normal = new THREE.Vector3().setComponent(axis, 1);
+      grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
+      grid.position.setComponent(axis, (axis === 1 ? 1 : -1) * 0.5 * this.radius);
+    } else {
+      grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
+      const lowest = Math.min(up.dot(this.box.min), up.dot(this.box.max));
+      grid.position.copy(centre).addScaledVector(up, lowest - up.dot(centre));
+    }
+    this.world.add(grid);
+  }
+
+  makeCamera() {
+    if (this.controls) this.controls.dispose();
+    const up = new THREE.Vector3(...this.up), centre = this.box.getCenter(new THREE.Vector3());
+    let outwards;
+    if (this.plane) outwards = new THREE.Vector3().crossVectors(new THREE.Vector3().setComponent(this.plane.find((axis) => !this.up[axis]), 1), up);
+    else {
+      const [first, second] = [new THREE.Vector3(), new THREE.Vector3()], axis = this.up.findIndex((x) => x !== 0);
+      first.setComponent((axis + 1) % 3, 1);
+      second.setComponent((axis + 2) % 3, 1);
+      outwards = first.multiplyScalar(0.55).addScaledVector(second, -0.75).addScaledVector(up, 0.4).normalize();
+    }
+    this.camera = this.plane ? new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 40 * this.radius) : new THREE.PerspectiveCamera(35, 1, 0.01 * this.radius, 100 * this.radius);
+    this.camera.up.copy(up);
+    this.camera.position.copy(centre).addScaledVector(outwards, this.plane ? 10 * this.radius : 4 * this.radius);
+    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.target.copy(centre);
+    this.controls.enableKeys = false;
+    this.controls.screenSpacePanning = true;
+    this.allowTurning(!this.plane || this.wished.turning);
+    this.light.position.copy(outwards).addScaledVector(up, 0.8).add(new THREE.Vector3(0.3, 0.2, 0.1));
+    this.outwards = outwards;
+    this.controls.update();
+  }
+
+  allowTurning(isAllowed) {
+    this.controls.enableRotate = isAllowed;
+    this.controls.mouseButtons.LEFT = isAllowed ? THREE.MOUSE.ROTATE : THREE.MOUSE.PAN;
+    this.controls.touches.ONE = isAllowed ? THREE.TOUCH.ROTATE : THREE.TOUCH.PAN;
+  }
+
+  resize() {
+    const width = this.container.clientWidth || 1, height = this.container.clientHeight || 1;
+    this.renderer.setPixelRatio(window.devicePixelRatio || 1);
+    this.renderer.setSize(width, height);
+    const aspect = width / height;
+    if (this.plane) {
+      const size = this.box.getSize(new THREE.Vector3()), upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
+      const room = 0.16 * this.radius + 1e-9;
+      const half = Math.max(0.5 * size.getComponent(upAxis) + room, (0.5 * size.getComponent(across) + room) / aspect);
+      Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
+    } else {
+      this.camera.aspect = aspect;
+      const distance = (1.1 * this.radius) / Math.sin((35 * Math.PI) / 360) / Math.min(1, aspect);
+      if (!this.sized) this.camera.position.copy(this.controls.target).addScaledVector(this.outwards, distance);
+      this.sized = true;
+    }
+    this.camera.updateProjectionMatrix();
+  }
+
+  fit() {
+    this.sized = false;
+    this.makeCamera();
+    this.resize();
+  }
+
+  addLabel(text) {
+    const label = document.createElement("span");
+    label.className = "label";
+    label.textContent = text;
+    this.container.append(label);
+    this.labels.push(label);
+  }
+
+  placeLabels(sample) {
+    const point = new THREE.Vector3(), width = this.container.clientWidth, height = this.container.clientHeight, taken = [];
+    this.labels.forEach((label, i) => {
+      label.style.display = this.wished.names ? "" : "none";
+      if (!this.wished.names) return;
+      this.position(sample, i, point).project(this.camera);
+      const x = ((point.x + 1) * width) / 2 + 8;
+      let y = ((1 - point.y) * height) / 2 - 18;
+      while (taken.some((other) => Math.abs(other[0] - x) < 50 && Math.abs(other[1] - y) < 13)) y += 13;
+      taken.push([x, y]);
+      label.style.transform = `translate(${x}px, ${y}px)`;
+    });
+  }
+
+  placeThings(objects, sample) {
+    const turn = new THREE.Matrix4(), point = new THREE.Vector3();
+    objects.forEach((object, i) => {
+      this.turn(sample, i, turn);
+      object.matrix.copy(turn).setPosition(this.position(sample, i, point));
+      object.matrixWorldNeedsUpdate = true;
+    });
+  }
+
+  placeGhost(sample) {
+    if (!sample && !this.ghosts) return;
+    this.ghosts = this.ghosts || this.things.map((_, i) => this.ghostOf(i));
+    for (const ghost of this.ghosts) ghost.visible = Boolean(sample);
+    if (sample) this.placeThings(this.ghosts, sample);
+  }
+
+  ghostOf(i) {
+    const ghost = this.objects[i].clone();
+    ghost.traverse((part) => part.isMesh && (part.material = this.material(this.colorOf(i), { transparent: true, opacity: 0.35 })));
+    ghost.matrixAutoUpdate = false;
+    this.world.add(ghost);
+    return ghost;
+  }
+
+  // Of a history: the sample at a place.
+  draw(history, at) {
+    const runs = history.samples[at];
+    this.placeThings(this.objects, runs[0]);
+    this.placeGhost(runs[1]);
+    this.placeRods(runs[0]);
+    this.placeTrails(history, at);
+    this.controls.update();
+    this.renderer.render(this.world, this.camera);
+    this.placeLabels(runs[0]);
+  }
+}
+
+// Right-handed.
+function properAxes([first, second, third]) {
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const sign = cross(first, second).reduce((sum, x, k) => sum + x * third[k], 0);
+  return sign < 0 ? [first, second.map((x) => -x), third] : [first, second, third];
+}

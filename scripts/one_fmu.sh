@@ -1,0 +1,30 @@
+# For scripts that are given a system, sourced by them: builds its FMU. Needs $command, their name; $here, the folder they were called in;
+# and $system: a name in fmu/, or a path to a folder NAME with a system.xml in it, to that file, or to the URDF of a robot. Sets $fmu.
+if [ -f "fmu/$system/system.xml" ]; then
+  source=$PWD/fmu/$system
+else
+  source=$(cd "$here" && realpath -m -- "$system")
+  if [ "${source##*/}" = system.xml ]; then source=${source%/*}; fi
+  inside=("$source"/*/system.xml)
+  if [ ! -f "$source/system.xml" ] && [ ${#inside[@]} = 1 ] && [ -f "${inside[0]}" ]; then source=${inside[0]%/*}; fi
+fi
+file=$source
+if [ ! -f "$file" ]; then file=$source/system.xml; fi
+if [ ! -f "$file" ]; then
+  if [ -f "${inside[0]}" ]; then
+    echo "$command: $source holds several systems; name one of them: ${inside[*]%/system.xml}" >&2
+  else
+    echo "$command: there is neither fmu/$system/system.xml nor $source/system.xml; the systems in fmu are:" \
+      "$(cd fmu && dirname */system.xml | xargs)" >&2
+  fi
+  exit 1
+fi
+
+build=build
+if [ "${source%/*}" != "$PWD/fmu" ]; then build=build/own; fi
+scripts/setup $needed
+if grep -qE "method *= *[\"'](bdf|erk)[\"']" "$file"; then scripts/sundials; fi
+name=${source##*/}
+if [ $build = build ]; then scripts/build build; else scripts/build $build -DSYSTEMS="$source"; fi
+if [ -f "$source" ]; then name=$(cat $build/system_names); fi
+fmu=$build/fmu/$name.fmu
