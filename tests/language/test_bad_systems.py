@@ -133,7 +133,7 @@ CASES = [
      '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "structurally singular"),
     ("force along a coordinate with components", 9, '<force coordinate="theta" x="1">tau</force>', 9, "needs either coordinate="),
     ("force on a particle without components", 9, '<force on="bob">tau</force>', 9, "needs either coordinate="),
-    ("force on a particle with a text", 9, '<force on="bob" x="1">tau</force>', 9, '<force on="bob"> has a text'),
+    ("force on a particle with a text", 9, '<force on="bob" x="1">tau</force>', 9, '<force on="bob"> contains text'),
     ("force along what a particle has not", 9, '<force on="bob" z="1"/>', 9, "a force along z on 'bob', which has no z"),
     ("two particles of one name", 7,
      '<particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/>\n<particle name="bob" mass="m" z="l*theta"/>', 8,
@@ -143,7 +143,7 @@ CASES = [
      '<force coordinate="theta">tau*asin(sin(theta))</force><solver method="taylor"/>', 11, "asin of a sine has a kink.*expected the method 'erk'"),
     ("series of another function with a kink", 11,
      '<force coordinate="theta">tau*acosh(cosh(theta))</force><solver method="taylor"/>', 11, "acosh of a cosh has a kink"),
-    ("exact for a nonlinear system", 11, '<solver method="exact"/>', 11, "not linear.*another method than 'exact'"),
+    ("exact for a nonlinear system", 11, '<solver method="exact"/>', 11, "not linear.*a method other than 'exact'"),
     ("index that is not a number", 7, '<for index="i" from="1" to="n"></for>', 7, "unknown name 'n'"),
     ("index that is half", 7, '<for index="i" from="1" to="1.5"></for>', 7, "expected whole numbers"),
     ("endless repetition", 7, '<for index="i" from="1" to="1e9"></for>', 7, "at most 10000 repetitions"),
@@ -370,7 +370,7 @@ def test_no_warning(what, line, text, tmp_path):
     (b"", "1: the file does not begin with an element; expected <system"),
     (b"\n \n", "3: the file does not begin with an element"),
     (bytes(range(256)), "1: the file does not begin with an element"),
-    (RIGHT.replace("Pendulum", "P\u00e9ndulum").encode("latin-1"), "1: .*another encoding than UTF-8; expected it saved in UTF-8"),
+    (RIGHT.replace("Pendulum", "P\u00e9ndulum").encode("latin-1"), "1: .*an encoding other than UTF-8; save it in UTF-8"),
     (RIGHT.replace("system", "System").encode(), "1: the file begins with <System>; expected <system name="),
     ((RIGHT + RIGHT).encode(), "14: the file goes on after the end of its first element"),
 ])  # fmt: skip
@@ -385,7 +385,7 @@ def test_files_that_hold_no_system(text, message, tmp_path):
 def test_another_version_of_xml(version, tmp_path):
     """The file is read all the same, as XML 1.0 asks for."""
     result = compile_text(f'<?xml version="{version}"?>\n{RIGHT}', tmp_path)
-    assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names another version of XML than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
+    assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
 
 
 def test_a_missing_file_is_told_of_once(tmp_path):

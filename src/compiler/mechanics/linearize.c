@@ -175,7 +175,7 @@ static bool can_be_linearized(const struct Model *model, const struct Equations 
   if (depends_on_time)
     report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
   else if (equations->count == 0)
-    report_error(diagnostics, 0, "the system has no coordinates; expected some to linearise");
+    report_error(diagnostics, 0, "the system has no coordinates, and nothing to linearise; expected a <coordinate>");
   return !depends_on_time && equations->count > 0;
 }
 
@@ -277,7 +277,7 @@ static void fill_row(const struct Model *model, const struct Equations *equation
     elements[symbol->index] = slope;
     if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
       report_error(diagnostics, model->solver.line,
-                   "the system is not linear: der(%s) is not linear in %s; expected another method than 'exact'",
+                   "the system is not linear: der(%s) is not linear in %s; expected a method other than 'exact'",
                    model->velocities.items[row].name, symbol->name);
   }
 }
@@ -295,8 +295,8 @@ static void fill_accelerations(const struct Model *model, const struct Equations
     substitute(graph, &equations->acceleration[i], 1, zero, &system->c[n + i]);
     if (!graph_is_constant_in_time(graph, system->c[n + i]))
       report_error(diagnostics, model->solver.line,
-                   "the system is not linear with constant coefficients: der(%s) depends on time; expected another "
-                   "method than 'exact'",
+                   "the system is not linear with constant coefficients: der(%s) depends on time; expected a "
+                   "method other than 'exact'",
                    model->velocities.items[i].name);
   }
 }

@@ -10,7 +10,8 @@ static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
   if (coordinates == 0 && model->outputs.count == 0 && reader->diagnostics->errors == 0)
-    report_error(reader->diagnostics, 0, "the system has neither coordinates nor outputs; expected some");
+    report_error(reader->diagnostics, 0,
+                 "the system has neither coordinates nor outputs; expected a <coordinate> or an <output>");
   if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
                            model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
@@ -68,7 +69,7 @@ static void warn_of_displacements(const struct Reader *reader) {
   for (size_t i = 0; i < displacements->count; i++)
     if (!marks[displacements->items[i].node])
       report_warning(reader->diagnostics, displacements->items[i].line,
-                     "the displacement '%s' moves nothing, so that its force is 0; expected it in a position, an angle "
+                     "the displacement '%s' moves nothing, so its force is 0; expected it in a position, an angle "
                      "or a potential",
                      displacements->items[i].name);
 }

@@ -137,7 +137,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
   (void)unlockPreemption;
   struct Component description = {.logger = logMessage, .environment = environment, .categories = ALL_CATEGORIES};
   struct Log log = log_of(&description);
-  log_write(&log, STATUS_ERROR, "%s: the FMU is for model exchange and co-simulation alone", __func__);
+  log_write(&log, STATUS_ERROR, "%s: the FMU supports only model exchange and co-simulation", __func__);
   return NULL;
 }
 

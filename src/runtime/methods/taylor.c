@@ -152,7 +152,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
   else if (crawls(&taylor->crossing, moved, 1e-9))
     return "a function jumps to and fro there, as dry friction that sticks, for which there is <friction>";
   if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
-    return "the system is stiff there, which asks for <solver method=\"auto\"/> in system.xml";
+    return "the system is stiff there; it needs <solver method=\"auto\"/> in system.xml";
   return NULL;
 }
 

@@ -165,7 +165,7 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
     report_error(diagnostics, model->solver.line,
-                 "<work/> is not linear in the state; expected another method than 'exact'");
+                 "<work/> is not linear in the state; expected a method other than 'exact'");
 }
 
 static void create_jacobian(struct Expressions *expressions, struct Diagnostics *diagnostics) {

@@ -206,7 +206,7 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
     report_at(reader, node, "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
   else if (on != NULL && !is_blank(node))
-    report_at(reader, node, "<force on=\"%s\"> has a text; expected the force in x, y and z alone", on);
+    report_at(reader, node, "<force on=\"%s\"> contains text; expected the force in x, y and z only", on);
   else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);
   else add_cartesian_force(reader, node, on);
 }

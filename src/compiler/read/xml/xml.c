@@ -15,7 +15,7 @@ static char *meaning_of(const xmlError *error) {
   if (strstr(message, "EntityRef") != NULL)
     return copy_text("'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions");
   if (strstr(message, "not proper UTF-8") != NULL)
-    return copy_text("the file has letters in another encoding than UTF-8; expected it saved in UTF-8");
+    return copy_text("the file has letters in an encoding other than UTF-8; save it in UTF-8");
   switch (error->code) {
   case XML_ERR_NAME_REQUIRED:
     return copy_text("'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or "
@@ -56,7 +56,7 @@ static char *meaning_of(const xmlError *error) {
   case XML_ERR_INVALID_CHAR:
     return copy_text("an invisible character stands here that no text has; expected it removed");
   case XML_WAR_UNKNOWN_VERSION:
-    return copy_text("the first line names another version of XML than 1.0; expected <?xml version=\"1.0\"?>, or no "
+    return copy_text("the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no "
                      "such line");
   default: return NULL;
   }
