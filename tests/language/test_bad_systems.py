@@ -235,13 +235,13 @@ CASES = [
     ("entity of other languages", 8, "<potential>m&middot;g*bob.y</potential>", 8, "'&middot;' is not known; .* \\* for a product"),
     ("declaration further down", 1, '\n<?xml version="1.0"?><system name="Broken">', 2, "<.xml ....> stands further down; expected it at the very beginning"),
     ("unknown encoding", 1, '<?xml version="1.0" encoding="mine"?><system name="Broken">', 1, "not in the encoding that its first line names.*expected UTF-8"),
-    ("control character", 8, "<potential>m*g\a*bob.y</potential>", 8, "an invisible character stands here"),
+    ("control character", 8, "<potential>m*g\a*bob.y</potential>", 8, "there is an invisible character here"),
     ("function without parentheses", 7, '<particle name="bob" mass="m" y="l*cos theta"/>', 7, r"'cos' is not a variable but a function; .*as in cos\(...\)"),
     ("result in an expression", 10, '<output name="a">kineticEnergy</output>', 10, "'kineticEnergy' is not a variable but a result"),
     ("thousands", 2, '<parameter name="m" start="1,000"/>', 2, "found ','; write a point in numbers, .* nothing between thousands"),
     ("thousands with a blank", 2, '<parameter name="m" start="1 000"/>', 2, "found '000'; .* nothing between thousands"),
     ("no number as a value", 2, '<parameter name="m" start="NaN"/>', 2, "unknown name 'NaN'; a value must be a finite number"),
-    ("limit that is infinite", 2, '<parameter name="m" start="1" max="inf"/>', 2, "a limit that is not there is left out"),
+    ("limit that is infinite", 2, '<parameter name="m" start="1" max="inf"/>', 2, "leave out a limit"),
     ("stop of what is not a name yet", 10, '<coordinate name="x[2]" velocity="v[2]"/>\n<stop coordinate="x[N]" min="0"/>\n<constant name="N" value="2"/>', 11,
      "coordinate: unknown name 'N'; expected a number, or a constant that stands further up"),
     ("unknown name in a number", 2, '<parameter name="m" start="mass"/>', 2, "unknown name 'mass'; expected a number, or a constant that stands further up"),
@@ -316,7 +316,7 @@ WARNINGS = [
     ("area tangent", 8, "<potential>m*g*l*atanh(theta)</potential>", 8, r"atanh\(1\) at the start values"),
     ("mass of 0", 2, '<parameter name="m" start="0" unit="kg"/>', 7, "the mass of 'bob' is 0 at the start values"),
     ("inertia below 0", 7, '<body name="bob" mass="m" inertia="-m*l^2/2" x="l*theta" angle="theta"/>', 7, "the inertia of 'bob' is -0.5 at the start values"),
-    ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that the units .* are not checked"),
+    ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that units are not checked where it is used"),
     ("unit of an input forgotten", 5, '<input name="tau"/>', 5, "'tau' has no unit"),
     ("unit of a coordinate forgotten", 6, '<coordinate name="theta" velocity="omega" start="1"/>', 6, "'theta' has no unit"),
     ("dissipation with the sign of a force", 11, '<parameter name="b" start="3" unit="N.m.s"/>\n<dissipation>-b*omega^2/2</dissipation>', 12,
@@ -471,7 +471,7 @@ def test_one_mistake_in_a_long_loop(tmp_path):
     lines = result.stderr.splitlines()
     assert result.returncode == 1 and len(lines) == 101
     assert all(f"unknown name 'q[{i}]'; did you mean 'p[{i}]'?" in line for i, line in enumerate(lines[:100], 1))
-    assert lines[100] == "system.xml: there are more mistakes; expected these to be mended first"
+    assert lines[100] == "system.xml: there are more mistakes; correct these first"
 
 
 def test_old_output_goes_when_the_system_breaks(tmp_path):

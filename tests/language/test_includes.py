@@ -131,7 +131,7 @@ INCLUDED = " (included as 'part' on line 3 of system.xml)"
     ("<coordinate name='mass' velocity='v'/>\n<particle mass='1' x='maas'/>", "parts/part.xml:3: x of <particle>: unknown name 'maas'; did you mean 'mass'?" + INCLUDED),
     ("<parameter name='sin' start='1'/>", "parts/part.xml:2: the name 'sin' belongs to the language itself; expected another name" + INCLUDED),
     ("<particle name='a' mass='1' x='1'/>\n<particle name='a' mass='1' x='1'/>", "a particle or body named 'part.a' is already defined on line 2"),
-    ("<define name='a'>b</define>\n<define name='b'>a</define>", "parts/part.xml:2: definitions need each other in a circle: part.a -> part.b -> part.a"),
+    ("<define name='a'>b</define>\n<define name='b'>a</define>", "parts/part.xml:2: definitions depend on each other in a circle: part.a -> part.b -> part.a"),
     ("<potentail>1</potentail>", "parts/part.xml:2: <potentail> is not an element of <system>; did you mean 'potential'?" + INCLUDED),
     ("<include file='../system.xml' as='again'/>", "files include each other in a circle: system.xml -> parts/part.xml -> parts/../system.xml"),
     ("<include file='nothing.xml' as='again'/>", "parts/part.xml:2: the file 'parts/nothing.xml' cannot be read: No such file or directory"),

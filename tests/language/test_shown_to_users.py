@@ -65,9 +65,9 @@ def test_elements_that_are_shown_alike_are_an_array(archives):
 @pytest.mark.parametrize("unit, message", [
     ('unit="m" displayUnit="furlong"', "displayUnit 'furlong' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN"),
     ('unit="m" displayUnit="m"', "displayUnit 'm' is not known"),
-    ('unit="m" displayUnit="deg"', "displayUnit 'deg' shows what is in rad; expected that unit here"),
-    ('unit="Hz" displayUnit="rpm"', "displayUnit 'rpm' shows what is in rad/s; expected that unit here"),
-    ('displayUnit="mm"', "displayUnit 'mm' shows what is in m; expected that unit here"),
+    ('unit="m" displayUnit="deg"', "displayUnit 'deg' is for values in rad; expected this as the unit"),
+    ('unit="Hz" displayUnit="rpm"', "displayUnit 'rpm' is for values in rad/s; expected this as the unit"),
+    ('displayUnit="mm"', "displayUnit 'mm' is for values in m; expected this as the unit"),
 ])  # fmt: skip
 def test_what_cannot_be_shown(unit, message, tmp_path):
     (tmp_path / "system.xml").write_text(f'<system name="Wrong"><input name="u" {unit}/><output name="y">u</output></system>')

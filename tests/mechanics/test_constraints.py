@@ -504,7 +504,7 @@ def test_linearization():
 
 
 MISTAKES = [
-    ('<constraint name="c">l - 1</constraint>', "the constraint 'c' holds no coordinate"),
+    ('<constraint name="c">l - 1</constraint>', "the constraint 'c' contains no coordinate"),
     ('<constraint name="c">vx*vy</constraint>', "the constraint 'c' is not linear in the velocities"),
     ('<constraint name="c" unit="m">x*y</constraint>', "unit mismatch: the constraint"),
     ('<constraint name="rod">x</constraint>', "the name 'rod' is already defined"),

@@ -39,10 +39,10 @@ def elbow(between='<parent link="upper"/><child link="lower"/>', origin='<origin
 CASES = [
     ("no name", 1, "<robot>", 1, "<robot> needs the attribute 'name'"),
     ("link without name", 2, "<link/>", 2, "<link> needs the attribute 'name'"),
-    ("two links of one name", 2, '<link name="stand"/><link name="upper"/>', 3, "the link 'upper' is there on line 2 already"),
+    ("two links of one name", 2, '<link name="stand"/><link name="upper"/>', 3, "the link 'upper' is already defined on line 2"),
     ("links alike", 2, '<link name="stand"/><link name="upper.arm"/><link name="upper-arm"/>', 2,
      "the link 'upper-arm' and 'upper.arm' on line 2 both become 'upper_arm'; expected names that differ"),
-    ("two joints of one name", 12, '<joint name="shoulder" type="continuous">', 12, "the joint 'shoulder' is there on line 9 already"),
+    ("two joints of one name", 12, '<joint name="shoulder" type="continuous">', 12, "the joint 'shoulder' is already defined on line 9"),
     ("joint without type", 12, '<joint name="elbow">', 12, "<joint> needs the attribute 'type'"),
     ("unknown type", 12, '<joint name="elbow" type="hinge">', 12,
      'type="hinge" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar'),
@@ -141,7 +141,7 @@ def test_right_one(tmp_path):
     assert (result.returncode, result.stderr) == (0, "")
 
 
-NO_BODY = "are those of no body at the start values: a principal moment is negative, or larger than the other two together; expected others"
+NO_BODY = "at the start values: a principal moment is negative, or larger than the other two together; expected others"
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_tensor_of_no_body(tensor, tmp_path):
     lines = RIGHT.splitlines()
     lines[3] = inertial(tensor=tensor)
     result = compile_robot("\n".join(lines), tmp_path)
-    assert (result.returncode, result.stderr) == (0, f"robot.urdf:3: warning: the moments of inertia of 'upper_body' {NO_BODY}\n")
+    assert (result.returncode, result.stderr) == (0, f"robot.urdf:3: warning: no body can have the moments of inertia of 'upper_body' {NO_BODY}\n")
 
 
 @pytest.mark.parametrize("tensor", [("0.1", "0", "0.2", "0.302"), ("0", "0", "0", "0"), ("0.1", "0.05", "0.1", "0.1")])
@@ -168,7 +168,7 @@ def test_left_out(tmp_path):
     result = compile_robot(text, tmp_path)
     assert result.returncode == 0
     assert result.stderr == (
-        "robot.urdf: warning: left out, being no part of the equations: visual, collision, effort of limit, velocity of limit, gazebo, "
+        "robot.urdf: warning: left out, since the motion does not depend on them: visual, collision, effort of limit, velocity of limit, gazebo, "
         "material\n"
     )
 

@@ -46,7 +46,7 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
   if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", format, arguments);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
-    fprintf(stderr, "%s: there are more mistakes; expected these to be mended first\n", diagnostics->file);
+    fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
 }
 
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {

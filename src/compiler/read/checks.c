@@ -43,7 +43,7 @@ static void warn_without_unit(const struct Reader *reader) {
       if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL &&
           !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
-                       "'%s' has no unit, so that the units of what it stands in are not checked; expected one, or "
+                       "'%s' has no unit, so that units are not checked where it is used; expected one, or "
                        "unit=\"1\"",
                        lists[list]->items[i].name);
 }
@@ -91,11 +91,10 @@ static void warn_of_tensor(const struct Reader *reader, const struct Body *body,
   for (int i = 0; i < 3; i++)
     if (body->tensor.row[i].along[i] == ZERO) return;
   if (tensor_is_of_a_body(&tensor)) return;
-  report_warning(
-      reader->diagnostics, body->line,
-      "the moments of inertia of '%s' are those of no body at the start values: a principal moment is negative, "
-      "or larger than the other two together; expected others",
-      body->name);
+  report_warning(reader->diagnostics, body->line,
+                 "no body can have the moments of inertia of '%s' at the start values: a principal moment is negative, "
+                 "or larger than the other two together; expected others",
+                 body->name);
 }
 
 /* The first stillnesses are those of quaternions, whose norm is then 0 where the constraint is -1. */

@@ -50,7 +50,7 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->coordinates.count; i++) {
     if (!model->given.drives[i].given) continue;
     model->given.drives[i].reaction = model->reactions.count;
-    append_reaction(model, scope, &model->coordinates.items[i], "force of what drives");
+    append_reaction(model, scope, &model->coordinates.items[i], "force that drives");
   }
 }
 

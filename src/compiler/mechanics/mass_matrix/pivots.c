@@ -77,7 +77,7 @@ static bool has_all_inertias(const struct Model *model, const struct Inertia *in
     else
       report_error(diagnostics, model->coordinates.items[i].line,
                    "the coordinate '%s' has no inertia: no mass moves with it; expected a <particle>, <body> or "
-                   "<kinetic> that depends on it, or constraints that tell its motion",
+                   "<kinetic> that depends on it, or constraints that determine its motion",
                    model->coordinates.items[i].name);
     complete = false;
   }
@@ -113,10 +113,11 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
     if (found >= 0 && found < regular) singular = found;
   }
   if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
-  report_error(diagnostics, model->coordinates.items[singular].line,
-               "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
-               "coordinates; expected one coordinate for each degree of freedom, or constraints that tell its motion",
-               model->coordinates.items[singular].name);
+  report_error(
+      diagnostics, model->coordinates.items[singular].line,
+      "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
+      "coordinates; expected one coordinate for each degree of freedom, or constraints that determine its motion",
+      model->coordinates.items[singular].name);
   return false;
 }
 

@@ -44,9 +44,8 @@ void check_constraint(struct Reader *reader, const struct Variable *constraint) 
   const struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, constraint->node, COORDINATE) && !graph_depends_on(graph, constraint->node, VELOCITY))
     report_error(reader->diagnostics, constraint->line,
-                 "the constraint '%s' holds no coordinate; expected an expression of coordinates that is 0 at all "
-                 "times, or none "
-                 "where it is 0 by itself",
+                 "the constraint '%s' contains no coordinate; expected an expression of coordinates that is 0 at all "
+                 "times, or no constraint where it is always 0",
                  constraint->name);
   else if (!is_linear_in_velocities(model->graph, constraint->node))
     report_error(reader->diagnostics, constraint->line,

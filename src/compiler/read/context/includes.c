@@ -75,7 +75,8 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
     circle = format_text("%s -> %s", s->file, circle);
     if (s == first) break;
   }
-  report_at(reader, node, "files include each other in a circle: %s; expected one of them without the next", circle);
+  report_at(reader, node, "files include each other in a circle: %s; expected one that does not include the next",
+            circle);
   return false;
 }
 
@@ -136,7 +137,7 @@ static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) 
   source->canonical_path = canonical_path(source->file);
   if (source->canonical_path == NULL)
     report_at(reader, node,
-              "the file '%s' cannot be read: %s; expected that of a <system>, its path relative to this file",
+              "the file '%s' cannot be read: %s; expected the file of a <system>, with a path relative to this file",
               source->file, strerror(errno));
   if (source->canonical_path == NULL || !check_depth(reader, node, source) || !check_circle(reader, node, source))
     return;

@@ -25,8 +25,8 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
     report_error(reader->diagnostics, xmlGetLineNo(node),
                  "%s '%s' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN", name, text);
   else if (!is_same_dimension(shown, dimension))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "%s '%s' shows what is in %s; expected that unit here", name,
-                 text, unit_text(shown));
+    report_error(reader->diagnostics, xmlGetLineNo(node), "%s '%s' is for values in %s; expected this as the unit",
+                 name, text, unit_text(shown));
   else return text;
   return NULL;
 }

@@ -17,7 +17,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
   const struct NamedExpression *expression = &definitions->items[closing].expression;
   struct Source *present = source_enter(reader, expression->source);
   report_error(reader->diagnostics, xmlGetLineNo(expression->node),
-               "definitions need each other in a circle: %s%s; expected one of them without the next", names,
+               "definitions depend on each other in a circle: %s%s; expected one that does not use the next", names,
                definitions->items[closing].name);
   source_enter(reader, present);
 }

@@ -59,8 +59,8 @@ void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *
   char *path = path_beside(lines->reader, name), *text = text_of_file(path);
   if (text == NULL) {
     report_error(diagnostics, xmlGetLineNo(node),
-                 "the file '%s' cannot be read: %s; expected columns of numbers, its path relative to this file", path,
-                 strerror(errno));
+                 "the file '%s' cannot be read: %s; expected columns of numbers, and a path relative to this file",
+                 path, strerror(errno));
     lines->wrong = true;
   } else {
     const char *present = diagnostics->file;

@@ -89,10 +89,11 @@ static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const ch
   if (file != NULL) table_lines_of_file(&points.lines, node, file);
   read_content(&points, node);
   if (!points.lines.wrong && points.curve.count < 2)
-    report_at(reader, node,
-              "the table '%s' has %zu points; expected at least two, as <point x=\"0\" y=\"1\"/>, as lines of two "
-              "numbers, or in a file",
-              name, points.curve.count);
+    report_at(
+        reader, node,
+        "the table '%s' has too few points (%zu); expected at least two, as <point x=\"0\" y=\"1\"/>, as lines of two "
+        "numbers, or in a file",
+        name, points.curve.count);
   if (points.lines.wrong || points.curve.count < 2) return NULL;
   struct Table *table = create_table(reader, node);
   table->curve = points.curve;

@@ -146,7 +146,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
     else if (known == 0)
       FAIL(parser,
            "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
-           "that says where a thing is moved to",
+           "that moves something",
            parser->place.what, name);
     else if (known < needed && needed > 2)
       FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->place.what, needed,

@@ -22,7 +22,7 @@ static const struct Hint of_text[] = {
     {"{", "; write round parentheses"},
     {"|", "; write abs(...) for a magnitude"},
     {"'", "; write der(...) for a time derivative"},
-    {";", "; write no ; at the end"},
+    {";", "; leave out the ;"},
     {"\xc2\xb7", "; write * for a product"},
     {"\xc3\x97", "; write * for a product"},
     {"\xe2\x88\x92", "; write - for a minus sign"},
@@ -31,7 +31,7 @@ static const struct Hint of_text[] = {
     {"\xc2\xb2", "; write ^2 for a square"},
     {"\xc2\xb3", "; write ^3 for a cube"},
     {"\xc2\xb0", "; write radians, as in 30*pi/180"},
-    {"\xc2\xa0", "; write a plain blank, not one that keeps words together"},
+    {"\xc2\xa0", "; write a plain blank, not a no-break space"},
     {"\xe2\x80\x8b", "; an invisible character stands here: remove it"},
 };
 
@@ -55,8 +55,8 @@ static const struct Hint of_functions[] = {
     {"ddot", "; write der(v) of the velocity for an acceleration"},
     {"sin2", "; write sin(...)^2"},
     {"cos2", "; write cos(...)^2"},
-    {"ceil", "; there are no steps but those of sign"},
-    {"floor", "; there are no steps but those of sign"},
+    {"ceil", "; write if(x > 0, ..., ...) for a step"},
+    {"floor", "; write if(x > 0, ..., ...) for a step"},
     {"cbrt", "; write sign(x)*abs(x)^(1/3)"},
 };
 
@@ -65,10 +65,10 @@ static const struct Hint of_names[] = {
     {"e", "; write exp(x) for a power of e"},
     {"nan", "; a value must be a finite number"},
     {"NaN", "; a value must be a finite number"},
-    {"inf", "; a value must be a finite number, and a limit that is not there is left out"},
-    {"INF", "; a value must be a finite number, and a limit that is not there is left out"},
-    {"infinity", "; a value must be a finite number, and a limit that is not there is left out"},
-    {"Infinity", "; a value must be a finite number, and a limit that is not there is left out"},
+    {"inf", "; a value must be a finite number; leave out a limit that is infinite"},
+    {"INF", "; a value must be a finite number; leave out a limit that is infinite"},
+    {"infinity", "; a value must be a finite number; leave out a limit that is infinite"},
+    {"Infinity", "; a value must be a finite number; leave out a limit that is infinite"},
     {"true", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
     {"false", "; write 1 or 0, or type=\"Boolean\" for a parameter that is true or false"},
 };
@@ -133,7 +133,7 @@ const char *hint_for_text(const char *begin, const char *next) {
     return "; write * for a product, and units in unit=\"...\"";
   for (size_t i = 0; i < sizeof of_text / sizeof *of_text; i++)
     if (strncmp(next, of_text[i].written, strlen(of_text[i].written)) == 0) return of_text[i].hint;
-  return ((unsigned char)*next & 0x80u) != 0 ? "; names have letters a to z, digits and _ alone" : "";
+  return ((unsigned char)*next & 0x80u) != 0 ? "; names consist of letters a to z, digits and _" : "";
 }
 
 const char *hint_for_function(const char *name) {

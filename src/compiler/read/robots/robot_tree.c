@@ -70,8 +70,9 @@ static char *enter_name(struct Connection *connection, struct Register *all, str
   const struct Entry *same = enter(all->names, entry.name, entry);
   const struct Entry *alike = same == NULL ? enter(all->symbols, symbol, entry) : NULL;
   if (same != NULL)
-    report_error(connection->diagnostics, entry.line, "the %s '%s' is there on line %ld already; expected another name",
-                 all->kind, entry.name, same->line);
+    report_error(connection->diagnostics, entry.line,
+                 "the %s '%s' is already defined on line %ld; expected another name", all->kind, entry.name,
+                 same->line);
   else if (alike != NULL)
     report_error(
         connection->diagnostics, entry.line,

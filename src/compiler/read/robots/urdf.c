@@ -268,7 +268,7 @@ static void tell_left_out(struct Urdf *urdf) {
   for (size_t i = 0; i < urdf->left_out_count; i++)
     list = format_text("%s%s%s", list, i > 0 ? ", " : "", urdf->left_out[i]);
   if (*list != '\0' && urdf->diagnostics->errors == 0)
-    report_warning(urdf->diagnostics, 0, "left out, being no part of the equations: %s", list);
+    report_warning(urdf->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
 }
 
 struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics) {

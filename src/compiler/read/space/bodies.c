@@ -68,13 +68,13 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
     report_error(
         reader->diagnostics, line,
         "the %s cannot depend on coordinates; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic> with "
-        "%s = der of the coordinate, which keeps the energy as a gear does, and a <force> of der(%s)*(w - %s/2) "
-        "besides where it is mass that joins or leaves with the velocity w",
+        "%s = der of the coordinate, which conserves energy as a gear does; add a <force> of der(%s)*(w - %s/2) "
+        "if mass joins or leaves with the velocity w",
         what, what, symbol, rate, rate, symbol, rate);
   else if (graph_depends_on(graph, inertia.node, TIME))
     report_error(reader->diagnostics, line,
                  "the %s cannot depend on time; expected %s=\"0\" and <kinetic>%s*%s^2/2</kinetic>, which is "
-                 "d(%s*%s)/dt = F, so that what joins or leaves is at rest, and a <force> of der(%s)*w besides where "
+                 "d(%s*%s)/dt = F for mass that joins or leaves at rest; add a <force> of der(%s)*w if "
                  "it has the velocity w, as for thrust",
                  what, what, symbol, rate, symbol, rate, symbol);
   else if (graph_depends_on(graph, inertia.node, DISPLACEMENT))
@@ -92,7 +92,7 @@ static void require_accelerations(const struct Reader *reader, const struct Body
     if (rate != ZERO && model->given.input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
     report_error(reader->diagnostics, body->line,
                  "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
-                 "mass=\"0\" for a mere point",
+                 "mass=\"0\" for a point without mass",
                  body->name, model->inputs.items[input].name,
                  is_input_rate(model, input) ? "the <input> itself in place of its derivative"
                                              : "derivatives=\"2\" of this <input>");

@@ -81,7 +81,7 @@ static void collect(struct Reader *reader, xmlNodePtr node, char *name, const ch
 
 static bool is_base(struct Reader *reader, xmlNodePtr node, const char *name) {
   if (strcmp(name, "base") != 0) return false;
-  report_at(reader, node, "the name 'base' is that of the frame which rests; expected another name");
+  report_at(reader, node, "the name 'base' belongs to the frame at rest; expected another name");
   return true;
 }
 

@@ -53,8 +53,7 @@ static char *meaning_of(const xmlError *error) {
   case XML_ERR_COMMENT_NOT_FINISHED: return copy_text("a comment has no end; expected --> after <!--");
   case XML_ERR_UNDECLARED_ENTITY:
     return format_text("'&%s;' is not known; expected the character itself, and * for a product", name);
-  case XML_ERR_INVALID_CHAR:
-    return copy_text("an invisible character stands here that no text has; expected it removed");
+  case XML_ERR_INVALID_CHAR: return copy_text("there is an invisible character here; remove it");
   case XML_WAR_UNKNOWN_VERSION:
     return copy_text("the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no "
                      "such line");
