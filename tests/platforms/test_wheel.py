@@ -47,7 +47,7 @@ def test_one_version_of_the_compiler():
 
 def test_from_nothing_to_a_motion(tmp_path):
     succeed("new", "Swing", cwd=tmp_path)
-    assert succeed("check", "Swing.xml", cwd=tmp_path) == "Swing: 2 states, 1 inputs, 3 outputs, 4 parameters; solver auto\n"
+    assert succeed("check", "Swing.xml", cwd=tmp_path) == "Swing: 2 states, 1 input, 3 outputs, 4 parameters; solver auto\n"
     assert succeed("build", "Swing.xml", "-o", "built", cwd=tmp_path) == "built/Swing.fmu\n"
     assert validate_fmu(tmp_path / "built" / "Swing.fmu") == []
     output = succeed("run", "Swing.xml", "theta=2", "b=0", cwd=tmp_path)

@@ -53,10 +53,11 @@ def check(system, solver=None):
     with tempfile.TemporaryDirectory() as scratch:
         description = derive(system, Path(scratch), solver)
         method = method_of(Path(scratch))
-    counts = {"states": len(description.findall("ModelStructure/Derivatives/Unknown"))}
+    counts = {"state": len(description.findall("ModelStructure/Derivatives/Unknown"))}
     for causality in ("input", "output", "parameter"):
-        counts[f"{causality}s"] = len(description.findall(f"ModelVariables/ScalarVariable[@causality='{causality}']"))
-    return f"{description.get('modelName')}: {', '.join(f'{count} {kind}' for kind, count in counts.items())}; solver {method}"
+        counts[causality] = len(description.findall(f"ModelVariables/ScalarVariable[@causality='{causality}']"))
+    content = ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in counts.items())
+    return f"{description.get('modelName')}: {content}; solver {method}"
 
 
 def compile_libraries(folder, name, platforms, fmi, content):
