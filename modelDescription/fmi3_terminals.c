@@ -8,14 +8,14 @@
 #include "interface/arrays.h"
 #include "xml_output.h"
 
-/* Names of what a flange is made of, by the unit of its coordinate. */
+/* What a flange is made of, by the unit of its coordinate, in the names of Modelica's connector and of its adaptors to signals. */
 struct Flange {
-  const char *unit, *position, *velocity, *force, *description;
+  const char *unit, *position, *velocity, *force, *kind, *description;
 };
 
 static const struct Flange flanges[] = {
-    {"m", "position", "velocity", "force", "mechanical flange that is shifted"},
-    {"rad", "angle", "angularVelocity", "torque", "mechanical flange that is turned"},
+    {"m", "s", "v", "f", "Modelica.Mechanics.Translational.Interfaces.Flange_a", "mechanical flange that is shifted"},
+    {"rad", "phi", "w", "tau", "Modelica.Mechanics.Rotational.Interfaces.Flange_a", "mechanical flange that is turned"},
 };
 
 static const struct Flange *flange_of(const struct Variable *coordinate) {
@@ -78,7 +78,10 @@ static struct Members members_of(const struct Program *program, const int *force
   return are_of_one_size(position, members.velocity) && are_of_one_size(position, members.force) ? members : none;
 }
 
-/* A force on a flange flows into the system: those of connected flanges add up to 0. */
+/*
+ * A force on a flange flows into the system: those of connected flanges add up to 0. A bus, since Modelica's connector has no velocity,
+ * which dampers need from what moves them.
+ */
 static bool write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
                            bool is_open) {
   const struct Flange *flange = flange_of(&program->model->coordinates.items[coordinate]);
@@ -88,7 +91,9 @@ static bool write_terminal(xmlTextWriterPtr writer, const struct Program *progra
   if (!is_open) xmlTextWriterStartElement(writer, BAD_CAST "Terminals");
   xmlTextWriterStartElement(writer, BAD_CAST "Terminal");
   write_attribute(writer, "name", name);
-  write_attribute(writer, "matchingRule", "plug");
+  write_attribute(writer, "matchingRule", "bus");
+  if (members.position->array_count < 2)
+    write_attribute(writer, "terminalKind", flange->kind); /* several are no connector */
   write_attribute(writer, "description", description != NULL ? description : flange->description);
   write_member(writer, members.position, flange->position, "signal");
   write_member(writer, members.velocity, flange->velocity, "signal");

@@ -462,19 +462,22 @@ def test_log(opened):
 
 
 def test_terminals(own_systems):
-    """A flange where one input is the force along a coordinate."""
-    members = {}
+    """A flange where one input is the force along a coordinate, with the names of Modelica's connectors."""
+    members, kinds = {}, {}
     for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "Levers"):
         root = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "terminalsAndIcons.xml")
         members[name] = {
             terminal.get("name"): [(m.get("variableName"), m.get("memberName"), m.get("variableKind")) for m in terminal]
             for terminal in root.iter("Terminal")
         }
-    force = [("x", "position", "signal"), ("v", "velocity", "signal"), ("F", "force", "inflow")]
+        kinds[name] = {terminal.get("terminalKind") for terminal in root.iter("Terminal")}
+    assert kinds["InvertedPendulumCart"] == kinds["ParticleCartesian"] == {"Modelica.Mechanics.Translational.Interfaces.Flange_a"}
+    assert kinds["DampedPendulum"] == {"Modelica.Mechanics.Rotational.Interfaces.Flange_a"} and kinds["RobotArm"] == {None}
+    force = [("x", "s", "signal"), ("v", "v", "signal"), ("F", "f", "inflow")]
     assert members["InvertedPendulumCart"] == {"x": force}
-    torque = [("theta", "angle", "signal"), ("omega", "angularVelocity", "signal"), ("tau", "torque", "inflow")]
+    torque = [("theta", "phi", "signal"), ("omega", "w", "signal"), ("tau", "tau", "inflow")]
     assert members["DampedPendulum"] == {"theta": torque}
-    torques = [("q", "angle", "signal"), ("w", "angularVelocity", "signal"), ("tau", "torque", "inflow")]
+    torques = [("q", "phi", "signal"), ("w", "w", "signal"), ("tau", "tau", "inflow")]
     assert members["RobotArm"] == {"q": torques}, "arrays of six flanges"
     assert {name: terminal[2][0] for name, terminal in members["Levers"].items()} == {"y": "alone"}
     assert members["SimplePendulum"] == {} and set(members["ParticleCartesian"]) == {"x", "y", "z"}
