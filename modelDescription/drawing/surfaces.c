@@ -6,7 +6,7 @@
 
 enum { MOST_CONTACTS = 40, MOST_SLOPES = 24 }; /* of systems with more contacts or coordinates nothing is found */
 
-/* The derivatives of a gap, or of a position along an axis, by the coordinates. */
+/* The derivatives of a gap, and of a position along each axis, by the coordinates. */
 struct Slopes {
   Node *gap, *position[3];
 };
@@ -106,11 +106,26 @@ static void append_surface(struct Surfaces *surfaces, const struct Surface *surf
   surfaces->items[surfaces->count++] = *surface;
 }
 
-static struct Slopes *slopes_of_things(const struct Model *model, const struct Things *things) {
-  struct Slopes *slopes = allocate(things->count, sizeof *slopes);
-  for (size_t t = 0; t < things->count; t++)
+/* The derivatives of the positions of all things, and of a gap in each. */
+static void set_slopes(const struct Model *model, const struct Things *things, Node gap, struct Slopes *slopes) {
+  Node *of_gap = slopes_of(model, gap);
+  for (size_t t = 0; t < things->count; t++) {
+    slopes[t].gap = of_gap;
     for (int i = 0; i < 3; i++) slopes[t].position[i] = slopes_of(model, things->items[t].position[i]);
-  return slopes;
+  }
+}
+
+/* False where nothing of the contact can be seen. values: at two places of the coordinates. */
+static bool find_surface(const struct Model *model, const struct Equations *equations, const struct Things *things,
+                         Node gap, const double *const values[2], const struct Slopes *slopes,
+                         struct Surface *surface) {
+  size_t n = model->coordinates.count, only = only_coordinate(slopes, n);
+  for (size_t t = 1; t < things->count; t++)
+    if (is_plane(&things->items[t], gap, &slopes[t], n, values, surface)) return true;
+  const double *stopped = only < n ? values_at_stop(model, equations, gap, slopes, only) : NULL;
+  for (size_t t = 1; t < things->count && stopped != NULL; t++)
+    if (is_stop(&things->items[t], &slopes[t], only, stopped, surface)) return true;
+  return false;
 }
 
 struct Surfaces surfaces_of(const struct Model *model, const struct Equations *equations, const struct Things *things) {
@@ -118,28 +133,16 @@ struct Surfaces surfaces_of(const struct Model *model, const struct Equations *e
   const struct Switches *switches = &model->switches;
   size_t n = model->coordinates.count;
   if (switches->contact_count == 0 || switches->contact_count > MOST_CONTACTS || n > MOST_SLOPES) return surfaces;
-  struct Slopes *slopes = slopes_of_things(model, things);
-  Node **gap_slopes = allocate(switches->contact_count, sizeof *gap_slopes);
-  for (size_t c = 0; c < switches->contact_count; c++) gap_slopes[c] = slopes_of(model, switches->contacts[c].gap);
+  struct Slopes *slopes = allocate(switches->contact_count * things->count, sizeof *slopes); /* by contacts */
+  for (size_t c = 0; c < switches->contact_count; c++)
+    set_slopes(model, things, switches->contacts[c].gap, slopes + c * things->count);
   double *offsets = allocate(n + 1, sizeof *offsets);
   for (size_t k = 0; k < n; k++) offsets[k] = 0.1 * cos(3.0 * (double)k);
   const double *const values[2] = {values_at(model, equations, NULL), values_at(model, equations, offsets)};
   for (size_t c = 0; c < switches->contact_count && values[0] != NULL && values[1] != NULL; c++) {
-    Node gap = switches->contacts[c].gap;
     struct Surface surface = {.is_stop = false};
-    bool found = false;
-    for (size_t t = 1; t < things->count && !found; t++) {
-      slopes[t].gap = gap_slopes[c];
-      found = is_plane(&things->items[t], gap, &slopes[t], n, values, &surface);
-    }
-    slopes[0].gap = gap_slopes[c];
-    size_t only = only_coordinate(&slopes[0], n);
-    const double *stopped = !found && only < n ? values_at_stop(model, equations, gap, &slopes[0], only) : NULL;
-    for (size_t t = 1; t < things->count && !found && stopped != NULL; t++) {
-      slopes[t].gap = gap_slopes[c];
-      found = is_stop(&things->items[t], &slopes[t], only, stopped, &surface);
-    }
-    if (found) append_surface(&surfaces, &surface);
+    if (find_surface(model, equations, things, switches->contacts[c].gap, values, slopes + c * things->count, &surface))
+      append_surface(&surfaces, &surface);
   }
   return surfaces;
 }

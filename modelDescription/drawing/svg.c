@@ -42,19 +42,22 @@ static void write_style(xmlTextWriterPtr writer) {
   xmlTextWriterEndElement(writer);
 }
 
-/* Behind the attributes of its own of the <svg>. */
-static void write_drawing(xmlTextWriterPtr writer, const struct Drawing *drawing, bool with_style) {
-  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "viewBox", "0 0 %d %d", PICTURE_SIZE, PICTURE_SIZE);
+/* Behind the <svg>'s own attributes: what is between top and bottom. */
+static void write_drawing(xmlTextWriterPtr writer, const struct Drawing *drawing, double top, double bottom,
+                          bool with_style) {
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "viewBox", "0 %.1f %d %.1f", top, PICTURE_SIZE, bottom - top);
   if (with_style) write_style(writer);
   for (size_t i = 0; i < drawing->count; i++) write_shape(writer, &drawing->shapes[i]);
 }
 
 void write_sketch(xmlTextWriterPtr writer, const struct Drawing *drawing) {
+  const double room = 8.0; /* for dots and lines, which are wider than their points */
+  struct Rectangle all = rectangle_of(drawing);
   xmlTextWriterStartElement(writer, BAD_CAST "svg");
   write_attribute(writer, "class", "sketch");
   write_attribute(writer, "role", "img");
   write_attribute(writer, "aria-label", "the system at its start values");
-  write_drawing(writer, drawing, false);
+  write_drawing(writer, drawing, all.least.up - room, all.most.up + room, false);
   xmlTextWriterEndElement(writer);
 }
 
@@ -64,6 +67,6 @@ bool write_icon(xmlBufferPtr buffer, const struct Drawing *drawing) {
   write_attribute(writer, "xmlns", "http://www.w3.org/2000/svg");
   write_attribute(writer, "width", "128");
   write_attribute(writer, "height", "128");
-  write_drawing(writer, drawing, true);
+  write_drawing(writer, drawing, 0.0, PICTURE_SIZE, true);
   return close_document(writer);
 }

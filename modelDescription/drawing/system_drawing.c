@@ -134,6 +134,13 @@ static void append_points(struct Drawing *drawing, const struct View *view, cons
   }
 }
 
+static void append_drawing(struct Drawing *drawing, const struct Drawing *other) {
+  for (size_t i = 0; i < other->count; i++) {
+    const struct Shape *shape = &other->shapes[i];
+    append_shape(drawing, shape->look, shape->is_filled, shape->points, shape->count);
+  }
+}
+
 static bool is_finite(const struct Rectangle *all) {
   return isfinite(all->least.right) && isfinite(all->least.up) && isfinite(all->most.right) && isfinite(all->most.up);
 }
@@ -155,10 +162,7 @@ static bool draw_mechanism(struct Drawing *drawing, const struct Model *model, c
     if (things.are_in_space) append_plane(&seen_things, &view, &surfaces.items[i], size);
     else append_surface(&seen_things, &surfaces.items[i], size);
   append_axes(drawing, &view, &things, &links, values, size);
-  for (size_t i = 0; i < seen_things.count; i++) {
-    const struct Shape *shape = &seen_things.shapes[i];
-    append_shape(drawing, shape->look, shape->is_filled, shape->points, shape->count);
-  }
+  append_drawing(drawing, &seen_things);
   return fit_drawing(drawing);
 }
 
