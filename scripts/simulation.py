@@ -4,6 +4,7 @@ import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 from fmpy import read_model_description, simulate_fmu
@@ -42,32 +43,57 @@ def start_value(text):
         raise argparse.ArgumentTypeError(f"'{value}' for '{name}' is not a number") from None
 
 
-def print_problem(environment, instance_name, status, category, message):
-    """A logger that leaves out what is no problem."""
-    if status > 0:
-        print(message.decode().replace("%%", "%"), file=sys.stderr)
+def print_problem(*words):
+    """A logger, of FMI 2.0 or 3.0, that leaves out what is neither a problem nor a start that initialization moved."""
+    *_, status, _, message = words
+    text = message.decode().replace("%%", "%")
+    if status > 0 or "moved to fulfil the constraints" in text:
+        print(text, file=sys.stderr)
 
 
-def simulate(fmu, start, **options):
-    """The Motion of an FMU from start values by name, over its experiment; options are those of simulate_fmu of FMPy."""
-    description = read_model_description(fmu)
-    known, free = [variable.name for variable in description.modelVariables], settable(description)
+def described(fmu):
+    """The description of an FMU, or a Problem where it is none."""
+    if not Path(fmu).exists():
+        raise Problem(f"there is no file {fmu}; expected an FMU")
+    try:
+        return read_model_description(fmu)
+    except (BadZipFile, KeyError):
+        raise Problem(f"{fmu} is not an FMU, which is a zip archive with a modelDescription.xml; expected one that a tool has exported, or a system to build") from None
+
+
+def known(names, among, description, what="is not a variable"):
+    """The names, all of which are among those."""
+    for name in names:
+        if name not in among:
+            raise Problem(f"'{name}' {what} of {description.modelName}{why_not(name, description)}; these are: {', '.join(among)}")
+    return list(names)
+
+
+def check_start(start, description):
+    names, free = [variable.name for variable in description.modelVariables], settable(description)
     for name in start:
         if name not in free:
-            what = f"'{name}' of {description.modelName} cannot be set" if name in known else f"'{name}' is not a variable of {description.modelName}"
+            what = f"'{name}' of {description.modelName} cannot be set" if name in names else f"'{name}' is not a variable of {description.modelName}"
             raise Problem(f"{what}{why_not(name, description)}; these can be: {', '.join(free)}")
-    scene = read_scene(fmu)
+
+
+def simulate(fmu, start, output=None, input=None, **options):
+    """
+    The Motion of an FMU from start values by name, over its experiment. `output` has the names of the variables to record, in place of all
+    outputs; `input` is a structured array of time and inputs; options are those of simulate_fmu of FMPy.
+    """
+    description = described(fmu)
+    check_start(start, description)
+    names = [variable.name for variable in description.modelVariables]
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
+    outputs = outputs if output is None else [name for name in known(output, ["time", *names], description) if name != "time"]
+    if input is not None:
+        known(input.dtype.names[1:], [v.name for v in description.modelVariables if v.causality == "input"], description, "is not an input")
+    scene = read_scene(fmu)
+    settings = {"fmi_type": "CoSimulation", "logger": print_problem, "debug_logging": True} | options
     try:
-        values = simulate_fmu(
-            fmu,
-            start_values=start,
-            output=outputs + variables_of(scene, known) + [name for name in (EVENTS,) if name in known and name not in outputs],
-            fmi_type="CoSimulation",
-            logger=print_problem,
-            debug_logging=True,
-            **options,
-        )
+        recorded = dict.fromkeys([*outputs, *variables_of(scene, names), *(name for name in (EVENTS,) if name in names)])
+        values = simulate_fmu(fmu, start_values=start, input=input, output=list(recorded), **settings)
     except FMICallException as problem:
         raise Problem(f"{fmu}: {problem}") from None
     return Motion(fmu, description, scene, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
@@ -98,7 +124,7 @@ def event_times(values):
     return values["time"][1:][np.diff(values[EVENTS]) > 0]
 
 
-def figure_of(description, result, events):
+def figure_of(description, result, events=()):
     """A panel for outputs of one unit and size, their names beside it; dotted lines are events."""
     from matplotlib.figure import Figure
 

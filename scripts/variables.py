@@ -3,7 +3,7 @@
 
 def settable(description):
     """The names of those whose start values can be set: parameters, inputs, states."""
-    return [v.name for v in description.modelVariables if v.start is not None and v.type == "Real"]
+    return [v.name for v in description.modelVariables if v.start is not None and v.type in ("Real", "Float64")]
 
 
 def start_values(description):

@@ -3,37 +3,89 @@ Energies and forces of a mechanical system become an FMU.
 
     path = lagrange_fmu.build("pendulum.xml")
     motion = lagrange_fmu.simulate(path, {"theta": 1})
+    A, B, C, D = lagrange_fmu.linearize(path, {"theta": 3.14159})[:4]
 
 What goes wrong is a Problem, whose text names the thing and the remedy; what is a likely mistake in a system is a warning.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from .building import build, check, new
 from .problem import Problem
 
+if TYPE_CHECKING:
+    import numpy as np
+
+    from .linearization import Linearization
+    from .results import Result
+
 __version__ = version("lagrange-fmu")
-__all__ = ["Problem", "build", "check", "from_sympy", "new", "run", "simulate"]
+__all__ = ["Problem", "build", "check", "from_sympy", "linearize", "new", "run", "simulate"]
 
 
-def simulate(system, start_values=None, **options):
+def simulate(
+    system: str | PathLike[str],
+    start_values: Mapping[str, float] | None = None,
+    *,
+    output: Sequence[str] | None = None,
+    input: str | PathLike[str] | np.ndarray | None = None,
+    fmi_type: str = "CoSimulation",
+    fmi: int | None = None,
+    solver: str | None = None,
+    stop_time: float | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    **options: Any,
+) -> Result:
     """
-    The motion of an FMU, or of a system, which is built first: time and all outputs as a structured NumPy array. Start values
-    are of coordinates, velocities, inputs and parameters by name; options are those of fmpy.simulate_fmu, such as stop_time.
+    The motion of an FMU, or of a system, which is built first: a structured NumPy array with a row for each communication point, which
+    has time, in s, and all outputs, in SI units, by name. It has plot() and to_pandas().
+
+    start_values: of coordinates, velocities, inputs and parameters by name, in SI units
+    output: the names of the variables to record in place of all outputs; local ones, such as "totalEnergy", can be had so
+    input: a CSV with time and the names of inputs in its first line, or a structured array of these; linear between its rows
+    fmi_type: "CoSimulation", by the FMU's own solver, or "ModelExchange", by CVode of FMPy
+    fmi, solver: the version of FMI, 2 or 3, and the method in place of the system's own, where the FMU is not built yet
+    stop_time, step: in s; tolerance: relative. Else as the FMU's experiment says
+    options: others of fmpy.simulate_fmu
     """
+    from .results import Result
     from .running import motion_of
 
-    return motion_of(system, start_values, **options).outputs
+    given = {"fmi_type": fmi_type, "stop_time": stop_time, "output_interval": step, "relative_tolerance": tolerance}
+    options |= {name: value for name, value in given.items() if value is not None}
+    return Result.of(motion_of(system, dict(start_values or {}), input, method=solver, fmi=fmi, output=output, **options))
 
 
-def run(system, start_values=None, folder="."):
-    """Simulates likewise, and leaves NAME.fmu, NAME.csv, NAME.png and NAME.html in the folder; the path of each by its kind."""
+def linearize(
+    system: str | PathLike[str], at: Mapping[str, float] | None = None, parameters: Mapping[str, float] | None = None
+) -> Linearization:
+    """
+    The matrices A (n x n), B (n x m), C (p x n), D (p x m) of an FMU or a system to first order, for n states, m inputs and p outputs, as a
+    named tuple, which also has the names `states`, `inputs`, `outputs` and the `point`. `at` gives coordinates, velocities and inputs
+    where they are not their start values. Where there are constraints, the states are as many as are independent.
+    """
+    from .linearization import linearize
+
+    return linearize(system, dict(at or {}) | dict(parameters or {}))
+
+
+def run(
+    system: str | PathLike[str], start_values: Mapping[str, float] | None = None, folder: str | PathLike[str] = "."
+) -> dict[str, Path | str]:
+    """Simulates likewise, and leaves NAME.fmu, NAME.csv, NAME.png and NAME.html in the folder; the path of each by its kind, or why there is none."""
     from .running import run
 
-    return run(system, start_values, folder)
+    return run(system, dict(start_values or {}), folder)
 
 
-def from_sympy(method, path, parameters, **options):
+def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:
     """Writes the system of a LagrangesMethod of sympy.physics.mechanics: see lagrange_fmu.sympy_system.from_sympy."""
     from .sympy_system import from_sympy
 

@@ -16,6 +16,7 @@ from .problem import Problem
 from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
 
 HERE = Path(__file__).resolve().parent
+TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
 NATIVE = "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux"
 
 
@@ -25,7 +26,7 @@ def system_file(system):
     if path.is_dir():
         path = path / "system.xml"
     if not path.is_file():
-        raise Problem(f"there is no file {path}; expected that of a <system>, or its folder with a system.xml in it")
+        raise Problem(f"there is no file {path}; expected that of a <system> or a robot in URDF, or its folder with a system.xml in it")
     return path
 
 
@@ -124,14 +125,16 @@ def build(system, platforms=None, solver=None, output=".", fmi=2):
     return archive
 
 
-def new(name):
-    """Writes NAME.xml, a system to begin with, and returns its path."""
+def new(name, template="pendulum"):
+    """Writes NAME.xml, a system to begin with, which is one of TEMPLATES, and returns its path."""
+    if template not in TEMPLATES:
+        raise Problem(f"the template '{template}' is not known; expected {', '.join(TEMPLATES)}")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
     path = Path(f"{name}.xml")
     try:
         with open(path, "x", encoding="utf-8") as file:
-            file.write((HERE / "template.xml").read_text(encoding="utf-8").replace("@NAME@", name))
+            file.write((HERE / "templates" / f"{template}.xml").read_text(encoding="utf-8").replace("@NAME@", name))
     except FileExistsError:
         raise Problem(f"{path} is already there; expected another name") from None
     return path

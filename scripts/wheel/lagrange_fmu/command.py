@@ -34,5 +34,8 @@ def main(words=None):
     except KeyboardInterrupt:
         print("lagrange-fmu: stopped; nothing more was written", file=sys.stderr)
         sys.exit(130)
+    except BrokenPipeError:  # who read has seen enough, as head does
+        sys.stdout = None
+        sys.exit(141)
     except OSError as problem:
         sys.exit(f"lagrange-fmu: {problem.filename}: {problem.strerror}" if problem.filename else f"lagrange-fmu: {problem}")

@@ -1,9 +1,13 @@
 """Simulating systems that need not be built yet."""
 
+import os
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 from .building import build
+from .input_file import read_input
+from .problem import Problem
 from .simulation import simulate, write_results
 
 
@@ -11,12 +15,24 @@ def is_fmu(path):
     return Path(path).suffix == ".fmu"
 
 
-def motion_of(system, start_values=None, **options):
+@contextmanager
+def fmu_of(system, folder=None, method=None, fmi=None):
+    """The FMU of a system, built into the folder, or for a while where there is none; an FMU as it is."""
+    if is_fmu(system):
+        if method is not None or fmi is not None:
+            raise Problem(f"{system} is built already, with its solver and version of FMI; expected a system to choose them for")
+        yield Path(system)
+        return
     with tempfile.TemporaryDirectory() as scratch:
-        fmu = system if is_fmu(system) else build(system, output=scratch)
-        return simulate(fmu, start_values or {}, **options)
+        yield build(system, output=folder or scratch, solver=method, fmi=fmi or 2)
 
 
-def run(system, start_values=None, folder="."):
-    fmu = Path(system) if is_fmu(system) else build(system, output=folder)
-    return write_results(simulate(fmu, start_values or {}), Path(folder))
+def motion_of(system, start_values=None, input=None, folder=None, method=None, fmi=None, **options):
+    """The Motion of a system or FMU; `input` may be the path of a CSV."""
+    signals = read_input(input) if isinstance(input, (str, os.PathLike)) else input
+    with fmu_of(system, folder, method, fmi) as fmu:
+        return simulate(fmu, start_values or {}, input=signals, **options)
+
+
+def run(system, start_values=None, folder=".", **options):
+    return write_results(motion_of(system, start_values, folder=folder, **options), Path(folder))

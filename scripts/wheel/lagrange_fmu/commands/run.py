@@ -1,6 +1,9 @@
 """Builds the FMU of a system and simulates it; leaves a CSV, a plot and an animation."""
 
-from .words_of_systems import SYSTEM_OR_FMU, add_output
+import argparse
+import math
+
+from .words_of_systems import SYSTEM_OR_FMU
 
 
 def start_value(text):
@@ -9,14 +12,35 @@ def start_value(text):
     return start_value(text)
 
 
+def positive(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"'{text}' is no positive number")
+    return value
+
+
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE", help="start values")
-    add_output(parser, "the results go")
+    parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE", help="start values and parameters")
+    parser.add_argument("--stop-time", type=positive, metavar="S", help="when it ends; else as the system's <experiment> says")
+    parser.add_argument("--step", type=positive, metavar="S", help="the communication step, which is that of the CSV; else as the experiment says")
+    parser.add_argument("--tolerance", type=positive, help="the relative tolerance; else as the system's <solver> says")
+    parser.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), help="the version of FMI; 2 where none is given")
+    parser.add_argument("--input", metavar="FILE.csv", help="the inputs: first line time,NAME,..., then numbers; linear between the lines, held over each step")
+    parser.add_argument("--output", nargs="+", metavar="NAME", help="the variables to record, in place of all outputs")
+    parser.add_argument("-o", "--folder", default=".", metavar="FOLDER", help="where the results go; else the current folder")
 
 
 def run(arguments):
     from ..running import run
     from ..simulation import print_results
 
-    print_results(run(arguments.system, dict(arguments.start), arguments.output))
+    written = run(
+        arguments.system, dict(arguments.start), arguments.folder, output=arguments.output, input=arguments.input, method=arguments.solver,
+        fmi=arguments.fmi, stop_time=arguments.stop_time, output_interval=arguments.step, relative_tolerance=arguments.tolerance,
+    )  # fmt: skip
+    print_results(written)

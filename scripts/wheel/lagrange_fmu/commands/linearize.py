@@ -1,0 +1,36 @@
+"""Prints the matrices A, B, C, D of a system to first order at a point, and the eigenvalues of A; where there are constraints, in as many states as are independent."""
+
+from .run import start_value
+from .words_of_systems import SYSTEM_OR_FMU
+
+
+def arguments(parser):
+    parser.add_argument("system", **SYSTEM_OR_FMU)
+    parser.add_argument("--at", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="coordinates, velocities and inputs at the point; else their start values")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="parameters")
+
+
+def table(name, matrix, rows, columns):
+    """With names at its rows and columns, as wide as they need."""
+    cells = [[name, *columns], *([row, *(f"{value:.9g}" for value in line)] for row, line in zip(rows, matrix))]
+    widths = [max(map(len, column)) for column in zip(*cells)]
+    return "\n".join("  ".join([line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]) for line in cells)
+
+
+def run(arguments):
+    import numpy as np
+
+    from ..linearization import linearize
+
+    found = linearize(arguments.system, dict(arguments.at + arguments.set))
+    print("at " + ", ".join(f"{name} = {value:.9g}" for name, value in found.point.items()))
+    rates = [f"der({state})" for state in found.states]
+    for name, matrix, rows, columns in (
+        ("A", found.A, rates, found.states),
+        ("B", found.B, rates, found.inputs),
+        ("C", found.C, found.outputs, found.states),
+        ("D", found.D, found.outputs, found.inputs),
+    ):
+        if matrix.size:
+            print(f"\n{table(name, matrix, rows, columns)}")
+    print("\neigenvalues of A: " + ", ".join(f"{value:.6g}" for value in np.linalg.eigvals(found.A)))

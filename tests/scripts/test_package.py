@@ -1,0 +1,104 @@
+"""The command of the package, for FMUs that are built: signals, what is recorded, linearizations, templates, and what is wrong."""
+
+import re
+
+import numpy as np
+import pytest
+
+import fmi3
+import fmu
+import package
+
+
+@pytest.fixture(scope="module")
+def command(tmp_path_factory):
+    folder = package.assemble(tmp_path_factory.mktemp("package"))
+    return lambda *words, cwd: package.run(folder, *words, cwd=cwd)
+
+
+def succeed(result):
+    assert result.returncode == 0, result.stderr
+    return result.stdout
+
+
+def matrix(name, text):
+    """Of the table that begins with the name."""
+    rows = re.search(rf"^{name}  .*\n((?:.+\n?)*)", text, re.M)[1].splitlines()
+    return np.array([[float(word) for word in row.split()[1:]] for row in rows])
+
+
+def test_a_cart_to_first_order(command, tmp_path):
+    """With a rod without mass: (M + m) x'' = F - m l theta'', l theta'' = g theta - x''."""
+    text = succeed(command("linearize", fmu.archive("InvertedPendulumCart"), "--at", "theta=0", "--set", "m=2", "l=0.25", cwd=tmp_path))
+    M, m, l, g = 1, 2, 0.25, 9.81
+    A, B = np.zeros((4, 4)), np.zeros((4, 1))
+    A[0, 2] = A[1, 3] = 1
+    A[2, 1], A[3, 1], B[2, 0], B[3, 0] = -m * g / M, (M + m) * g / (M * l), 1 / M, -1 / (M * l)
+    np.testing.assert_allclose(matrix("A", text), A, rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(matrix("B", text), B, rtol=1e-8)
+    np.testing.assert_allclose(matrix("C", text)[-1], [1, l, 0, 0])  # xBob
+
+
+def test_constraints_leave_independent_states(command, tmp_path):
+    """A pendulum in x and y, at rest at its lowest point, is a pendulum: x'' = -g/l x."""
+    result = command("linearize", fmu.archive("PendulumCartesian"), "--at", "x=0", "y=-1", "vx=0", "vy=0", "--set", "l=1", cwd=tmp_path)
+    text = succeed(result)
+    np.testing.assert_allclose(matrix("A", text), [[0, 1], [-9.81, 0]], rtol=1e-8, atol=1e-9)
+    assert "equilibrium" not in result.stderr and "eigenvalues of A: 0+3.13209j, 0-3.13209j" in text.replace("-0+", "0+").replace("-0-", "0-")
+
+
+def test_what_is_no_equilibrium(command, tmp_path):
+    assert "the point is no equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
+
+
+def test_signals_and_what_is_recorded(command, tmp_path):
+    """A force on a cart without a pendulum, which is t where each communication step begins, and held over it; whichever the version of FMI."""
+    (tmp_path / "F.csv").write_text("time,F\n0,0\n1,1\n")
+    for archive in (fmu.archive("InvertedPendulumCart"), fmi3.archive("InvertedPendulumCart")):
+        words = ["m=1e-9", "theta=0", "--input", "F.csv", "--stop-time", "1", "--step", "0.25", "--tolerance", "1e-9", "--output", "cart.x", "der(v)"]
+        succeed(command("run", archive, *words, cwd=tmp_path))
+        rows = np.genfromtxt(tmp_path / "InvertedPendulumCart.csv", delimiter=",", skip_header=1)
+        assert (tmp_path / "InvertedPendulumCart.csv").read_text().startswith("time,cart.x,der(v)\n")
+        np.testing.assert_allclose(rows[:, 0], [0, 0.25, 0.5, 0.75, 1])
+        starts = np.array([0, 0.25, 0.5, 0.75])
+        np.testing.assert_allclose(rows[-1, 1], np.sum(starts * (0.25 * (1 - starts) - 0.25**2 / 2)), rtol=1e-6)
+        (tmp_path / "InvertedPendulumCart.csv").unlink()
+
+
+def test_what_initialization_moved_is_told(command, tmp_path):
+    result = command("run", fmu.archive("FourBar"), "--stop-time", "0.1", cwd=tmp_path)
+    assert succeed(result) and "moved to fulfil the constraints: phi from 0.4 to 0.449082" in result.stderr
+
+
+@pytest.mark.parametrize("template", ["pendulum", "cart", "robot", "bounce", "linkage"])
+def test_templates(template, command, tmp_path):
+    succeed(command("new", "Mine", "--template", template, cwd=tmp_path))
+    result = command("check", "Mine.xml", cwd=tmp_path)
+    assert succeed(result).startswith("Mine: ") and result.stderr == ""
+
+
+def test_reference(command, tmp_path):
+    text = succeed(command("words", "restitution", cwd=tmp_path))
+    assert "<contact" in text and len(text) < len(succeed(command("words", cwd=tmp_path))) / 5
+
+
+@pytest.mark.parametrize("words, message", [
+    (["run", "text.fmu"], "text.fmu is not an FMU, which is a zip archive"),
+    (["run", "none.fmu"], "there is no file none.fmu; expected an FMU"),
+    (["linearize", "text.fmu"], "text.fmu is not an FMU, which is a zip archive"),
+    (["run", fmu.archive("SimplePendulum"), "--output", "q"], "'q' is not a variable of SimplePendulum; these are: time, "),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "q.csv"], "'q' is not an input of InvertedPendulumCart; these are: F"),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "bad.csv"], "bad.csv:3: '1,a' is not 2 numbers"),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "back.csv"], "expected lines of finite numbers, whose times do not decrease"),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "text.fmu"], "the first line is 'no archive'; expected time and names of inputs"),
+    (["run", fmu.archive("SimplePendulum"), "--solver", "bdf"], "is built already, with its solver"),
+    (["run", fmu.archive("SimplePendulum"), "--step", "-1"], "'-1' is no positive number"),
+    (["linearize", fmu.archive("SimplePendulum"), "--at", "q=1"], "'q' is not a variable of SimplePendulum"),
+    (["linearize", fmi3.archive("SimplePendulum")], "has no directional derivatives of FMI 2.0; expected a system"),
+    (["words", "qqq"], "the reference says nothing about 'qqq'"),
+])  # fmt: skip
+def test_mistakes(words, message, command, tmp_path):
+    for name, text in (("text.fmu", "no archive"), ("q.csv", "time,q\n0,1\n"), ("bad.csv", "time,F\n0,1\n1,a\n"), ("back.csv", "time,F\n1,1\n0,1\n")):
+        (tmp_path / name).write_text(text)
+    result = command(*words, cwd=tmp_path)
+    assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr

@@ -1,0 +1,33 @@
+"""The package lagrange_fmu as the tree has it, without a wheel: for what needs no compiler."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+from fmu import LAGC, ROOT
+
+SCRIPTS = ROOT / "scripts"
+
+
+def assemble(folder):
+    """In the folder what the wheel would hold; as copies, since modules look for others beside themselves."""
+    package = folder / "lagrange_fmu"
+    shutil.copytree(SCRIPTS / "wheel" / "lagrange_fmu", package, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(SCRIPTS / "animation", package / "animation", ignore=shutil.ignore_patterns("__pycache__"))
+    (package / "bin").mkdir()
+    (package / "runtime" / "scripts").mkdir(parents=True)
+    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "simulation", "variables")}
+    files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
+    for name, source in files.items():
+        shutil.copy(source, package / name)
+    information = folder / "lagrange_fmu-1.dist-info"
+    information.mkdir()
+    (information / "METADATA").write_text("Metadata-Version: 2.1\nName: lagrange-fmu\nVersion: 1\n")
+    return folder
+
+
+def run(folder, *words, cwd):
+    """python -m lagrange_fmu, of an assembled package."""
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    return subprocess.run([sys.executable, "-m", "lagrange_fmu", *map(str, words)], env=environment, cwd=cwd, capture_output=True, text=True)
