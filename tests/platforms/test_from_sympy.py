@@ -199,7 +199,8 @@ def test_expressions(tmp_path):
 X = dynamicsymbols("x")
 UNEXPRESSED = {
     "a function that is not known": (LagrangesMethod(X.diff() ** 2 - sm.Function("f")(X), [X]), {}),
-    "Piecewise((x, x > 0), (0, True)) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.Piecewise((X, X > 0), (0, True)), [X]), {}),
+    "Piecewise((x, x > 0)) has no value where none of its conditions holds": (LagrangesMethod(X.diff() ** 2 - sm.Piecewise((X, X > 0)), [X]), {}),
+    "floor(x) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.floor(X), [X]), {}),
     "the potential energy: I cannot be expressed": (LagrangesMethod(X.diff() ** 2 - sm.I * X, [X]), {}),
     "is an acceleration; expected energies": (LagrangesMethod(X.diff() ** 2 + X.diff(t, 2), [X]), {}),
     "there is no value of m; expected parameters={m: 1.0, ...}": (LagrangesMethod(m * X.diff() ** 2, [X]), {}),

@@ -1,5 +1,6 @@
 """The command of the package, for FMUs that are built: signals, what is recorded, linearizations, templates, and what is wrong."""
 
+import html
 import re
 
 import numpy as np
@@ -102,3 +103,27 @@ def test_mistakes(words, message, command, tmp_path):
         (tmp_path / name).write_text(text)
     result = command(*words, cwd=tmp_path)
     assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr
+
+
+FROM_SYMPY = """
+import sympy
+from sympy.physics.mechanics import KanesMethod, LagrangesMethod, ReferenceFrame, dynamicsymbols
+import lagrange_fmu
+x, u = dynamicsymbols("x u")
+k, m, d = sympy.symbols("k m d")
+stop = sympy.Piecewise((k * (x - d) ** 2, x > d), (k * (x + d) ** 2, sympy.And(x < -d, k > 0)), (0, True))
+print(lagrange_fmu.check(lagrange_fmu.from_sympy(LagrangesMethod(m * x.diff() ** 2 / 2 - stop, [x]), "Stops.xml", {k: 9, m: 1, d: 2})))
+try:
+    lagrange_fmu.from_sympy(KanesMethod(ReferenceFrame("N"), q_ind=[x], u_ind=[u], kd_eqs=[u - x.diff()]), "Kane.xml", {})
+except lagrange_fmu.Problem as problem:
+    print(problem)
+"""
+
+
+def test_pieces_and_kane_of_sympy(tmp_path):
+    result = package.python(package.assemble(tmp_path / "package"), "-c", FROM_SYMPY, cwd=tmp_path)
+    assert "Stops: 2 states" in succeed(result) and "a KanesMethod has no energies to write; expected a LagrangesMethod" in result.stdout
+    potential = re.search("<potential>(.*)</potential>", (tmp_path / "Stops.xml").read_text())[1]
+    potential = re.sub(r"\bif\(", "pick(", html.unescape(potential).replace("^", "**"))
+    for x, energy in ((3, 9), (1, 0), (-1, 0), (-4, 36)):
+        assert eval(potential, {"pick": lambda condition, value, other: value if condition else other}, {"x": x, "k": 9, "d": 2}) == energy

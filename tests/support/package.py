@@ -27,7 +27,11 @@ def assemble(folder):
     return folder
 
 
-def run(folder, *words, cwd):
-    """python -m lagrange_fmu, of an assembled package."""
+def python(folder, *words, cwd):
     environment = os.environ | {"PYTHONPATH": str(folder)}
-    return subprocess.run([sys.executable, "-m", "lagrange_fmu", *map(str, words)], env=environment, cwd=cwd, capture_output=True, text=True)
+    return subprocess.run([sys.executable, *map(str, words)], env=environment, cwd=cwd, capture_output=True, text=True)
+
+
+def run(folder, *words, cwd):
+    """The command of an assembled package."""
+    return python(folder, "-m", "lagrange_fmu", *words, cwd=cwd)

@@ -4,6 +4,7 @@ import re
 import unicodedata
 
 import sympy
+from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.printing.str import StrPrinter
 
 from .language import words
@@ -21,6 +22,9 @@ REWRITTEN = {
     sympy.csch: lambda x: 1 / sympy.sinh(x),
     sympy.coth: lambda x: sympy.cosh(x) / sympy.sinh(x),
 }
+
+
+CONDITIONS = (sympy.Gt, sympy.Ge, sympy.Lt, sympy.Le, sympy.And, sympy.Or, sympy.Not)
 
 
 class Names:
@@ -67,6 +71,24 @@ class _Printer(StrPrinter):
             text = f"{FUNCTIONS[function.func.__name__]}({argument}, {text})"
         return text
 
+    def _print_Piecewise(self, function):
+        """if(condition, value, if(...)), whose last value has no condition: see text_of."""
+        *others, (value, _) = function.args
+        text = self._print(value)
+        for value, condition in reversed(others):
+            text = f"if({self._print(condition)}, {self._print(value)}, {text})"
+        return text
+
+    def _print_Relational(self, relation):
+        return f"{self._print(relation.lhs)} {relation.rel_op} {self._print(relation.rhs)}"
+
+    def _print_joined(self, condition):
+        return f" {str(condition.func).lower()} ".join(f"({self._print(part)})" for part in condition.args)
+
+    def _print_Not(self, condition):
+        return f"not ({self._print(condition.args[0])})"
+
+    _print_And = _print_Or = _print_joined
     _print_Abs = _print_Function
     _print_Max = _print_Min = _print_extremum
 
@@ -82,7 +104,9 @@ def prepared(expression):
 def text_of(expression, where):
     """Of a prepared expression, all of whose symbols have valid names. `where` begins the message about what cannot be expressed."""
     for node in sympy.preorder_traversal(expression):
-        known = isinstance(node, (sympy.Add, sympy.Mul, sympy.Pow, sympy.Symbol)) or node is sympy.pi or node.func.__name__ in FUNCTIONS
+        if isinstance(node, sympy.Piecewise) and node.args[-1].cond is not sympy.true:
+            raise Problem(f"{where}: {node} has no value where none of its conditions holds; expected (VALUE, True) as the last of its pairs")
+        known = isinstance(node, (sympy.Add, sympy.Mul, sympy.Pow, sympy.Symbol, sympy.Piecewise, ExprCondPair, *CONDITIONS)) or node is sympy.true or node is sympy.pi or node.func.__name__ in FUNCTIONS
         if not known and not (node.is_Number and node.is_finite):
-            raise Problem(f"{where}: {node} cannot be expressed; expected real numbers, + - * / **, sqrt, and of functions {', '.join(sorted(FUNCTIONS))}")
+            raise Problem(f"{where}: {node} cannot be expressed; expected real numbers, + - * / **, sqrt, Piecewise, and of functions {', '.join(sorted(FUNCTIONS))}")
     return _Printer().doprint(expression).replace("**", "^")

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import sympy
 from sympy.core.function import AppliedUndef
-from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
+from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols
 
 from .problem import Problem
 from .sympy_expressions import Names, prepared, text_of
@@ -147,6 +147,11 @@ def from_sympy(method, path, parameters, start=None, speeds=None, description=""
     and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs.
     """
     path = Path(path)
+    if not isinstance(method, LagrangesMethod):
+        raise Problem(
+            f"a {type(method).__name__} has no energies to write; expected a LagrangesMethod(L, q, forcelist=..., bodies=..., frame=N)"
+            " of the same bodies and loads, with L = Lagrangian(N, *bodies)"
+        )
     content = _Content(method, speeds)
     root = ElementTree.Element("system", name=_system_name(path), description=description)
     for tag, attributes, text in [*_variables(content, parameters, start or {}), *_equations(content)]:
