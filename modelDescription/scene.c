@@ -1,6 +1,12 @@
 #include "scene.h"
 
+#include <math.h>
+#include <stdio.h>
+
 #include "algebra/formula.h"
+#include "base/memory.h"
+#include "scene/links.h"
+#include "scene/surfaces.h"
 #include "xml_output.h"
 
 enum { BASE = 0 }; /* among the model's frames */
@@ -58,6 +64,69 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
+static void write_thing(xmlTextWriterPtr writer, const char *name, const struct Samples *samples, size_t thing) {
+  if (samples->things[thing].name != NULL) write_attribute(writer, name, samples->things[thing].name);
+}
+
+/* To ten digits, which are the same wherever lagc runs. */
+static void write_rounded(xmlTextWriterPtr writer, const char *name, double value) {
+  char text[32];
+  snprintf(text, sizeof text, "%.10g", fabs(value) < 1e-12 ? 0.0 : value);
+  write_attribute(writer, name, text);
+}
+
+static char *force_name(const struct Samples *samples, size_t constraint) {
+  return format_text("%s.force", samples->model->constraints.items[constraint].name);
+}
+
+static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, const struct Rod *rod) {
+  xmlTextWriterStartElement(writer, BAD_CAST "rod");
+  write_thing(writer, "from", samples, rod->from);
+  write_thing(writer, "to", samples, rod->to);
+  if (rod->has_force) {
+    write_attribute(writer, "force", force_name(samples, rod->constraint));
+    write_rounded(writer, "factor", rod->factor);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct Joint *joint) {
+  xmlTextWriterStartElement(writer, BAD_CAST "joint");
+  write_thing(writer, "of", samples, joint->of);
+  write_rounded(writer, "x", joint->x);
+  write_rounded(writer, "y", joint->y);
+  write_thing(writer, "with", samples, joint->with);
+  write_rounded(writer, "withX", joint->with_x);
+  write_rounded(writer, "withY", joint->with_y);
+  for (size_t i = 0; i < joint->force_count; i++) {
+    write_attribute(writer, format_text("force%zu", i + 1), force_name(samples, joint->constraints[i]));
+    write_rounded(writer, format_text("x%zu", i + 1), joint->along[i][0]);
+    write_rounded(writer, format_text("y%zu", i + 1), joint->along[i][1]);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples, const struct Surface *surface) {
+  static const char *const normals[3] = {"nx", "ny", "nz"};
+  xmlTextWriterStartElement(writer, BAD_CAST "surface");
+  write_thing(writer, "of", samples, surface->thing);
+  for (int axis = 0; axis < 3; axis++) {
+    write_rounded(writer, axes[axis], surface->point[axis]);
+    write_rounded(writer, normals[axis], surface->normal[axis]);
+  }
+  if (surface->is_stop) write_attribute(writer, "stop", "true");
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model) {
+  struct Samples samples = take_samples(model);
+  struct Links links = find_links(&samples);
+  struct Surfaces surfaces = find_surfaces(&samples);
+  for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);
+  for (size_t i = 0; i < links.joint_count; i++) write_joint(writer, &samples, &links.joints[i]);
+  for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
+}
+
 bool has_scene(const struct Model *model) {
   return model->mechanism.body_count > 0 || model->mechanism.frame_count > BASE + 1;
 }
@@ -67,5 +136,6 @@ void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   write_gravity(writer, model);
   write_frames(writer, model);
   for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
+  write_what_holds(writer, model);
   xmlTextWriterEndElement(writer);
 }

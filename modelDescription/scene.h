@@ -8,8 +8,15 @@
  *   <body name="rod" mass="rho*a" in="arm" Izz=""/>       likewise, with the moments of inertia along the frame's axes
  *   <body name="crank" mass="rho*a" inertia=""/>          in the plane, turned by crank.angle; may be a frame for others
  *   <point name="tip" in="arm"/>
+ *   <rod from="" to="bob" force="rod.force" factor="1"/>  whose length stays the same, from the origin without from=""; factor times
+ *                                                         the force presses them apart, in N
+ *   <joint of="crank" x="" y="" with="coupler" withX="" withY=""/>  a place that a body in the plane shares with another thing, in m
+ *                                                         along its axes; force1, x1, y1, force2, x2, y2: its force, in N
+ *   <surface of="ball" x="" y="" z="" nx="" ny="" nz=""/> a plane that a thing hits, with the normal outwards; stop="true" where a
+ *                                                         coordinate has a limit there
  *
- * All but names are formulas of parameters, in kg, kg.m2 and m/s2. Without in="..." a thing is in the base.
+ * All but names are formulas of parameters, in kg, kg.m2 and m/s2; rods, joints and surfaces are told by numbers at the start values
+ * of parameters. Without in="..." a thing is in the base.
  */
 #pragma once
 

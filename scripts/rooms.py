@@ -41,6 +41,7 @@ LAGC = House(
     src/compiler/program/series
     src/compiler/program
     src/compiler/write
+    modelDescription/scene
     modelDescription
     modelDescription/drawing
     modelDescription/page

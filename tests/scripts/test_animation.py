@@ -232,7 +232,8 @@ def test_functions_of_formulas():
 
 
 def test_the_compiler_tells_what_there_is():
-    bodies = [(element.tag, element.get("name"), element.get("mass"), element.get("inertia")) for element in read_scene(fmu.archive("FourBar"))]
+    elements = [element for element in read_scene(fmu.archive("FourBar")) if element.tag == "body"]
+    bodies = [(element.tag, element.get("name"), element.get("mass"), element.get("inertia")) for element in elements]
     values = {"rho": 2.0, "a": 0.3, "b": 0.8, "c": 0.6}
     assert [body[:2] for body in bodies] == [("body", "crank"), ("body", "coupler"), ("body", "rocker")]
     assert [value_of(body[2], values) for body in bodies] == pytest.approx([0.6, 1.6, 1.2])

@@ -1,0 +1,170 @@
+#include "links.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "least_squares.h"
+
+enum { MOST_THINGS = 60 }; /* of more than that, each is compared with the base and its neighbours alone */
+
+static const double NO_FORCE = 1e-6, NO_LENGTH = 1e-9;
+
+static double distance(const struct Samples *samples, size_t sample, size_t first, size_t second) {
+  const double *values = samples->values[sample];
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double way = values[samples->things[second].position[axis]] - values[samples->things[first].position[axis]];
+    sum += way * way;
+  }
+  return sqrt(sum);
+}
+
+static double constraint_value(const struct Samples *samples, size_t sample, size_t k) {
+  return samples->values[sample][samples->model->constraints.items[samples->constraints[k]].node];
+}
+
+static bool moves(const struct Samples *samples, size_t thing) {
+  for (int axis = 0; axis < 3; axis++)
+    if (samples->values[1][samples->things[thing].position[axis]] !=
+        samples->values[0][samples->things[thing].position[axis]])
+      return true;
+  return false;
+}
+
+/* Whether distance^power is a number and multiples of constraints. */
+static bool is_rod(const struct Samples *samples, int power, struct Rod *rod) {
+  size_t columns = 1 + samples->constraint_count;
+  struct LeastSquares system = least_squares_create(samples->count, columns);
+  double *solution = allocate(columns, sizeof *solution);
+  for (size_t k = 0; k < samples->count; k++) {
+    double *row = least_squares_row(&system, k);
+    row[0] = 1.0;
+    for (size_t c = 0; c < samples->constraint_count; c++) row[1 + c] = constraint_value(samples, k, c);
+    row[columns] = pow(distance(samples, k, rod->from, rod->to), power);
+  }
+  if (!least_squares_solve(&system, 1, solution)) return false;
+  rod->length = pow(fmax(solution[0], 0.0), 1.0 / power);
+  size_t forces = 0;
+  for (size_t c = 0; c < samples->constraint_count; c++) {
+    if (fabs(solution[1 + c]) < NO_FORCE) continue;
+    forces++;
+    rod->constraint = samples->constraints[c];
+    rod->factor = -(power == 1 ? 1.0 : 2.0 * rod->length) / solution[1 + c];
+  }
+  rod->has_force = forces == 1;
+  return true;
+}
+
+static int by_length(const void *first, const void *second) {
+  const struct Rod *a = first, *b = second;
+  if (fabs(a->length - b->length) > 1e-9 * b->length) return a->length < b->length ? -1 : 1;
+  if (a->from != b->from) return a->from < b->from ? -1 : 1;
+  return a->to < b->to ? -1 : a->to > b->to;
+}
+
+static size_t group_of(const size_t *groups, size_t thing) {
+  while (groups[thing] != thing) thing = groups[thing];
+  return thing;
+}
+
+/* The shortest that hold all together, and all that a constraint holds; none between things that are at the same place. */
+static void keep_shortest(struct Links *links, size_t thing_count) {
+  size_t *groups = allocate(thing_count, sizeof *groups), kept = 0;
+  for (size_t i = 0; i < thing_count; i++) groups[i] = i;
+  if (links->rod_count > 0) qsort(links->rods, links->rod_count, sizeof *links->rods, by_length);
+  for (size_t i = 0; i < links->rod_count; i++) {
+    size_t from = group_of(groups, links->rods[i].from), to = group_of(groups, links->rods[i].to);
+    if (from == to && !links->rods[i].has_force) continue;
+    groups[to] = from;
+    if (!(links->rods[i].length > NO_LENGTH)) continue;
+    links->rods[kept++] = links->rods[i];
+  }
+  links->rod_count = kept;
+}
+
+static void try_rod(struct Links *links, const struct Samples *samples, size_t from, size_t to) {
+  struct Rod rod = {.from = from, .to = to};
+  if (!moves(samples, from) && !moves(samples, to)) return;
+  if (!is_rod(samples, 2, &rod) && !is_rod(samples, 1, &rod)) return;
+  links->rods = make_room(links->rods, links->rod_count, sizeof *links->rods);
+  links->rods[links->rod_count++] = rod;
+}
+
+/* The unknowns of a joint: its place on each of the two, then the constraints' multiples along x and y. */
+static void fill_joint(const struct Samples *samples, const struct Joint *joint, struct LeastSquares *system) {
+  for (size_t k = 0; k < samples->count; k++)
+    for (int axis = 0; axis < 2; axis++) {
+      double *row = least_squares_row(system, 2 * k + (size_t)axis);
+      const double *values = samples->values[k];
+      const size_t pair[2] = {joint->of, joint->with};
+      for (int side = 0; side < 2; side++) {
+        const struct Thing *thing = &samples->things[pair[side]];
+        double sign = side == 0 ? 1.0 : -1.0, angle = thing->is_planar ? values[thing->angle] : 0.0;
+        row[2 * side] = sign * (axis == 0 ? cos(angle) : sin(angle));
+        row[2 * side + 1] = sign * (axis == 0 ? -sin(angle) : cos(angle));
+        row[system->columns] -= sign * values[thing->position[axis]];
+      }
+      for (size_t c = 0; c < samples->constraint_count; c++)
+        row[4 + 2 * c + (size_t)axis] = constraint_value(samples, k, c);
+    }
+}
+
+/* Where r + sum of A c = 0 with the forces l that push against the constraints c, the one on the first is F = A^-T l. */
+static void set_forces(const struct Samples *samples, const double *multiples, struct Joint *joint) {
+  double a[FORCES][2] = {{0}};
+  size_t count = 0;
+  for (size_t c = 0; c < samples->constraint_count; c++) {
+    if (fabs(multiples[2 * c]) < NO_FORCE && fabs(multiples[2 * c + 1]) < NO_FORCE) continue;
+    if (count == FORCES) return;
+    joint->constraints[count] = samples->constraints[c];
+    a[count][0] = multiples[2 * c];
+    a[count++][1] = multiples[2 * c + 1];
+  }
+  double determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  if (count != FORCES || fabs(determinant) < NO_FORCE) return;
+  joint->force_count = FORCES;
+  joint->along[0][0] = a[1][1] / determinant;
+  joint->along[0][1] = -a[1][0] / determinant;
+  joint->along[1][0] = -a[0][1] / determinant;
+  joint->along[1][1] = a[0][0] / determinant;
+}
+
+static void try_joint(struct Links *links, const struct Samples *samples, size_t of, size_t with) {
+  struct Joint joint = {.of = of, .with = with};
+  size_t columns = 4 + 2 * samples->constraint_count;
+  struct LeastSquares system = least_squares_create(2 * samples->count, columns);
+  double *solution = allocate(columns, sizeof *solution);
+  fill_joint(samples, &joint, &system);
+  if (!least_squares_solve(&system, 4, solution)) return;
+  joint.x = solution[0];
+  joint.y = solution[1];
+  joint.with_x = solution[2];
+  joint.with_y = solution[3];
+  bool is_loose = with != 0 && !samples->things[with].is_planar && hypot(joint.with_x, joint.with_y) > 1e-9;
+  if (is_loose) return; /* a particle has no place but its own */
+  set_forces(samples, solution + 4, &joint);
+  links->joints = make_room(links->joints, links->joint_count, sizeof *links->joints);
+  links->joints[links->joint_count++] = joint;
+}
+
+/* What is in a frame is held by that alone. */
+static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
+  const struct Thing *a = &samples->things[first], *b = &samples->things[second];
+  if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);
+  return samples->thing_count <= MOST_THINGS || first == 0 || second == first + 1;
+}
+
+struct Links find_links(const struct Samples *samples) {
+  struct Links links = {.rod_count = 0};
+  for (size_t i = 0; i < samples->thing_count; i++)
+    for (size_t j = i + 1; j < samples->thing_count; j++) {
+      if (!are_compared(samples, i, j)) continue;
+      bool is_planar = samples->things[i].is_planar || samples->things[j].is_planar;
+      if (samples->things[j].is_planar) try_joint(&links, samples, j, i);
+      else if (samples->things[i].is_planar) try_joint(&links, samples, i, j);
+      if (!is_planar) try_rod(&links, samples, i, j);
+    }
+  keep_shortest(&links, samples->thing_count);
+  return links;
+}

@@ -1,0 +1,93 @@
+#include "samples.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+enum { BASE = 0, FEWEST = 8, MOST_CONSTRAINTS = 16 };
+
+/* The node of NAME.x, NAME.y or NAME.z; ZERO where there is none. */
+static Node component(const struct Model *model, const char *name, const char *axis) {
+  char *full = format_text("%s.%s", name, axis);
+  for (size_t i = 0; i < model->mechanism.places.count; i++)
+    if (strcmp(model->mechanism.places.items[i].name, full) == 0) return model->mechanism.places.items[i].node;
+  return ZERO;
+}
+
+static void append_thing(struct Samples *samples, struct Thing thing) {
+  for (int axis = 0; axis < 3 && thing.name != NULL; axis++)
+    thing.position[axis] = component(samples->model, thing.name, axes[axis]);
+  samples->things = make_room(samples->things, samples->thing_count, sizeof *samples->things);
+  samples->things[samples->thing_count++] = thing;
+}
+
+/* The place of a frame among the things, which may be a body; that of the base for it. */
+static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
+  size_t thing = samples->thing_count;
+  while (frame != BASE && --thing > 0)
+    if (strcmp(samples->things[thing].name, samples->model->mechanism.frames[frame].name) == 0) return thing;
+  return 0;
+}
+
+static void find_things(struct Samples *samples) {
+  const struct Mechanism *mechanism = &samples->model->mechanism;
+  append_thing(samples, (struct Thing){.name = NULL});
+  for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
+    if (!mechanism->frames[i].is_of_body) append_thing(samples, (struct Thing){.name = mechanism->frames[i].name});
+  size_t first_body = samples->thing_count;
+  for (size_t i = 0; i < mechanism->body_count; i++) {
+    const struct Body *body = &mechanism->bodies[i];
+    append_thing(samples, (struct Thing){.name = body->name, .angle = body->angle.node, .is_planar = body->has_angle});
+  }
+  for (size_t i = BASE + 1, thing = 1; i < mechanism->frame_count; i++)
+    if (!mechanism->frames[i].is_of_body)
+      samples->things[thing++].frame = thing_of_frame(samples, mechanism->frames[i].parent);
+  for (size_t i = 0; i < mechanism->body_count; i++)
+    if (mechanism->bodies[i].is_in_frame)
+      samples->things[first_body + i].frame = thing_of_frame(samples, mechanism->bodies[i].frame);
+}
+
+static bool is_of_positions(const struct Graph *graph, Node node) {
+  return !graph_depends_on(graph, node, VELOCITY) && !graph_depends_on(graph, node, ACCELERATION) &&
+         graph_depends_on(graph, node, COORDINATE);
+}
+
+static void find_constraints(struct Samples *samples) {
+  const struct VariableList *all = &samples->model->constraints;
+  for (size_t i = 0; i < all->count && samples->constraint_count <= MOST_CONSTRAINTS; i++) {
+    if (!is_of_positions(samples->model->graph, all->items[i].node)) continue;
+    samples->constraints = make_room(samples->constraints, samples->constraint_count, sizeof *samples->constraints);
+    samples->constraints[samples->constraint_count++] = i;
+  }
+  if (samples->constraint_count > MOST_CONSTRAINTS) samples->constraint_count = 0;
+}
+
+/* Each sample otherwise, the first one at the start. */
+static double moved(size_t sample, size_t symbol) {
+  return sample == 0 ? 0.0 : 0.4 * sin(1.0 + 2.7 * (double)sample * (double)(symbol + 1));
+}
+
+struct Samples take_samples(const struct Model *model) {
+  struct Samples samples = {.model = model};
+  find_things(&samples);
+  find_constraints(&samples);
+  samples.count = FEWEST + 2 * samples.constraint_count;
+  samples.values = allocate(samples.count, sizeof *samples.values);
+  for (size_t k = 0; k < samples.count; k++) {
+    double *symbols = start_values(model);
+    for (size_t i = 0; i < model->graph->symbol_count; i++) {
+      enum SymbolKind kind = model->graph->symbols[i].kind;
+      if (kind == COORDINATE || kind == INPUT || kind == TIME) symbols[i] += moved(k, i);
+    }
+    samples.values[k] = graph_evaluate(model->graph, symbols);
+  }
+  return samples;
+}
+
+double *sample_with(const struct Samples *samples, Node symbol, double value) {
+  const struct Graph *graph = samples->model->graph;
+  double *symbols = start_values(samples->model);
+  symbols[graph->vertices[symbol].left] = value;
+  return graph_evaluate(graph, symbols);
+}

@@ -1,0 +1,51 @@
+"""What lagc tells of rods, joints and surfaces in <scene>, against what is written in the systems."""
+
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+import fmu
+
+HEAD = '<system name="Held"><parameter name="l" start="2"/><parameter name="g" start="9.81"/>'
+
+
+def scene_of(path, folder):
+    result = fmu.lagc(path, "-o", folder)
+    assert (result.returncode, result.stderr) == (0, "")
+    return ElementTree.parse(folder / "modelDescription.xml").getroot().find("VendorAnnotations/Tool/scene")
+
+
+def test_joints_of_a_linkage(tmp_path):
+    """Crank, coupler and rocker of lengths 0.3, 0.8, 0.6 on pivots 0.9 apart; loopX and loopY are what closes the loop."""
+    joints = scene_of(fmu.ROOT / "fmu" / "FourBar" / "system.xml", tmp_path).findall("joint")
+    numbers = {(one.get("of"), one.get("with")): [float(one.get(name)) for name in ("x", "y", "withX", "withY")] for one in joints}
+    assert numbers == {
+        ("crank", None): [-0.15, 0, 0, 0],
+        ("rocker", None): [-0.3, 0, 0.9, 0],
+        ("coupler", "crank"): [-0.4, 0, 0.15, 0],
+        ("rocker", "coupler"): [0.3, 0, 0.4, 0],
+    }
+    (closing,) = (one for one in joints if one.get("force1"))
+    assert [closing.get(name) for name in ("force1", "x1", "y1", "force2", "x2", "y2")] == ["loopX.force", "1", "0", "loopY.force", "0", "1"]
+
+
+@pytest.mark.parametrize("constraint, factor", [("sqrt(x^2 + y^2) - l", "-1"), ("(x^2 + y^2 - l^2)/2", "-2"), ("l^2 - x^2 - y^2", "4")])
+def test_a_rod_by_a_constraint(tmp_path, constraint, factor):
+    """Its tension is force*|grad c|, which pulls the ball towards the origin where c grows outwards."""
+    (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="x" velocity="vx" start="2"/><coordinate name="y" velocity="vy"/>
+  <particle name="ball" mass="1" x="x" y="y"/><potential>g*y</potential><constraint name="rod">{constraint}</constraint></system>""")
+    (rod,) = scene_of(tmp_path / "system.xml", tmp_path).findall("rod")
+    assert rod.attrib == {"to": "ball", "force": "rod.force", "factor": factor}
+
+
+def test_surfaces(tmp_path):
+    """A slope that is hit at the distance 0.5 from the origin, and a stop of an angle."""
+    (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="x" velocity="vx" start="3"/><coordinate name="y" velocity="vy"/>
+  <coordinate name="phi" velocity="omega"/>
+  <particle name="ball" mass="1" x="x" y="y"/><particle name="bob" mass="1" x="l*sin(phi)" z="-l*cos(phi)"/>
+  <potential>g*y</potential><contact name="slope" gap="0.6*x + 0.8*y - 0.5" restitution="0.5"/>
+  <stop coordinate="phi" max="0.5*pi" restitution="0.5"/></system>""")
+    plane, stop = scene_of(tmp_path / "system.xml", tmp_path).findall("surface")
+    numbers = [[float(one.get(name)) for name in ("x", "y", "z", "nx", "ny", "nz")] for one in (plane, stop)]
+    assert numbers[0] == pytest.approx([0.3, 0.4, 0, 0.6, 0.8, 0]) and plane.get("of") == "ball" and plane.get("stop") is None
+    assert numbers[1] == pytest.approx([2, 0, 0, 0, 0, -1], abs=1e-4) and stop.get("of") == "bob" and stop.get("stop") == "true"
