@@ -67,7 +67,7 @@ def scene_of(tree):
 def shown_variables(tree, description, scene):
     """The places of those that can be plotted, and of those that tell where things are."""
     of_scene = {f"{thing.get('name')}.{component}" for thing in scene for component in POSITIONS}
-    forces = {thing.get("force") for thing in scene}
+    forces = {thing.get(name) for thing in scene for name in ("force", "force1", "force2")}
     continuous = {v.get("name"): v for v in tree.iterfind("ModelVariables/ScalarVariable") if v.get("variability") == "continuous"}
     continuous = {name: variable for name, variable in continuous.items() if variable.get("causality") not in ("independent", "parameter")}
     if len(continuous) > MANY:

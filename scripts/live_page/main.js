@@ -1,6 +1,7 @@
 // The page: what runs in the worker is shown, what is set goes to it.
 "use strict";
 
+const GHOST = 1e-9; // by which its start differs
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const { description } = data;
@@ -55,6 +56,7 @@ const answers = {
     if (!data.hasScene) return;
     scene.build(rows.length ? rows : history.samples.map((runs) => runs[0]));
     $("turning").parentElement.hidden = !scene.plane;
+    $("forcesChoice").hidden = scene.forces.length === 0;
   },
   samples({ times, rows, isFresh }) {
     if (isFresh) history.cut(times[0]);
@@ -186,7 +188,16 @@ function save(name, content, type) {
 // What differs from the author's values, by names.
 const settings = () => [...controls].filter(([place, control]) => control.value !== description.variables[place].start);
 
+// A second run beside the first, whose first start value differs a little; gone at the next click.
+function toggleGhost() {
+  const start = [...controls].find(([place]) => description.variables[place].role === "start");
+  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([place, control]) => [place, control.value + (place === start[0] ? GHOST : 0)]);
+  order("ghost", { differences });
+}
+
 function addActions() {
+  $("ghost").addEventListener("click", toggleGhost);
+  $("ghost").hidden = ![...controls].some(([place]) => description.variables[place].role === "start");
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => order(name));
   $("speed").addEventListener("input", setSpeed);

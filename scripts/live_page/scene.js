@@ -8,10 +8,14 @@ const TRAILS = 8; // at most
 class Scene {
   // things: the elements of <scene>; column(name): the place of a variable in a sample, -1 for none; value(formula): of parameters.
   constructor(container, things, column, value) {
-    Object.assign(this, { container, column, value, labels: [], arrows: [], wished: {} });
+    Object.assign(this, { container, column, value, labels: [], wished: {} });
     this.gravity = things.find((thing) => thing.tag === "gravity");
     this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
+    const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
+    // A joint of two bodies in the plane belongs to either.
+    const others = things.filter((thing) => thing.tag === "joint" && isPlanar(thing.with));
     this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
+    this.holders.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
     this.surfaces = things.filter((thing) => thing.tag === "surface");
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
@@ -41,10 +45,10 @@ class Scene {
     return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
   }
 
-  // Of a joint: where it is on the thing it holds.
+  // Of a joint: where it is on the body that it holds.
   jointPosition(sample, joint, target) {
     const i = this.byName.get(joint.of);
-    target.set(Number(joint.x || 0), Number(joint.y || 0), Number(joint.z || 0)).applyMatrix4(this.turn(sample, i));
+    target.set(Number(joint.x), Number(joint.y), 0).applyMatrix4(this.turn(sample, i));
     return target.add(this.position(sample, i));
   }
 
@@ -60,7 +64,7 @@ class Scene {
     const still = [2, 1, 0].find((axis) => {
       const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
       const turnsAbout = (sample, turns) => turns[0] < 0 || Math.abs(sample[turns[4 * axis]] - 1) < 1e-9;
-      return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`] || 0)) &&
+      return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`])) &&
         this.turns.every((turns) => samples.every((sample) => turnsAbout(sample, turns)));
     });
     return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
@@ -76,19 +80,23 @@ class Scene {
       this.things.forEach((_, i) => this.box.expandByPoint(this.position(sample, i, point)));
       for (const holder of this.holders) if (holder.tag === "joint") this.box.expandByPoint(this.jointPosition(sample, holder, point));
     }
-    const size = this.box.getSize(new THREE.Vector3()).length();
-    if (this.holders.some((holder) => !holder.from && holder.tag === "rod") || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size) this.box.expandByPoint(point.set(0, 0, 0));
+    const size = this.box.getSize(point).length();
+    const isHeldByBase = this.holders.some((holder) => holder.tag === "rod" && !holder.from);
+    if (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size) this.box.expandByPoint(point.set(0, 0, 0));
+    this.span = this.box.getSize(point).length() || 1;
     this.solids = this.things.map((thing) => this.solidOf(thing));
+    for (const surface of this.surfaces) if (surface.stop) this.box.expandByPoint(point.set(...AXES.map((axis) => Number(surface[axis]))));
     const largest = Math.max(0, ...this.solids.filter(Boolean).map(sizeOf));
-    for (const sample of samples) this.things.forEach((_, i) => this.solids[i] && this.box.expandByPoint(this.position(sample, i, point)));
+    this.radius = 0.5 * this.box.getSize(point).length() + largest || 1;
+    const margin = Math.max(largest, 0.09 * this.radius);
+    this.frameBox = this.box.clone().expandByScalar(margin);
     if (largest > 0) this.box.expandByScalar(largest);
-    this.radius = 0.5 * this.box.getSize(point).length() || 1;
-    if (!this.box.isEmpty() && this.radius === 0) this.box.expandByScalar(1);
     this.makeColors();
     this.addGround();
     this.objects = this.things.map((thing, i) => this.addThing(thing, i));
     this.rods = this.holders.map((holder) => this.addRod(holder)).filter(Boolean);
     this.addSurfaces();
+    this.addForces();
     this.addTrails();
     this.makeCamera();
     this.resize();
@@ -115,24 +123,29 @@ class Scene {
     const tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     if (mass > 0) return solidOf(mass, tensor);
     // Only its shape is known: of a size to be seen.
-    const size = 0.5 * this.box.getSize(new THREE.Vector3()).length() || 1, solid = solidOf(1, tensor);
-    if (!solid) return null;
-    return solidOf((sizeOf(solid) / (0.35 * size)) ** 2, tensor);
+    const solid = solidOf(1, tensor);
+    return solid && solidOf((sizeOf(solid) / (0.1 * this.span)) ** 2, tensor);
   }
 
   isJointed(name) {
     return this.holders.some((holder) => holder.tag === "joint" && holder.of === name);
   }
 
+  // Of a particle, by its mass among the others'; 0 of what is drawn otherwise.
+  ballRadius(i) {
+    const thing = this.things[i];
+    if (this.solids[i] || !(thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name)))) return 0;
+    const massOf = (one) => this.value(one.mass || "0"), mass = massOf(thing);
+    const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
+    const share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
+    return (0.07 * this.radius * (0.35 + 0.65 * share)) / (1 + Math.min(this.things.length, 60) / 12);
+  }
+
   addThing(thing, i) {
     const group = new THREE.Group(), solid = this.solids[i];
-    const masses = this.things.map((one) => this.value(one.mass || "0")).filter(Number.isFinite), heaviest = Math.max(...masses, 0) || 1;
-    const crowd = 1 / (1 + this.things.length / 12);
     if (solid) group.add(this.meshOf(solid, i));
-    else if (thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name))) {
-      const mass = this.value(thing.mass || "0"), share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
-      const radius = Number(thing.radius) || 0.07 * this.radius * crowd * (0.35 + 0.65 * share);
-      group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 24, 16), this.material(this.colorOf(i))));
+    else if (this.ballRadius(i) > 0) {
+      group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
     } else if (thing.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
     else if (thing.tag === "frame") {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
@@ -200,18 +213,56 @@ class Scene {
     }
   }
 
-  // Planes that things hit: normal . position = distance.
+  // Planes that things hit, and stops: as far from the middle of what is drawn as a ball, a radius.
   addSurfaces() {
+    const vector = (thing, names) => new THREE.Vector3(...names.map((name) => Number(thing[name])));
     for (const surface of this.surfaces) {
-      const normal = new THREE.Vector3(...AXES.map((axis) => Number(surface[`n${axis}`] || 0))), size = 2.2 * this.radius;
-      const centre = this.box.getCenter(new THREE.Vector3()), distance = Number(surface.distance || 0);
-      const middle = centre.clone().addScaledVector(normal, distance - normal.dot(centre));
-      if (surface.x !== undefined) middle.set(...AXES.map((axis) => Number(surface[axis] || 0)));
-      const extent = surface.x !== undefined ? 0.25 * this.radius : size, thickness = 0.03 * this.radius;
-      const plate = new THREE.Mesh(new THREE.BoxBufferGeometry(extent, thickness, this.plane ? 0.4 * this.radius : extent), this.material(this.isDark ? 0x4b5565 : 0xb4bcc8, { transparent: true, opacity: 0.85 }));
+      const normal = vector(surface, ["nx", "ny", "nz"]), point = vector(surface, AXES), isStop = surface.stop === "true";
+      const centre = this.box.getCenter(new THREE.Vector3()), extent = (isStop ? 0.3 : 2.4) * this.radius, thickness = 0.04 * this.radius;
+      if (!isStop) point.addScaledVector(centre.clone().sub(point).projectOnPlane(normal), 1);
+      const plate = new THREE.Mesh(new THREE.BoxBufferGeometry(extent, thickness, this.plane ? 0.4 * this.radius : extent), this.material(this.isDark ? 0x7a8699 : 0x9aa5b4));
       plate.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
-      plate.position.copy(middle).addScaledVector(normal, -thickness / 2);
+      plate.position.copy(point).addScaledVector(normal, -thickness / 2 - this.ballRadius(this.byName.get(surface.of)));
       this.world.add(plate);
+    }
+  }
+
+  // Forces of constraints: along rods, and at joints.
+  addForces() {
+    this.forces = [];
+    const add = (names, parts) => {
+      const columns = names.map((name) => this.column(name));
+      if (columns.some((place) => place < 0)) return;
+      const arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1, 0xd9342b);
+      this.world.add(arrow);
+      this.forces.push({ columns, arrow, ...parts });
+    };
+    for (const holder of this.holders) {
+      if (holder.tag === "rod" && holder.force) add([holder.force], { rod: holder });
+      if (holder.tag === "joint" && holder.force1) add([holder.force1, holder.force2], { joint: holder });
+    }
+    this.largestForce = 0;
+  }
+
+  placeForces(sample) {
+    const from = new THREE.Vector3(), force = new THREE.Vector3();
+    for (const { columns, arrow, rod, joint } of this.forces) {
+      if (rod) {
+        this.position(sample, this.byName.get(rod.to), from);
+        force.copy(from).sub(this.position(sample, this.byName.get(rod.from))).normalize().multiplyScalar(sample[columns[0]] * Number(rod.factor));
+      } else {
+        this.jointPosition(sample, joint, from);
+        const [first, second] = columns.map((place) => sample[place]);
+        force.set(first * joint.x1 + second * joint.x2, first * joint.y1 + second * joint.y2, 0);
+      }
+      const size = force.length();
+      this.largestForce = Math.max(this.largestForce * 0.999, size);
+      arrow.visible = Boolean(this.wished.forces) && size > 1e-3 * this.largestForce;
+      if (!arrow.visible) continue;
+      const length = (0.7 * this.radius * size) / this.largestForce;
+      arrow.position.copy(from);
+      arrow.setDirection(force.normalize());
+      arrow.setLength(length, Math.min(0.35 * length, 0.08 * this.radius), Math.min(0.2 * length, 0.05 * this.radius));
     }
   }
 
@@ -278,6 +329,7 @@ class Scene {
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
     this.allowTurning(!this.plane || this.wished.turning);
+    this.centre = centre;
     this.light.position.copy(outwards).addScaledVector(up, 0.8).add(new THREE.Vector3(0.3, 0.2, 0.1));
     this.outwards = outwards;
     this.controls.update();
@@ -295,13 +347,13 @@ class Scene {
     this.renderer.setSize(width, height);
     const aspect = width / height;
     if (this.plane) {
-      const size = this.box.getSize(new THREE.Vector3()), upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
-      const room = 0.16 * this.radius + 1e-9;
-      const half = Math.max(0.5 * size.getComponent(upAxis) + room, (0.5 * size.getComponent(across) + room) / aspect);
+      const upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
+      const reach = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
+      const half = Math.max(reach(upAxis), reach(across) / aspect) + 0.06 * this.radius;
       Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     } else {
       this.camera.aspect = aspect;
-      const distance = (1.1 * this.radius) / Math.sin((35 * Math.PI) / 360) / Math.min(1, aspect);
+      const distance = (1.05 * this.radius) / Math.sin((35 * Math.PI) / 360) / Math.min(1, aspect);
       if (!this.sized) this.camera.position.copy(this.controls.target).addScaledVector(this.outwards, distance);
       this.sized = true;
     }
@@ -360,12 +412,21 @@ class Scene {
     return ghost;
   }
 
+  // Makes room for what has left the picture of a plane.
+  widen(sample) {
+    const point = new THREE.Vector3(), before = this.frameBox.clone();
+    this.things.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
+    if (!before.equals(this.frameBox)) this.resize();
+  }
+
   // Of a history: the sample at a place.
   draw(history, at) {
     const runs = history.samples[at];
+    if (this.plane) this.widen(runs[0]);
     this.placeThings(this.objects, runs[0]);
     this.placeGhost(runs[1]);
     this.placeRods(runs[0]);
+    this.placeForces(runs[0]);
     this.placeTrails(history, at);
     this.controls.update();
     this.renderer.render(this.world, this.camera);

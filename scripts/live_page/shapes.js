@@ -36,4 +36,5 @@ function solidOf(mass, inertia) {
   return { kind: "box", sides, axes: [column(0), column(1), column(2)] };
 }
 
-const sizeOf = (solid) => (solid.kind === "box" ? Math.max(...solid.sides) : Math.max(solid.radius, (solid.length || 0) / 2));
+// The radius of the ball around it.
+const sizeOf = (solid) => (solid.kind === "box" ? Math.hypot(...solid.sides) / 2 : Math.hypot(solid.radius, (solid.length || 0) / 2));

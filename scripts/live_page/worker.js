@@ -11,6 +11,7 @@ let fmus = []; // one, or with its ghost beside it
 let wasm, description, references;
 let values = [new Map(), new Map()]; // what was set, by the place of the variable; of each FMU
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
+let ghost = null; // the second one, while it is not run
 let kept = []; // a state for each FMU, of before something was set
 let saved = [], free = []; // [time, a state for each FMU]; states whose places can be used again
 
@@ -148,19 +149,22 @@ const orders = {
     if (goBack()) tellNow(true);
   },
   // A value from now on, and from the start the next time.
-  set({ place, value, ghost = 0 }) {
-    const variable = description.variables[place], earlier = values[ghost].get(place);
-    values[ghost].set(place, value);
-    if (variable.role === "start" || variable.isFixed || !fmus[ghost]) return;
-    kept[ghost] = fmus[ghost].save(kept[ghost]);
+  set({ place, value }) {
+    const variable = description.variables[place], isLater = variable.role === "start" || variable.isFixed;
+    const earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
+    fmus.forEach((_, i) => values[i].set(place, value));
+    if (isLater) return;
+    fmus.forEach((fmu, i) => (kept[i] = fmu.save(kept[i])));
     try {
-      fmus[ghost].set(place, value);
+      for (const fmu of fmus) fmu.set(place, value);
       sample(); // which it may refuse only then
       tell("accepted", { about: place });
     } catch (problem) {
       refuse(problem, place);
-      values[ghost].set(place, earlier === undefined ? variable.start : earlier);
-      fmus[ghost].restore(kept[ghost]);
+      fmus.forEach((fmu, i) => {
+        values[i].set(place, earlier[i]);
+        fmu.restore(kept[i]);
+      });
     }
     if (!playing) tellNow(true);
   },
@@ -178,12 +182,12 @@ const orders = {
   },
   ghost({ differences }) {
     if (!differences) {
-      fmus.length = 1;
+      ghost = fmus.splice(1)[0];
       orders.reset({});
       return;
     }
     values[1] = new Map([...values[0], ...differences]);
-    if (fmus.length === 1) fmus.push(new Fmu(wasm, description));
+    if (fmus.length === 1) fmus.push(ghost || new Fmu(wasm, description));
     orders.reset({});
   },
   // Without pacing: by steps of the author's length to this time.

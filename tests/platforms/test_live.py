@@ -154,6 +154,22 @@ def run_start(name, values, variable):
         return instance.initialize(values).get(variable)
 
 
+def test_a_ghost(browser, page_file):
+    """Beside the first run, from a start that is 1e-9 away; a parameter is set in both."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.click("#ghost")
+        page.wait_for_function("live.history.runs === 2")
+        first, second = page.evaluate("live.history.samples[0].map(run => [...run])")
+        place = page.evaluate("live.names.indexOf('theta1')")
+        assert second[place] - first[place] == pytest.approx(1e-9, rel=1e-6)
+        page.get_by_role("spinbutton", name="g", exact=True).fill("2")
+        page.get_by_role("spinbutton", name="g", exact=True).press("Enter")
+        place = page.evaluate("live.names.indexOf('potentialEnergy')")
+        page.wait_for_function(f"live.history.samples[0][1][{place}] < 10 && live.history.samples[0][0][{place}] < 10")
+        page.click("#ghost")
+        page.wait_for_function("live.history.runs === 1")
+
+
 def test_size(page_file):
     """With the renderer and without, in kB."""
     text = page_file("DoublePendulum").read_text(encoding="utf-8")
