@@ -60,6 +60,14 @@ def test_from_nothing_to_a_motion(tmp_path):
     assert (tmp_path / "Swing.fmu").read_bytes() == (tmp_path / "built" / "Swing.fmu").read_bytes()
 
 
+@pytest.mark.parametrize("template", ["cart", "robot", "bounce", "linkage"])
+def test_templates(template, tmp_path):
+    succeed("new", "Mine", "--template", template, cwd=tmp_path)
+    succeed("run", "Mine.xml", "--stop-time", "1", cwd=tmp_path)
+    rows = np.genfromtxt(tmp_path / "Mine.csv", delimiter=",", skip_header=1)
+    assert rows[-1, 0] == 1 and np.isfinite(rows).all() and np.ptp(rows[:, 1:], axis=0).max() > 0.1
+
+
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
 def test_it_is_the_fmu_of_the_tree(name, tmp_path):
     """But for the compiler of the binary."""

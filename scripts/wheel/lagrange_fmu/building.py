@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import tempfile
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -49,7 +50,7 @@ def method_of(folder):
     return found[1] if found else "none"
 
 
-def check(system, solver=None):
+def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
     """Derives the equations and builds nothing; mistakes are a Problem. Returns in a line what came out."""
     with tempfile.TemporaryDirectory() as scratch:
         description = derive(system, Path(scratch), solver)
@@ -100,7 +101,13 @@ def write_descriptions(folder, name, fmi, content):
         (folder / file).rename(content / member)
 
 
-def build(system, platforms=None, solver=None, output=".", fmi=2):
+def build(
+    system: str | os.PathLike[str],
+    platforms: str | Sequence[str] | None = None,
+    solver: str | None = None,
+    output: str | os.PathLike[str] = ".",
+    fmi: int = 2,
+) -> Path:
     """
     Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
     `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own;
@@ -125,7 +132,7 @@ def build(system, platforms=None, solver=None, output=".", fmi=2):
     return archive
 
 
-def new(name, template="pendulum"):
+def new(name: str, template: str = "pendulum") -> Path:
     """Writes NAME.xml, a system to begin with, which is one of TEMPLATES, and returns its path."""
     if template not in TEMPLATES:
         raise Problem(f"the template '{template}' is not known; expected {', '.join(TEMPLATES)}")
