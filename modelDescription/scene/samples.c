@@ -15,9 +15,12 @@ static Node component(const struct Model *model, const char *name, const char *a
   return ZERO;
 }
 
-static void append_thing(struct Samples *samples, struct Thing thing) {
+/* A body that is in no frame gives its components itself, where it has them; NULL for none. */
+static void append_thing(struct Samples *samples, const struct Body *body, struct Thing thing) {
+  bool is_free = body != NULL && !body->is_in_frame;
   for (int axis = 0; axis < 3 && thing.name != NULL; axis++)
-    thing.position[axis] = component(samples->model, thing.name, axes[axis]);
+    if (!is_free || body->has_position[axis])
+      thing.position[axis] = is_free ? body->position[axis].node : component(samples->model, thing.name, axes[axis]);
   samples->things = make_room(samples->things, samples->thing_count, sizeof *samples->things);
   samples->things[samples->thing_count++] = thing;
 }
@@ -32,13 +35,15 @@ static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
 
 static void find_things(struct Samples *samples) {
   const struct Mechanism *mechanism = &samples->model->mechanism;
-  append_thing(samples, (struct Thing){.name = NULL});
+  append_thing(samples, NULL, (struct Thing){.name = NULL});
   for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
-    if (!mechanism->frames[i].is_of_body) append_thing(samples, (struct Thing){.name = mechanism->frames[i].name});
+    if (!mechanism->frames[i].is_of_body)
+      append_thing(samples, NULL, (struct Thing){.name = mechanism->frames[i].name});
   size_t first_body = samples->thing_count;
   for (size_t i = 0; i < mechanism->body_count; i++) {
     const struct Body *body = &mechanism->bodies[i];
-    append_thing(samples, (struct Thing){.name = body->name, .angle = body->angle.node, .is_planar = body->has_angle});
+    append_thing(samples, body,
+                 (struct Thing){.name = body->name, .angle = body->angle.node, .is_planar = body->has_angle});
   }
   for (size_t i = BASE + 1, thing = 1; i < mechanism->frame_count; i++)
     if (!mechanism->frames[i].is_of_body)
