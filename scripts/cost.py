@@ -1,18 +1,22 @@
 """
-What it costs to make an FMU: lagc beside SymPy's LagrangesMethod with cse, whole FMUs with C compiler and packing, and a
-step of a large stiff system by each implicit method. All have a limit of time, and the table says so where it is reached.
+What it costs to make an FMU: lagc beside SymPy's LagrangesMethod with cse, whole FMUs with C compiler and packing, the C of mechanisms
+and robots by gcc, clang and zig, and a step of a large stiff system by each implicit method. All have a limit of time, and the table says so
+where it is reached.
 """
 
 import math
 import multiprocessing
 import os
+import random
 import re
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 
+from cross import PLATFORMS
 from fmu import ROOT
 from numerics.driver import step
 
@@ -188,6 +192,47 @@ def compare_whole_fmus():
         print(f"| {own} | {in_seconds(taken)} | {in_seconds(alone)} | {size} |", flush=True)
 
 
+def robot(name, axes):
+    """The URDF of a robot whose joints, of these axes, are chains of seven from its base, all inertias full."""
+    at = random.Random(1).uniform
+    parts, parent = [f'<robot name="{name}"><link name="base"/>'], "base"
+    for i, axis in enumerate(axes):
+        parent = "base" if i % 7 == 0 else f"link{i - 1}"
+        a, b, c = at(0.01, 0.02), at(0.01, 0.02), at(0.01, 0.02)
+        inertia = " ".join(f'{entry}="{value}"' for entry, value in zip(
+            ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), (b + c, a + c, a + b, *(at(-1e-3, 1e-3) for _ in range(3)))))  # fmt: skip
+        parts += [
+            f'<link name="link{i}"><inertial><origin xyz="{at(0, 0.1)} {at(0, 0.1)} 0.1"/><mass value="{at(1, 4)}"/><inertia {inertia}/></inertial></link>',
+            f'<joint name="joint{i}" type="revolute"><parent link="{parent}"/><child link="link{i}"/><limit effort="1" velocity="1"/>',
+            f'<origin xyz="{at(0, 0.1)} {at(0, 0.1)} 0.3" rpy="{at(-1, 1)} 0 0"/><axis xyz="{axis}"/></joint>']  # fmt: skip
+    return "\n".join([*parts, "</robot>"])
+
+
+def code_of(folder):
+    """What lagc writes of mechanisms and robots, each in a folder of its name."""
+    robots = {"arm of 7 joints": 7, "humanoid of 30 joints": 30}
+    inputs = {name: source(name) for name in ("StewartPlatform", "Arm7", "Bricard", "AndrewsSqueezer")}
+    for name, joints in robots.items():
+        inputs[name] = folder / f"{joints}.urdf"
+        inputs[name].write_text(robot(f"Robot{joints}", [("0 0 1", "0 1 0", "1 0 0")[i % 3] for i in range(joints)]))
+    for name, file in inputs.items():
+        subprocess.run([ROOT / "build/bin/lagc", file, "-o", folder / name], check=True, capture_output=True)
+        yield name, folder / name / "system.c"
+
+
+def compare_compilers():
+    """All in one file, as packages, other platforms and rebuilt sources compile it."""
+    print(f"\nThe C of an FMU in one file, -O2\n\n| system | C | gcc | clang |{'|'.join(f' zig, {name} ' for name in PLATFORMS)}|\n| --- |" + " ---: |" * (3 + len(PLATFORMS)))
+    runtime = ROOT / "src" / "runtime"
+    layer = [word for file in sorted((runtime / "fmi2").glob("*.c")) for word in ("-include", file)]
+    words = ["-std=c11", "-O2", "-fPIC", "-ffp-contract=off", "-DFMU_IN_ONE_FILE", f"-I{ROOT / 'include'}", f"-I{runtime}"]
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, system in code_of(Path(scratch)):
+            here = [seconds_of([compiler, *words, "-include", system, *layer[:-2], "-c", layer[-1], "-o", system.with_suffix(".o")]) for compiler in ("gcc", "clang")]
+            zig = [seconds_of([sys.executable, ROOT / "scripts/cross.py", "fmu", platform, system, scratch, "robot"]) for platform in PLATFORMS]
+            print(f"| {name} | {system.stat().st_size / 1000:.0f} kB | {' | '.join(map(in_seconds, [*here, *zig]))} |", flush=True)
+
+
 def stiff_run(n, method, end=1.0, tolerance=1e-6):
     """(the time of making the FMU or None, its run or None)"""
     taken = build_fmu(own_name("StiffLattice", n, method))
@@ -217,6 +262,7 @@ def main():
     compare_derivation("Arm7", [7], argument=False)
     prepare_build([*WHOLE, *(("StiffLattice", n, method) for n in STIFF for method in STIFF_METHODS)])
     compare_whole_fmus()
+    compare_compilers()
     compare_stiff_steps()
 
 

@@ -95,7 +95,10 @@ def universal(slices):
 
 
 def compile_target(target, system, library, fmi, source, sundials, folder):
-    """system.c, the parts of the runtime that it includes and the layer of the version of FMI as one library in the folder."""
+    """
+    system.c, the parts of the runtime that it includes and the layer of the version of FMI as one library in the folder. system.c comes first,
+    as it says how series are compiled: unrolled where that is too much, they take compilers minutes.
+    """
     output = folder / target / library
     output.parent.mkdir()
     words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.",
@@ -103,12 +106,13 @@ def compile_target(target, system, library, fmi, source, sundials, folder):
     if "macos" in target:
         words.append(f"-Wl,-install_name,@rpath/{library}")
     includes = [source / "include", source / "src" / "runtime"]
-    layer = [word for file in sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c")) for word in ("-include", file)]
+    *before, last = [system, *sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c"))]
+    before = [word for file in before for word in ("-include", file)]
     libraries = []
     if sundials is not None:
         includes.append(sundials / "include")
         libraries.append(sundials / target / "libsundials.a")
-    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], *layer, system, *libraries, "-lm", "-o", output, cache=folder / "cache")
+    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], *before, last, *libraries, "-lm", "-o", output, cache=folder / "cache")
     return output.read_bytes()
 
 

@@ -6,6 +6,7 @@ nothing here runs, are looked into. FMU_PLATFORM_SYSTEMS=all takes all systems i
 import functools
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -254,6 +255,14 @@ def test_same_bytes_from_another_folder(name, tmp_path):
         path = library(name, platform)
         assert (tmp_path / platform / path.name).read_bytes() == path.read_bytes(), platform
         assert [entry.name for entry in (tmp_path / platform).iterdir()] == [path.name]
+
+
+def test_large_systems_take_seconds(tmp_path):
+    """Three on an idle machine, and some 20 more where zig has nothing in its cache yet; unrolled series take minutes."""
+    system = ROOT / "scripts" / "numerics" / "systems" / "StewartPlatform" / "system.xml"
+    assert fmu.lagc(system, "-o", tmp_path).returncode == 0
+    words = [sys.executable, ROOT / "scripts" / "cross.py", "fmu", "linux64", tmp_path / "system.c", tmp_path, "StewartPlatform"]
+    subprocess.run(words, check=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (50, 50)))
 
 
 def test_what_cannot_be_compiled(tmp_path):
