@@ -56,6 +56,12 @@ bool dimension_agrees(struct Dimension first, struct Dimension second) {
   return true;
 }
 
+const char *unit_hint(struct Dimension dimension) {
+  for (int i = 0; i < BASE_UNIT_COUNT; i++)
+    if (!dimension.known || dimension.exponent[i] != 0.0) return "";
+  return "; what has no unit has 1, a number with another is a <constant> or a <parameter>";
+}
+
 bool dimension_is_whole(struct Dimension dimension) {
   for (int i = 0; i < BASE_UNIT_COUNT; i++)
     if (dimension.exponent[i] != round(dimension.exponent[i])) return false;

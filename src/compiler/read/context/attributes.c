@@ -113,6 +113,6 @@ void require_unit(struct Reader *reader, long line, const char *what, struct Qua
                   struct Dimension expected) {
   if (quantity.literal || scope_units_agree(reader->scope, quantity.dimension, expected)) return;
   char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
-  report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s", what, actual_unit,
-               expected_unit);
+  report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s%s", what, actual_unit,
+               expected_unit, unit_hint(quantity.dimension));
 }

@@ -33,8 +33,10 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
     reader->definition_used[i] = true;
     right = parse_number(reader->scope, definition + length + 1, place, &value);
   }
-  struct Quantity number = {
-      .node = graph_constant(reader->model->graph, value), .dimension = dimension_one, .literal = true};
+  bool has_unit = has_attribute(node, "unit");
+  struct Quantity number = {.node = graph_constant(reader->model->graph, value),
+                            .dimension = has_unit ? unit_attribute(reader, node, "unit") : dimension_one,
+                            .literal = !has_unit};
   if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
 }
 

@@ -21,8 +21,9 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
   if (b.literal) return a.dimension;
   if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) {
     char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
-    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what, first, second,
-         where);
+    const char *hint = unit_hint(a.dimension);
+    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit%s", parser->place.what, first, second,
+         where, *hint != '\0' ? hint : unit_hint(b.dimension));
   }
   return a.dimension.known ? a.dimension : b.dimension;
 }
@@ -130,8 +131,8 @@ static bool check_argument(struct Parser *parser, struct Dimension unit, const c
                            struct Quantity argument) {
   if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
   char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
-  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s", parser->place.what, which,
-       name, actual, expected);
+  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s%s", parser->place.what, which,
+       name, actual, expected, unit_hint(argument.dimension));
   return false;
 }
 

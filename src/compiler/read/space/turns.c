@@ -48,6 +48,16 @@ static bool read_axis(struct Reader *reader, xmlNodePtr node, struct Vector *axi
   return true;
 }
 
+/* Whole numbers beyond a turn, which are degrees; turns such as 2*pi are none. */
+static void warn_of_degrees(struct Reader *reader, xmlNodePtr node, struct Quantity angle) {
+  const struct Graph *graph = reader->model->graph;
+  if (!angle.literal || !graph_is_constant(graph, angle.node)) return;
+  double value = graph_value(graph, angle.node);
+  if (value == floor(value) && fabs(value) > 6.0)
+    report_warning(reader->diagnostics, xmlGetLineNo(node),
+                   "the angle is %g rad; expected radians, such as %g*pi/180 for degrees", value, value);
+}
+
 static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
   struct Quantity angle = {.node = ZERO};
   struct Vector axis;
@@ -55,6 +65,7 @@ static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *p
   expression_attribute(reader, node, "angle", IN_POSITION, &angle);
   if (definitions_are_waiting(reader->definitions)) return;
   require_unit(reader, xmlGetLineNo(node), "the angle", angle, unit_of("rad"));
+  warn_of_degrees(reader, node, angle);
   pose_turn(reader->model->graph, pose, axis, angle.node, total_time_derivative(reader->scope, angle.node));
 }
 
