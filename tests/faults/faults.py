@@ -154,6 +154,8 @@ PLACES = [
     ("if (model->inputs.count > 0) write_attribute(", "write_attribute(", pytest(by_hand, "capabilities")),
     ("if (!isnan(variable->nominal)) write_number", "if (false) write_number",
      pytest(by_hand, "values_of_variables"), "write_real"),
+    # The drawing
+    ("remainder & 1 ? 0xedb88320u : 0u", "remainder & 1 ? 0xedb88320u : 1u", pytest("test_pictures", "png", "DoublePendulum", "BouncingBall", "ElasticPendulum")),
     # The compiler: programs, and how they are written
     ("case VELOCITY: return place_in(SPACE_STATE, n + index);", "case VELOCITY: return place_in(SPACE_STATE, index);",
      pytest("test_evaluated_code", "taylor-statements")),
