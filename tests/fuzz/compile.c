@@ -10,6 +10,9 @@
 
 #include <libxml/tree.h>
 
+#include "drawing/png.h"
+#include "drawing/svg.h"
+#include "drawing/system_drawing.h"
 #include "page/documentation.h"
 #include "mechanics/motion.h"
 #include "base/memory.h"
@@ -28,7 +31,12 @@ static void write_texts(const struct Program *program, const struct Summary *sum
   code_write(file, program);
   close_text(&code);
   xmlBufferPtr buffer = xmlBufferCreate();
-  if (!model_description_write(buffer, program, "") || !documentation_write(buffer, program, summary)) abort();
+  struct Drawing drawing = drawing_of(program->model, program->equations);
+  bool written =
+      model_description_write(buffer, program, "") && documentation_write(buffer, program, summary, &drawing);
+  if (!written || !write_icon(buffer, &drawing)) abort();
+  size_t length;
+  png_of(&drawing, &length);
   xmlBufferFree(buffer);
 }
 
