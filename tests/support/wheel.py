@@ -12,7 +12,7 @@ from fmu import ROOT
 FOLDER = ROOT / "build" / "wheel"
 COMMAND = FOLDER / "venv" / "bin" / "lagrange-fmu"
 # Neither a compiler nor CMake nor zip, nor a home with what zig has compiled.
-BARE = {"PATH": "/nonexistent", "TMPDIR": str(FOLDER / "scratch")}
+BARE = {"PATH": "/nonexistent", "TMPDIR": str(FOLDER / "scratch"), "LAGRANGE_FMU_CACHE": str(FOLDER / "scratch" / "cache")}
 
 
 def build_wheel(source, folder):

@@ -1,16 +1,20 @@
 """From a system in XML to an FMU: lagc derives, zig compiles, and all is packed."""
 
+import functools
 import os
 import platform
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import warnings
 from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
 from xml.etree import ElementTree
 
+from . import caching
 from .language import LAGC
 from .packing import pack, write_sources
 from .problem import Problem
@@ -18,7 +22,7 @@ from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
 
 HERE = Path(__file__).resolve().parent
 TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
-NATIVE = "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux"
+NATIVE = {"Windows": "win64", "Darwin": "darwin64"}.get(platform.system(), "linux64" if platform.machine() == "x86_64" else f"{platform.machine()}-linux")
 
 
 def system_file(system):
@@ -46,7 +50,7 @@ def derive(system, folder, solver):
 
 def method_of(folder):
     """The method of the system whose equations are there; "none" for one without states."""
-    found = re.search(r"\.solver = &solver_([a-z]+)", (folder / "system.c").read_text())
+    found = re.search(r"\.solver = &solver_([a-z]+)", (folder / "system.c").read_text(encoding="utf-8"))
     return found[1] if found else "none"
 
 
@@ -62,20 +66,39 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
     return f"{description.get('modelName')}: {content}; solver {method}"
 
 
+@functools.cache
+def runtime_key():
+    """Of what every library is built from beside its system.c."""
+    files = [file for part in ("runtime", "sundials/include") for file in sorted((HERE / part).rglob("*.[ch]"))]
+    return caching.key_of(version("ziglang"), (HERE / "runtime" / "scripts" / "cross.py").read_bytes(), *(file.read_bytes() for file in files))
+
+
+def tell(text):
+    """Progress, beside what commands print."""
+    print(f"lagrange-fmu: {text}", file=sys.stderr, flush=True)
+
+
 def compile_libraries(folder, name, platforms, fmi, content):
-    if not {"HOME", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"} & set(os.environ):
-        os.environ["ZIG_GLOBAL_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"lagrange-fmu-{os.getuid()}")
+    """Into the folder content/binaries; what was compiled before is taken from the cache."""
+    os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(caching.folder() / "zig"))
+    system = folder / "system.c"
     for platform_name in platforms:
-        try:
-            compile_fmu(platform_name, folder / "system.c", content / "binaries", name, fmi, sundials=HERE / "sundials")
-        except Failure as failure:
-            raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
+        libraries = folder / "libraries" / platform_name
+        key = caching.key_of(runtime_key(), system.read_bytes(), name, platform_name, fmi)
+        if not caching.take(key, libraries):
+            try:
+                with caching.first_build(platform_name, tell):
+                    compile_fmu(platform_name, system, libraries, name, fmi, sundials=HERE / "sundials")
+            except Failure as failure:
+                raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
+            caching.keep(key, libraries)
+        shutil.copytree(libraries, content / "binaries", dirs_exist_ok=True)
 
 
 def copy_licenses(file, target):
     """Of libraries that are linked into the FMU: lagc's license.txt names the files."""
     target.mkdir(parents=True)
-    for names in re.findall(" is linked into it: (.*)", file.read_text()):
+    for names in re.findall(" is linked into it: (.*)", file.read_text(encoding="utf-8")):
         for name in names.split(", "):
             shutil.copy(HERE / "licenses" / name, target)
 

@@ -5,14 +5,18 @@ import sys
 import warnings
 from importlib import import_module
 
-from . import __version__
+from . import __version__, caching
 from .commands import COMMANDS
 from .problem import Problem
 
 
 def parser():
     """The command's words, those of each of COMMANDS among them."""
-    words = argparse.ArgumentParser(prog="lagrange-fmu", description="Energies and forces of a mechanical system become an FMU.")
+    words = argparse.ArgumentParser(
+        prog="lagrange-fmu",
+        description="Energies and forces of a mechanical system become an FMU.",
+        epilog=f"What was compiled is kept in {caching.folder()}, or where LAGRANGE_FMU_CACHE says; the folder can be deleted.",
+    )
     words.add_argument("--version", action="version", version=f"lagrange-fmu {__version__}")
     commands = words.add_subparsers(required=True, metavar="COMMAND")
     for name in COMMANDS:
