@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 import sympy as sm
+from fmpy import read_model_description
 from fmpy.fmi2 import FMU2Model
 from sympy import cos, sin
 from sympy.physics.mechanics import (
@@ -181,6 +182,48 @@ def test_speeds_have_names_of_their_own(tmp_path):
     assert '<input name="F" start="0.5" derivatives="1" />' in text and '<input name="zb" start="0" derivatives="2" />' in text
     assert '<force coordinate="x">der(F) - m*u</force>' in text and '<experiment stopTime="2.0" />' in text
     assert wheel.package().check(path).startswith("Speeds: 2 states")
+
+
+def rod():
+    """A bob on a rod that a force pushes, with what is beside its equations."""
+    N, O = base()
+    x, y, F = dynamicsymbols("x y F")
+    P = O.locatenew("P", x * N.x + y * N.y)
+    P.set_vel(N, P.pos_from(O).dt(N))
+    L = m * (x.diff() ** 2 + y.diff() ** 2) / 2 - m * g * y
+    method = LagrangesMethod(L, [x, y], hol_coneqs=[x**2 + y**2 - l**2], forcelist=[(P, F * N.x)], frame=N)
+    further = {"units": {m: "kg", "l": "m", g: "m/s2", F: "N", x: "m", y: "m"}, "constraints": ["rod"]}
+    further |= {"points": {"bob": P.pos_from(O), "hinge": (0, l - l)}, "outputs": {"height": y + l, "power": F * x.diff(), "sin": 2 * x}}
+    return method, {m: 1, l: 0.5, g: 9.81}, further | {"start": {x: 0.5, F: 2}}
+
+
+def test_what_is_beside_the_equations(tmp_path):
+    """Units, names of constraints, points that the animation draws, outputs by what they are made of; names of the language are not taken."""
+    method, parameters, further = rod()
+    lagrange_fmu = wheel.package()
+    path = lagrange_fmu.build(lagrange_fmu.from_sympy(method, tmp_path / "Rod.xml", parameters, **further), output=tmp_path)
+    variables = {variable.name: variable for variable in read_model_description(path).modelVariables}
+    assert {name: variables[name].unit for name in ("m", "l", "g", "F", "x")} == {"m": "kg", "l": "m", "g": "m/s2", "F": "N", "x": "m"}
+    assert "rod.force" in variables
+    motion = lagrange_fmu.simulate(path, stop_time=1)
+    np.testing.assert_allclose(motion["height"], motion["y"] + 0.5, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(motion["power"], 2 * motion["x_dot"], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(motion["sin_"], 2 * motion["x"], rtol=0, atol=1e-12)
+    page = lagrange_fmu.run(path, folder=tmp_path)["animation"].read_text()
+    assert "bob" in page and "hinge" in page
+
+
+@pytest.mark.parametrize("words, message", [
+    ({"units": {"q": "m"}}, "q is no parameter, input or coordinate of this LagrangesMethod; expected"),
+    ({"constraints": ["rod", "wire"]}, "there are 2 names and 1 constraints; expected one for each, holonomic ones first"),
+    ({"points": {"bob": (1,)}}, "the point bob has 1 coordinates; expected two or three"),
+    ({"points": {"height": (1, 2)}}, "height is a point and an output; expected two names"),
+])  # fmt: skip
+def test_mistakes_beside_the_equations(words, message, tmp_path):
+    method, parameters, further = rod()
+    with pytest.raises(wheel.package().Problem, match=message):
+        wheel.package().from_sympy(method, tmp_path / "Rod.xml", parameters, **further | words)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_expressions(tmp_path):

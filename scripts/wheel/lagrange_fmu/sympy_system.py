@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import sympy
 from sympy.core.function import AppliedUndef
-from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols
+from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, Vector, dynamicsymbols
 
 from .problem import Problem
 from .sympy_expressions import Names, prepared, text_of
@@ -27,7 +27,7 @@ def _generalized_forces(method):
 class _Content:
     """What a LagrangesMethod says, with plain symbols of valid names in place of its quantities."""
 
-    def __init__(self, method, speeds):
+    def __init__(self, method, speeds, watched):
         self.time = dynamicsymbols._t
         self.coordinates = list(method.q)
         self.velocities = [q.diff(self.time) for q in self.coordinates]
@@ -36,22 +36,25 @@ class _Content:
         self.velocity_of = dict(zip(speeds or [], self.velocities))
         in_motion = self._prepared([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
         forces = self._prepared(_generalized_forces(method))
+        watched = {name: self._prepared(expressions) for name, expressions in watched.items()}
+        others = sum(watched.values(), forces)
 
-        self.inputs = self._derivatives_of_inputs(in_motion, forces)
-        symbols = set().union(*(expression.free_symbols for expression in in_motion + forces))
+        self.inputs = self._derivatives_of_inputs(in_motion, others)
+        symbols = set().union(*(expression.free_symbols for expression in in_motion + others))
         self.parameters = sorted(symbols - {self.time}, key=str)
         self.names = self._named(speeds)
         symbol_of = {quantity: sympy.Symbol(name) for quantity, name in self.names.items()}
         self.lagrangian, *self.constraints = [expression.xreplace(symbol_of) for expression in in_motion]
         self.forces = [expression.xreplace(symbol_of) for expression in forces]
+        self.watched = {name: [expression.xreplace(symbol_of) for expression in expressions] for name, expressions in watched.items()}
 
     def _prepared(self, expressions):
         return [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
 
-    def _derivatives_of_inputs(self, in_motion, forces):
+    def _derivatives_of_inputs(self, in_motion, others):
         """The inputs are the functions of time that are no coordinates; with each, how many of its derivatives must be known."""
         counts = {}
-        for expression in in_motion + forces:
+        for expression in in_motion + others:
             for function in expression.atoms(AppliedUndef):
                 if function.args != (self.time,):
                     raise Problem(f"{function} is a function that is not known; expected coordinates and inputs, which are functions of t alone")
@@ -89,21 +92,27 @@ class _Content:
         return sympy.Add(*kinetic), -sympy.Add(*(term for term in terms if term not in kinetic))
 
 
-def _values(given, quantities, kind):
-    """Numbers by quantity; keys count as they are written, since equal symbols may differ in what is assumed of them."""
+def _by_quantity(given, quantities, kind):
+    """Keys count as they are written, since equal symbols may differ in what is assumed of them."""
     known = {str(quantity): quantity for quantity in quantities}
-    values = {}
-    for key, value in given.items():
+    for key in given:
         if str(key) not in known:
             raise Problem(f"{key} is no {kind} of this LagrangesMethod; expected {', '.join(known)}")
+    return {known[str(key)]: value for key, value in given.items()}
+
+
+def _values(given, quantities, kind):
+    """Numbers by quantity."""
+    values = {}
+    for key, value in _by_quantity(given, quantities, kind).items():
         try:
-            values[known[str(key)]] = repr(float(value))
+            values[key] = repr(float(value))
         except (TypeError, ValueError):
             raise Problem(f"{key}: {value} is no number") from None
     return values
 
 
-def _variables(content, parameters, start):
+def _variables(content, parameters, start, units):
     """The elements of all that has a start value."""
     values = _values(parameters, content.parameters, "parameter")
     missing = [str(symbol) for symbol in content.parameters if symbol not in values]
@@ -111,16 +120,19 @@ def _variables(content, parameters, start):
         raise Problem(f"there is no value of {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
     start = {content.velocity_of.get(key, key): value for key, value in start.items()}
     start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
+    units = _by_quantity(units, [*content.parameters, *content.inputs, *content.coordinates], "parameter, input or coordinate")
+    units = {quantity: {"unit": str(unit)} for quantity, unit in units.items()}
     for symbol in content.parameters:
-        yield "parameter", {"name": content.names[symbol], "start": values[symbol]}, None
+        yield "parameter", {"name": content.names[symbol], "start": values[symbol]} | units.get(symbol, {}), None
     for function, count in content.inputs.items():
-        yield "input", {"name": content.names[function], "start": start.get(function, "0")} | ({"derivatives": str(count)} if count else {}), None
+        names = {"name": content.names[function], "start": start.get(function, "0")}
+        yield "input", names | ({"derivatives": str(count)} if count else {}) | units.get(function, {}), None
     for q, v in zip(content.coordinates, content.velocities):
         names = {"name": content.names[q], "velocity": content.names[v]}
-        yield "coordinate", names | {"start": start.get(q, "0"), "velocityStart": start.get(v, "0")}, None
+        yield "coordinate", names | {"start": start.get(q, "0"), "velocityStart": start.get(v, "0")} | units.get(q, {}), None
 
 
-def _equations(content):
+def _equations(content, constraint_names):
     """The elements of energies, forces and constraints."""
     kinetic, potential = content.energies()
     yield "kinetic", {}, text_of(kinetic, "the kinetic energy")
@@ -129,8 +141,37 @@ def _equations(content):
     for q, force in zip(content.coordinates, content.forces):
         if force != 0:
             yield "force", {"coordinate": content.names[q]}, text_of(force, f"the force along {q}")
-    for i, constraint in enumerate(content.constraints, 1):
-        yield "constraint", {"name": content.all_names.add(f"constraint{i}")}, text_of(constraint, f"the constraint {constraint}")
+    if constraint_names is None:
+        constraint_names = [f"constraint{i}" for i, _ in enumerate(content.constraints, 1)]
+    if len(constraint_names) != len(content.constraints):
+        raise Problem(f"there are {len(constraint_names)} names and {len(content.constraints)} constraints; expected one for each, holonomic ones first")
+    for name, constraint in zip(constraint_names, content.constraints):
+        yield "constraint", {"name": content.all_names.add(name)}, text_of(constraint, f"the constraint {constraint}")
+
+
+def _watched(content, points):
+    """The elements of what is drawn and of outputs."""
+    for name, expressions in content.watched.items():
+        if name in points:
+            places = [text_of(expression, f"the point {name}") for expression in expressions]
+            yield "point", {"name": content.all_names.add(name)} | dict(zip("xyz", places)), None
+        else:
+            [expression] = expressions
+            yield "output", {"name": content.all_names.add(name)}, text_of(expression, f"the output {name}")
+
+
+def _places(points, frame):
+    """The coordinates of each point, two or three."""
+    places = {}
+    for name, place in points.items():
+        if isinstance(place, Vector):
+            if frame is None:
+                raise Problem(f"the point {name} is a vector, and the LagrangesMethod has no inertial frame; expected frame=N, or a tuple of coordinates")
+            place = place.to_matrix(frame)
+        places[name] = list(place)
+        if len(places[name]) not in (2, 3):
+            raise Problem(f"the point {name} has {len(places[name])} coordinates; expected two or three")
+    return places
 
 
 def _system_name(path):
@@ -140,11 +181,17 @@ def _system_name(path):
     return name
 
 
-def from_sympy(method, path, parameters, start=None, speeds=None, description="", stop_time=10.0):
+def from_sympy(
+    method, path, parameters, start=None, speeds=None, description="", stop_time=10.0, outputs=None, units=None, constraints=None, points=None
+):
     """
     Writes a LagrangesMethod as NAME.xml, and returns the path. `parameters` are the start values of the symbols in it, `start`
     those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols that stand for,
     and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs.
+
+    `outputs` has expressions by name, to be read beside the coordinates and speeds; `units` those of parameters, inputs and coordinates, such as
+    "kg"; `constraints` is a list of names, holonomic constraints first; `points` has what the animation shows by name: vectors from the origin,
+    such as P.pos_from(O), or tuples of two or three coordinates.
     """
     path = Path(path)
     if not isinstance(method, LagrangesMethod):
@@ -152,9 +199,17 @@ def from_sympy(method, path, parameters, start=None, speeds=None, description=""
             f"a {type(method).__name__} has no energies to write; expected a LagrangesMethod(L, q, forcelist=..., bodies=..., frame=N)"
             " of the same bodies and loads, with L = Lagrangian(N, *bodies)"
         )
-    content = _Content(method, speeds)
+    points, outputs = _places(points or {}, method.inertial), outputs or {}
+    both = sorted(set(points) & set(outputs))
+    if both:
+        raise Problem(f"{both[0]} is a point and an output; expected two names")
+    content = _Content(method, speeds, points | {name: [expression] for name, expression in outputs.items()})
     root = ElementTree.Element("system", name=_system_name(path), description=description)
-    for tag, attributes, text in [*_variables(content, parameters, start or {}), *_equations(content)]:
+    for tag, attributes, text in [
+        *_variables(content, parameters, start or {}, units or {}),
+        *_watched(content, points),
+        *_equations(content, constraints),
+    ]:
         ElementTree.SubElement(root, tag, attributes).text = text
     ElementTree.SubElement(root, "experiment", stopTime=repr(float(stop_time)))
     ElementTree.indent(root)
