@@ -45,6 +45,50 @@ def test_one_version_of_the_compiler():
     assert re.findall(r'"(ziglang[^"]*)"', (ROOT / "scripts" / "wheel" / "pyproject.toml").read_text()) == [pin, pin]
 
 
+# The tag, how lagc begins, and where its format names the processor, with how.
+OTHER_WHEELS = {
+    "aarch64-linux": ("manylinux_2_17_aarch64", "lagc", b"\x7fELF", lambda program: program[18:20] == (183).to_bytes(2, "little")),
+    "win64": ("win_amd64", "lagc.exe", b"MZ", lambda program: program[int.from_bytes(program[60:64], "little") :].startswith(b"PE\0\0\x64\x86")),
+    "darwin64": ("macosx_11_0_x86_64", "lagc", b"\xcf\xfa\xed\xfe", lambda program: program[4:8] == b"\7\0\0\1"),
+    "aarch64-darwin": ("macosx_11_0_arm64", "lagc", b"\xcf\xfa\xed\xfe", lambda program: program[4:8] == b"\x0c\0\0\1"),
+}
+
+
+@pytest.mark.parametrize("platform", OTHER_WHEELS)
+def test_wheels_of_other_platforms(platform, tmp_path):
+    """Have the same content as this machine's but for lagc, which is for the wheel's own platform."""
+    tag, name, beginning, is_for_the_processor = OTHER_WHEELS[platform]
+    archive = wheel.build_wheel(ROOT / "scripts" / "wheel", tmp_path, "-C", f"platform={platform}")
+    assert archive.name.endswith(f"-py3-none-{tag}.whl")
+    with zipfile.ZipFile(archive) as there, zipfile.ZipFile(wheel.installed()) as here:
+        program = there.read(f"lagrange_fmu/bin/{name}")
+        assert program.startswith(beginning) and is_for_the_processor(program)
+        others = {member for member in here.namelist() if "dist-info" not in member} - {"lagrange_fmu/bin/lagc"}
+        assert {member for member in there.namelist() if "dist-info" not in member} == others | {f"lagrange_fmu/bin/{name}"}
+        for member in others:
+            assert there.read(member) == here.read(member), member
+
+
+def test_a_platform_without_wheels():
+    words = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-build-isolation", "--no-deps", "-C", "platform=vax", ROOT / "scripts" / "wheel"]
+    result = subprocess.run(words, capture_output=True, text=True)
+    assert result.returncode != 0 and "the platform 'vax' is not known; expected linux64, aarch64-linux, win64, darwin64, aarch64-darwin" in result.stderr
+
+
+def test_the_source_distribution_builds_the_wheel(tmp_path):
+    """Far from the tree, and without what the tree gets from its distribution; lagc alone knows where libxml2 was."""
+    sources = wheel.build_sdist(tmp_path)
+    subprocess.run([sys.executable, "-m", "tarfile", "-e", sources, tmp_path / "unpacked"], check=True)
+    [folder] = (tmp_path / "unpacked").iterdir()
+    assert (folder / "PKG-INFO").read_text().startswith("Metadata-Version: ")
+    contents = []
+    for archive in (wheel.installed(), wheel.build_wheel(folder, tmp_path / "dist")):
+        with zipfile.ZipFile(archive) as file:
+            names = [member for member in file.namelist() if not member.endswith(("/lagc", "/RECORD"))]
+            contents.append({member: hashlib.sha256(file.read(member)).hexdigest() for member in names})
+    assert contents[0] == contents[1]
+
+
 def test_from_nothing_to_a_motion(tmp_path):
     succeed("new", "Swing", cwd=tmp_path)
     assert succeed("check", "Swing.xml", cwd=tmp_path) == "Swing: 2 states, 1 input, 3 outputs, 4 parameters; solver auto\n"
@@ -183,7 +227,7 @@ def test_two_clones_give_the_same_bytes(tmp_path):
     for folder in ("libxml2", "sundials-all"):
         shutil.copytree(ROOT / "build" / folder, clone / "build" / folder)
     contents = []
-    for archive in (wheel.installed(), wheel.build_wheel(clone, tmp_path / "dist")):
+    for archive in (wheel.installed(), wheel.build_wheel(clone / "scripts" / "wheel", tmp_path / "dist")):
         with zipfile.ZipFile(archive) as file:
             contents.append({member: hashlib.sha256(file.read(member)).hexdigest() for member in file.namelist()})
     assert contents[0] == contents[1]

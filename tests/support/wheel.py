@@ -15,12 +15,21 @@ COMMAND = FOLDER / "venv" / "bin" / "lagrange-fmu"
 BARE = {"PATH": "/nonexistent", "TMPDIR": str(FOLDER / "scratch"), "LAGRANGE_FMU_CACHE": str(FOLDER / "scratch" / "cache")}
 
 
-def build_wheel(source, folder):
-    words = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-build-isolation", "--no-deps", "--wheel-dir", folder, source / "scripts" / "wheel"]
+def build_wheel(source, folder, *further):
+    """From the folder of a pyproject.toml."""
+    words = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-build-isolation", "--no-deps", "--wheel-dir", folder, *further]
+    words.append(source)
     result = subprocess.run(words, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
     [wheel] = folder.glob("*.whl")
     return wheel
+
+
+def build_sdist(folder):
+    command = f"import backend; print(backend.build_sdist({str(folder)!r}))"
+    subprocess.run([sys.executable, "-c", command], cwd=ROOT / "scripts" / "wheel", check=True, capture_output=True)
+    [archive] = folder.glob("*.tar.gz")
+    return archive
 
 
 def _install(wheel):
@@ -42,7 +51,7 @@ def installed():
         lock.seek(0)
         if lock.read() != this_run:
             shutil.rmtree(FOLDER / "dist", ignore_errors=True)
-            _install(build_wheel(ROOT, FOLDER / "dist"))
+            _install(build_wheel(ROOT / "scripts" / "wheel", FOLDER / "dist"))
             lock.truncate(0)
             lock.write(this_run)
     [wheel] = (FOLDER / "dist").glob("*.whl")

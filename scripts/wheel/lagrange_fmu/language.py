@@ -1,10 +1,11 @@
 """The words of the language of systems, as lagc tells them."""
 
 import functools
+import os
 import subprocess
 from pathlib import Path
 
-LAGC = Path(__file__).resolve().parent / "bin" / "lagc"
+LAGC = Path(__file__).resolve().parent / "bin" / ("lagc.exe" if os.name == "nt" else "lagc")
 
 
 @functools.cache
