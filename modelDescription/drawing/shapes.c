@@ -66,7 +66,7 @@ static size_t append_side(const struct Spot *points, size_t count, bool backward
   size_t first = length;
   for (size_t i = 0; i < count; i++) {
     struct Spot point = points[backwards ? count - 1 - i : i];
-    while (length >= first + 2 && turn(hull[length - 2], hull[length - 1], point) <= 0.0) length--;
+    while (length >= first + 2 && !(turn(hull[length - 2], hull[length - 1], point) > 0.0)) length--;
     hull[length++] = point;
   }
   return length - 1; /* its last point begins the other side */

@@ -49,7 +49,7 @@ struct Rectangle rectangle_of(const struct Drawing *drawing);
 /* Puts it into the middle of a picture of PICTURE_SIZE, in pixels to the right and down; false where it has no size. */
 bool fit_drawing(struct Drawing *drawing);
 
-/* The convex hull of points, which are sorted here; returns its number of points, which come first in hull[count + 1]. */
+/* The convex hull of points, which are sorted here; returns its number of points, which come first in hull[2 count]. */
 size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull);
 
 #endif

@@ -43,13 +43,13 @@ static void set_sides(struct Solid *solid, const double moment[3], double mass, 
     solid->half[i] = sqrt(fmax(1.5 * across / mass, 0.0));
   }
   if (axis < 0) return;
-  double radius = sqrt(2.0 * moment[axis] / mass);
+  double radius = sqrt(fmax(2.0 * moment[axis] / mass, 0.0));
   solid->half[(axis + 1) % 3] = solid->half[(axis + 2) % 3] = radius;
   solid->half[axis] = sqrt(fmax(3.0 * moment[(axis + 1) % 3] / mass - 0.75 * radius * radius, 0.0));
 }
 
 static void append_filled(struct Drawing *drawing, struct Spot *points, size_t count) {
-  struct Spot hull[RINGS + 2];
+  struct Spot hull[2 * RINGS + 1];
   size_t size = convex_hull(points, count, hull);
   append_shape(drawing, SOLID, true, hull, size);
   hull[size] = hull[0];
@@ -87,8 +87,11 @@ void append_solid(struct Drawing *drawing, const struct View *view, const struct
   for (int i = 0; i < 3; i++) {
     moment[i] = values[body->tensor.row[i].along[i]];
     solid.middle[i] = values[body->position[i].node];
-    for (int axis = 0; axis < 3; axis++) solid.axis[axis][i] = values[turn->row[i].along[axis]];
     sum += moment[i] + fabs(solid.middle[i]);
+    for (int axis = 0; axis < 3; axis++) {
+      solid.axis[axis][i] = values[turn->row[i].along[axis]];
+      sum += fabs(solid.axis[axis][i]);
+    }
   }
   if (!(mass > 0.0) || !isfinite(sum) || !(moment[0] + moment[1] + moment[2] > 0.0)) return;
   if (moment[0] == 0.0 && moment[1] == 0.0) { /* in the plane: a bar, as for want of a better shape */

@@ -55,6 +55,18 @@ def test_the_loop_is_closed_at_the_start():
     assert np.linalg.norm(rocker[0] - crank[0]) == pytest.approx(0.9 * metre, abs=0.3)
 
 
+def test_the_pendulum_hangs_at_the_angle_of_its_start():
+    [rod], [[pivot]] = shapes("SimplePendulum", "polyline", "link"), shapes("SimplePendulum", "circle", "base")
+    right, down = rod[1] - rod[0]
+    assert rod[0] == pytest.approx(pivot) and math.atan2(right, down) == pytest.approx(fmu.start_values("SimplePendulum")["theta"], abs=2e-3)
+
+
+def test_points_that_move_apart_are_not_linked():
+    """A ball and the ground, a cart and its rail; but the cart and its pendulum are linked."""
+    assert not shapes("BouncingBall", "polyline", "link")
+    assert len(shapes("InvertedPendulumCart", "polyline", "link")) == 1
+
+
 def test_a_rod_that_a_constraint_holds():
     [[pivot]], [[bob]] = shapes("PendulumCartesian", "circle", "hole"), shapes("PendulumCartesian", "circle", "particle")
     [rod] = shapes("PendulumCartesian", "polyline", "link")

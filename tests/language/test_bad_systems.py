@@ -589,7 +589,8 @@ def names_of(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
-FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3/modelDescription.xml", "fmi3/terminalsAndIcons.xml", "modelDescription.xml", "system.c"]
+FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3/icon.svg", "fmi3/modelDescription.xml",
+         "fmi3/terminalsAndIcons.xml", "model.png", "modelDescription.xml", "system.c"]
 
 
 @pytest.mark.parametrize("limit", [0, 1, 4096, 7000])
