@@ -12,8 +12,11 @@ EARTH = """<system name="{name}"><coordinate name="x" velocity="vx" velocityStar
   <particle mass="1" x="x" y="y"/><gravity y="-9.81"/><contact name="ground" gap="sqrt(x^2 + (y + 6.4e6)^2) - 6.4e6"/><solver method="{method}"/></system>"""
 DOME = """<system name="{name}"><coordinate name="x" velocity="vx" velocityStart="1"/><coordinate name="y" velocity="vy" start="1"/>
   <particle mass="1" x="x" y="y"/><gravity y="-9.81"/><contact name="dome" gap="sqrt(x^2 + y^2) - 1"/><solver method="{method}"/></system>"""
+PRESSED = """<system name="{name}"><coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>100*(x + 0.1)^2/2</potential>
+  <stop coordinate="x" min="0" max="5" restitution="0.5"/><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
-    ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "bdf"])
+    ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "bdf"]),
+    ("Pressed", PRESSED, ["radau", "bdf", "erk"])
 ] for method in methods}  # fmt: skip
 
 
@@ -49,6 +52,15 @@ def test_sliding_over_the_earth(method):
         if instance.time > 0.1:
             assert (x, y) == (pytest.approx(instance.time, abs=1e-5), pytest.approx(-(x**2) / 12.8e6, abs=3e-9))
     assert instance.get("ground.force") == pytest.approx(9.81, abs=1e-5)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("method", ["radau", "bdf", "erk"])
+def test_errors_of_a_method_keep_no_bounces_up(method, tolerance):
+    """They lose three quarters of their energy each, and are over in 1.2 s; then the spring presses with 10 N."""
+    instance = Instance(f"Pressed_{method}").initialize(tolerance=tolerance)
+    instance.step(3)
+    assert instance.get("x", "v", "x.min.force") == pytest.approx([0, 0, 10], abs=1e-9)
 
 
 def test_a_solver_recommends_others_only():

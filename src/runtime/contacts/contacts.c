@@ -13,6 +13,7 @@
 #include "events/continuity.h"
 #include "events/indicators.h"
 #include "events/settlement.h"
+#include "instance/solver.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
@@ -20,6 +21,8 @@ enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 static const double shortest_flight = 1000.0;
 /* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
+/* Below this share of the tolerance bounces are as high as the errors of some methods, which would keep them up. */
+static const double lost_share = 0.02;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
@@ -112,6 +115,14 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   return done;
 }
 
+/* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
+static double lost_height(const struct Settlement *settlement) {
+  if (lagrangian.solver->finer == NULL || settlement->occasion == IN_EXCHANGE) return 0.0;
+  double smallest = INFINITY;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
+  return lost_share * settlement->instance->situation->tolerance * smallest;
+}
+
 /* Whether an open contact that touches would come back at once. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
@@ -124,7 +135,8 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   /* Roundings leave it a little below the ground, importers more, and no flight that ends there has a further zero. */
   double height = rate * rate / (2.0 * fall), depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
-         height <= fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * value[CONTACT_GAP]);
+         height <= fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * value[CONTACT_GAP]) ||
+         height <= lost_height(settlement);
 }
 
 /* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */
