@@ -76,7 +76,7 @@ static void write_rounded(xmlTextWriterPtr writer, const char *name, double valu
 }
 
 static char *force_name(const struct Samples *samples, size_t constraint) {
-  return format_text("%s.force", samples->model->constraints.items[constraint].name);
+  return constraint_force_name(&samples->model->constraints.items[constraint]);
 }
 
 static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, const struct Rod *rod) {
@@ -125,6 +125,7 @@ static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model)
   for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);
   for (size_t i = 0; i < links.joint_count; i++) write_joint(writer, &samples, &links.joints[i]);
   for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
+  release_samples(&samples);
 }
 
 bool has_scene(const struct Model *model) {

@@ -106,5 +106,6 @@ struct Links links_of(const struct Model *model, const struct Equations *equatio
       links.items = make_room(links.items, links.count, sizeof *links.items);
       links.items[links.count++] = (struct Link){i, j};
     }
+  for (int trial = 0; trial < TRIALS; trial++) release(moved[trial]);
   return links;
 }

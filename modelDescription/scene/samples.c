@@ -86,13 +86,21 @@ struct Samples take_samples(const struct Model *model) {
       if (kind == COORDINATE || kind == INPUT || kind == TIME) symbols[i] += moved(k, i);
     }
     samples.values[k] = graph_evaluate(model->graph, symbols);
+    release(symbols);
   }
   return samples;
+}
+
+void release_samples(struct Samples *samples) {
+  for (size_t k = 0; k < samples->count; k++) release(samples->values[k]);
+  samples->count = 0;
 }
 
 double *sample_with(const struct Samples *samples, Node symbol, double value) {
   const struct Graph *graph = samples->model->graph;
   double *symbols = start_values(samples->model);
   symbols[graph->vertices[symbol].left] = value;
-  return graph_evaluate(graph, symbols);
+  double *values = graph_evaluate(graph, symbols);
+  release(symbols);
+  return values;
 }

@@ -24,5 +24,8 @@ struct Samples {
 
 struct Samples take_samples(const struct Model *model);
 
+/* Large systems have many nodes. */
+void release_samples(struct Samples *samples);
+
 /* The values of all nodes with this symbol changed in the first sample. */
 double *sample_with(const struct Samples *samples, Node symbol, double value);

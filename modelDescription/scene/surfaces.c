@@ -75,8 +75,10 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples, N
     if (!(length > 1e-9 * little)) continue;
     for (int axis = 0; axis < 3; axis++) surface.normal[axis] /= length;
     append(surfaces, surface);
-    return;
+    break;
   }
+  release(at);
+  release(beside);
 }
 
 struct Surfaces find_surfaces(const struct Samples *samples) {
