@@ -107,7 +107,7 @@ def test_section(monkeypatch, tmp_path):
     monkeypatch.setattr(mechanisms, "settings_of", lambda problem, method, quick: [1e-4, 1e-8] if method in mechanisms.SOLVERS else [100, 200])
     steps = []
     monkeypatch.setattr(report.accelerations, "rows", lambda quick: ([["UR5", "6 axes", 500, math.nan, math.nan]], ["No Pinocchio."]))
-    sentences, content, _ = report.mechanisms_section(True, steps.append)
+    sentences, content, *_ = report.mechanisms_section(True, steps.append)
     assert len(steps) == 3 and len(sentences) == 1 and "a drift of the energy of 5e-05 J" in sentences[0]
     assert content.count("<svg") == 3 and content.count("<table>") == 3 and "knife edge on a slope" in content
     assert "<p>No Pinocchio.</p>" in content and "<td>UR5</td>" in content

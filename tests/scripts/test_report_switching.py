@@ -111,7 +111,7 @@ def test_section(monkeypatch, tmp_path):
     monkeypatch.setattr(switching, "TOLERANCES", [1e-8])
     monkeypatch.setattr(switching, "TOLERANCE", 1e-10)
     steps = []
-    sentences, content, wrong = report.switching_section(True, steps.append)
+    sentences, content, wrong, _ = report.switching_section(True, steps.append)
     assert len(steps) == 2 and len(sentences) == 2 and wrong == 0
     assert content.count("<svg") == 3 and content.count("<table>") == 2 and "block that sticks and slips on a belt" in content
     assert all((tmp_path / name).exists() for name in ("switching.csv", "switching_events.csv", "switching_ratios.csv"))
@@ -132,7 +132,7 @@ def test_what_fails(monkeypatch, tmp_path):
     monkeypatch.setitem(METHODS, "SciPy DOP853 with events", ("SciPy", absent))
     methods_of = switching.methods_of
     monkeypatch.setattr(switching, "methods_of", lambda problem: fail(problem) if problem is BLOCK else methods_of(problem))
-    _, content, _ = report.switching_section(True, lambda what: None)
+    content = report.switching_section(True, lambda what: None).content
     assert "Left out, block that sticks and slips on a belt: it has no motion." in content
     missing = re.search("Not installed here: (.*?)\\.</p>", content)[1].split(", ")
     assert "SciPy DOP853 with events" in missing and "ball that bounces without loss" in content
