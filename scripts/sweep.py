@@ -10,6 +10,7 @@ import hashlib
 import io
 import itertools
 import json
+import logging
 import os
 import shutil
 import sys
@@ -247,7 +248,9 @@ def simulate(client, archive, rows, names, settings, parts):
 def simulate_with_dask(scheduler, *words):
     with ExitStack() as stack:
         if not scheduler:
-            scheduler = stack.enter_context(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0"))
+            # What fails reaches us by the futures; workers that close also log heartbeats that nobody answers any more.
+            cluster = LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL)
+            scheduler = stack.enter_context(cluster)
         return simulate(stack.enter_context(Client(scheduler)), *words)
 
 
