@@ -180,6 +180,7 @@ INCLUDE = '<system name="Cell">\n  <include file="robot.urdf" as="left" {}/>\n</
     "attributes, message",
     [
         ('base="loose"', "cell.xml:2: base=\"loose\" of <include> is not known; expected fixed or floating"),
+        ('limits="hard"', "cell.xml:2: limits=\"hard\" of <include> is not known; expected outputs or stops"),
         ('tool="loewr"', "robot.urdf: there is no link 'loewr' for the tool; did you mean 'lower'? (included as 'left' on line 2 of cell.xml)"),
     ],
 )  # fmt: skip
@@ -192,9 +193,17 @@ def test_bad_include(attributes, message, tmp_path):
 
 def test_base_of_what_is_no_robot(tmp_path):
     (tmp_path / "robot.urdf").write_text('<system name="Ball"/>')
-    (tmp_path / "cell.xml").write_text(INCLUDE.format('base="floating"'))
+    (tmp_path / "cell.xml").write_text(INCLUDE.format('base="floating" effort="limited"'))
     result = lagc("cell.xml", "-o", "out", cwd=tmp_path)
-    assert 'robot.urdf:1: base="..." and tool="..." of <include> are for robots' in result.stderr
+    for word in ("base", "effort"):
+        assert f'robot.urdf:1: {word}="..." of <include> is for robots; expected a file that begins with <robot>' in result.stderr
+
+
+def test_stops_at_one_place(tmp_path):
+    (tmp_path / "robot.urdf").write_text(RIGHT.replace('lower="-1" upper="1"', 'lower="0" upper="0"'))
+    (tmp_path / "cell.xml").write_text(INCLUDE.format('limits="stops"'))
+    result = lagc("cell.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and "robot.urdf:10: the limits of the joint 'shoulder' are both 0; expected lower below upper" in result.stderr
 
 
 def test_robot_without_mass_on_floating_base(tmp_path):

@@ -95,7 +95,26 @@ PAIR = """<system name="RobotPair" description="two of them, which a spring betw
   <force on="right.tool" x="-k*stretch"/>
 </system>
 """
-SYSTEMS = {"RobotHand": ARM, "RobotCart": CART, "RobotLosses": LOSSES, "RobotRotor": ROTOR, "RobotFlying": FLYING,
+# Two disks about vertical axes, one of which another mimics at half its angle, and a block along a rail that begins at 0.2.
+REAL = f"""<robot name="RobotReal">
+  <link name="floor"/>
+  <link name="disk"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="phi" type="revolute">
+    <parent link="floor"/><child link="disk"/><axis xyz="0 0 1"/><limit lower="-1" upper="1.5" effort="0.02" velocity="9"/><dynamics friction="0.008"/>
+  </joint>
+  <link name="wheel"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="psi" type="continuous"><parent link="floor"/><child link="wheel"/><axis xyz="0 0 1"/></joint>
+  <link name="half"><inertial><mass value="1"/>{BALL}</inertial></link>
+  <joint name="chi" type="revolute">
+    <parent link="floor"/><child link="half"/><axis xyz="0 0 1"/><mimic joint="psi" multiplier="0.5" offset="0.1"/><limit lower="-0.4" upper="0.2"/>
+    <dynamics friction="0.003"/>
+  </joint>
+  <link name="block"><inertial><mass value="2"/>{BALL}</inertial></link>
+  <joint name="x" type="prismatic"><parent link="floor"/><child link="block"/><axis xyz="1 0 0"/><limit lower="0.2" upper="2" effort="5" velocity="1"/></joint>
+</robot>
+"""
+REAL_ROBOT = '<system name="RobotStops"><include file="../RobotReal/system.xml" as="r" limits="stops" friction="sticks" effort="limited"/></system>'
+SYSTEMS = {"RobotReal": REAL, "RobotStops": REAL_ROBOT, "RobotHand": ARM, "RobotCart": CART, "RobotLosses": LOSSES, "RobotRotor": ROTOR, "RobotFlying": FLYING,
            "RobotFree": FREE, "RobotRod": ROD, "RobotPair": PAIR}  # fmt: skip
 
 
@@ -169,6 +188,32 @@ def test_losses(open_fmu):
         assert instance.get("der(phi_velocity)") == pytest.approx(torque / (0.004 + 4 * 0.004), rel=1e-13)
     instance.reset().initialize({"x_damping": 0, "x_friction": 0, "g": 0, "x_force": 3, "x_velocity": 1})
     assert instance.get("der(x_velocity)") == 1.5
+
+
+def test_stops_stiction_and_effort(open_fmu):
+    """Motors push with their effort, friction holds what is pushed by less, and stops hold: also what is mimicked, by the ratio."""
+    instance = open_fmu("RobotStops")
+    modes = [f"r.{name}" for name in ("phi_bearing.sliding", "chi_bearing.sliding", "x.min.closed", "phi.max.closed", "chi_max.closed")]
+    instance.initialize({"r.phi_torque": 1.0, "r.psi_torque": 0.0014, "r.x_force": -1e9})
+    assert instance.get("r.x") == 0.2
+    until = 0.5
+    instance.step(until)
+    # 0.02 of effort less 0.008 of friction, on J = 0.004; the mimicking disk's friction of 0.003 acts by half.
+    assert instance.get("r.phi", "r.phi_velocity") == pytest.approx([3 * until**2 / 2, 3 * until], rel=1e-12)
+    assert instance.get("r.psi", "r.psi_velocity", "r.x", "r.x.min.force", "r.phi_bearing.force") == pytest.approx([0, 0, 0.2, 5, 0.008], abs=1e-14)
+    assert instance.fmu.getInteger(instance.vr(*modes)) == [1, 0, 1, 0, 0]
+    instance.set({"r.psi_torque": 0.0015 + 0.0005})
+    instance.step(1.0)
+    # Of the disk and a quarter of the one that mimics.
+    rate = 0.0005 / 0.005
+    assert instance.get("r.psi") == pytest.approx(rate * 1.0 / 2, rel=1e-12)
+    instance.step(4.0)
+    assert instance.get("r.phi", "r.phi_velocity", "r.psi", "r.psi_velocity", "r.chi") == pytest.approx([1.5, 0, 0.2, 0, 0.2], abs=1e-12)
+    assert instance.fmu.getInteger(instance.vr(*modes))[2:] == [1, 1, 1]
+    instance.set({"r.phi_torque": -0.01})
+    instance.step(1.0)
+    assert instance.get("r.phi") == pytest.approx(1.5 - 0.5 / 2, rel=1e-12)
+    assert "r.phi_beyond" not in fmu.names_of("RobotStops", "output")
 
 
 @pytest.mark.parametrize("name, base, spin", [("RobotFlying", "flight", "spin"), ("RobotFree", "rotor.base", "rotor.spin")])

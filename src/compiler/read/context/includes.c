@@ -80,6 +80,10 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
   return false;
 }
 
+/* What an <include> may say of a robot. */
+enum { ROBOT_WORDS = 5 };
+static const char *const of_robots[ROBOT_WORDS] = {"base", "tool", "limits", "friction", "effort"};
+
 /* The <system> in the file of a source, or that its robot is with what the <include> says of it; NULL after reporting why not. */
 static xmlDocPtr load_system(const struct Source *source, const struct RobotOptions *options,
                              struct Diagnostics *diagnostics) {
@@ -90,9 +94,11 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   if (!is_element(root, "system"))
     report_error(diagnostics, xmlGetLineNo(root),
                  "a <%s> cannot be included; expected the file of a <system> or <robot>", (const char *)root->name);
-  else if (options->base != NULL || options->tool != NULL)
-    report_error(diagnostics, xmlGetLineNo(root),
-                 "base=\"...\" and tool=\"...\" of <include> are for robots; expected a file that begins with <robot>");
+  else
+    for (size_t i = 0; i < ROBOT_WORDS; i++)
+      if (has_attribute(source->include, of_robots[i]))
+        report_error(diagnostics, xmlGetLineNo(root),
+                     "%s=\"...\" of <include> is for robots; expected a file that begins with <robot>", of_robots[i]);
   if (diagnostics->errors == 0) return document;
   xmlFreeDoc(document);
   return NULL;
@@ -100,13 +106,21 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
 
 /* The document of a source, read once for all that include it in the same way. */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
-  char *base = attribute(source->include, "base"), *tool = attribute(source->include, "tool");
-  char *key = format_text("%s\n%s\n%s", source->canonical_path, base != NULL ? base : "", tool != NULL ? tool : "");
+  char *key = copy_text(source->canonical_path);
+  for (size_t i = 0; i < ROBOT_WORDS; i++) {
+    const char *said = attribute(source->include, of_robots[i]);
+    key = format_text("%s\n%s", key, said != NULL ? said : "");
+  }
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin};
     known = allocate(1, sizeof *known);
-    known->document = load_system(source, &(struct RobotOptions){.base = base, .tool = tool}, &local);
+    struct RobotOptions options = {.floats = attribute_is(source->include, "base", "floating"),
+                                   .has_stops = attribute_is(source->include, "limits", "stops"),
+                                   .sticks = attribute_is(source->include, "friction", "sticks"),
+                                   .is_effort_limited = attribute_is(source->include, "effort", "limited"),
+                                   .tool = attribute(source->include, "tool")};
+    known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;
     names_set(reader->includes->documents, key, known);
   }

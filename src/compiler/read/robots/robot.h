@@ -32,6 +32,7 @@ struct Joint {
   double axis[3];          /* of length 1, in the child */
   double lower, upper;     /* NAN: no limit */
   double damping, friction;
+  double effort;       /* the largest force or torque of its motor; NAN: no limit */
   char *mimicked_name; /* NULL unless the joint's position is multiplier*(that of the mimicked one) + offset */
   double multiplier, offset;
   /* What robot_connect() finds: */
@@ -40,6 +41,16 @@ struct Joint {
       leader; /* the joint with the coordinate that gives the position ratio*(that of the leader) + shift; itself mostly */
   double ratio, shift;
   bool is_mimicked;
+};
+
+/* What an <include> says of a robot beyond its file. */
+struct RobotOptions {
+  bool floats;            /* the root link moves freely; else it stands in the inertial frame */
+  bool has_stops;         /* limits stop the joints; else outputs tell how far these are beyond them */
+  bool sticks;            /* the joints' friction is dry; else it lets them creep */
+  bool is_effort_limited; /* motors push and turn with no more than their effort */
+  const char *
+      tool; /* the link whose position and velocity are outputs; NULL: the only one without children, if there is one */
 };
 
 struct Robot {

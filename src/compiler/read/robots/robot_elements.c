@@ -1,5 +1,6 @@
 #include "read/robots/robot_elements.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -30,12 +31,13 @@ void set_number(xmlNodePtr node, const char *attribute, double value) {
   if (value != 0) set_attribute(node, attribute, number(value));
 }
 
-void write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description) {
+xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description) {
   xmlNodePtr parameter = write_element(writer, "parameter");
   set_attribute(parameter, "name", name);
   set_attribute(parameter, "start", number(value));
   set_attribute(parameter, "unit", copy_text(unit));
   set_attribute(parameter, "description", description);
+  return parameter;
 }
 
 void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description) {
@@ -55,16 +57,24 @@ xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const
   return coordinate;
 }
 
-void write_motor(const struct Writer *writer, const char *name, const char *unit, const char *description) {
+xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
+                       const char *description) {
   bool is_length = strcmp(unit, "m") == 0;
-  const char *effort = is_length ? "force" : "torque";
-  write_coordinate(writer, name, unit, description);
+  const char *kind = is_length ? "force" : "torque", *unit_of_effort = is_length ? "N" : "N.m";
+  xmlNodePtr coordinate = write_coordinate(writer, name, unit, description);
+  char *wanted = format_text("%s_%s", name, kind);
+  if (!isnan(effort))
+    set_attribute(write_parameter(writer, format_text("%s_effort", name), effort, unit_of_effort,
+                                  format_text("largest %s along %s", kind, name)),
+                  "min", number(0));
   xmlNodePtr input = write_element(writer, "input"), force = write_element(writer, "force");
-  set_attribute(input, "name", format_text("%s_%s", name, effort));
-  set_attribute(input, "unit", copy_text(is_length ? "N" : "N.m"));
-  set_attribute(input, "description", format_text("%s along %s", effort, name));
+  set_attribute(input, "name", wanted);
+  set_attribute(input, "unit", copy_text(unit_of_effort));
+  set_attribute(input, "description", format_text("%s along %s", kind, name));
   set_attribute(force, "coordinate", copy_text(name));
-  set_content(force, format_text("%s_%s", name, effort));
+  set_content(force, isnan(effort) ? copy_text(wanted)
+                                   : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
+  return coordinate;
 }
 
 char *number(double value) {

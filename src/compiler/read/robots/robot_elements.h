@@ -3,10 +3,13 @@
 
 #include <libxml/tree.h>
 
+#include "read/robots/robot.h"
+
 /* The system as it is written. */
 struct Writer {
   xmlNodePtr system;
   long line; /* of the link or joint in the file of which the elements tell */
+  const struct RobotOptions *options;
 };
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);
@@ -18,14 +21,18 @@ void set_content(xmlNodePtr node, char *text);
 /* Leaves a 0 out, which is what a missing attribute means. */
 void set_number(xmlNodePtr node, const char *attribute, double value);
 
-void write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description);
+xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description);
 void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description);
 
 /* A coordinate and NAME_velocity. */
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);
 
-/* The same with the input NAME_force, or NAME_torque for an angle. */
-void write_motor(const struct Writer *writer, const char *name, const char *unit, const char *description);
+/*
+ * The same with the input NAME_force, or NAME_torque for an angle, of which no more than the effort acts; NAN for all of it.
+ * Returns the coordinate.
+ */
+xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
+                       const char *description);
 
 /* The number in short. */
 char *number(double value);

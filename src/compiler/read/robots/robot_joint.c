@@ -23,6 +23,7 @@ static const char *unit_of_joint(const struct Joint *joint) {
 
 void write_friction_parameters(const struct Writer *writer, const struct Robot *robot) {
   static const char meaning[] = "velocity at which friction has 76 % of its full force";
+  if (writer->options->sticks) return;
   bool turns = false, slides = false;
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct Joint *joint = robot->joints[i];
@@ -61,6 +62,23 @@ static struct Motion write_follower(const struct Writer *writer, const struct Jo
   return (struct Motion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
 }
 
+static void write_friction(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+  const char *name = joint->symbol;
+  write_parameter(writer, format_text("%s_friction", name), joint->friction, is_sliding(joint) ? "N" : "N.m",
+                  format_text("Coulomb friction of %s", name));
+  if (writer->options->sticks) {
+    xmlNodePtr friction = write_element(writer, "friction");
+    set_attribute(friction, "name", format_text("%s_bearing", name));
+    set_attribute(friction, "velocity", copy_text(motion->velocity));
+    set_attribute(friction, "force", format_text("%s_friction", name));
+    return;
+  }
+  xmlNodePtr force = write_element(writer, "force");
+  set_attribute(force, "coordinate", copy_text(joint->leader->symbol));
+  set_content(force, format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
+                                 is_sliding(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
+}
+
 static void write_losses(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
   if (joint->damping > 0) {
@@ -68,13 +86,25 @@ static void write_losses(const struct Writer *writer, const struct Joint *joint,
                     format_text("viscous damping of %s", name));
     set_content(write_element(writer, "dissipation"), format_text("%s_damping*%s^2/2", name, motion->velocity));
   }
-  if (joint->friction > 0) {
-    write_parameter(writer, format_text("%s_friction", name), joint->friction, is_sliding(joint) ? "N" : "N.m",
-                    format_text("Coulomb friction of %s", name));
-    xmlNodePtr force = write_element(writer, "force");
-    set_attribute(force, "coordinate", copy_text(joint->leader->symbol));
-    set_content(force, format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
-                                   is_sliding(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
+  if (joint->friction > 0) write_friction(writer, joint, motion);
+}
+
+/* A joint without a coordinate stops the one that it mimics. */
+static void write_stops(const struct Writer *writer, const struct Joint *joint, char *lower, char *upper) {
+  if (joint->leader == joint) {
+    xmlNodePtr stop = write_element(writer, "stop");
+    set_attribute(stop, "coordinate", copy_text(joint->symbol));
+    set_attribute(stop, "min", lower);
+    set_attribute(stop, "max", upper);
+    return;
+  }
+  for (int end = 0; end < 2; end++) {
+    xmlNodePtr contact = write_element(writer, "contact");
+    char *position = position_of(joint);
+    set_attribute(contact, "name", format_text("%s_%s", joint->symbol, end == 0 ? "min" : "max"));
+    set_attribute(contact, "unit", copy_text(unit_of_joint(joint)));
+    set_attribute(contact, "gap",
+                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position));
   }
 }
 
@@ -82,6 +112,10 @@ static void write_limits(const struct Writer *writer, const struct Joint *joint)
   if (isnan(joint->lower)) return;
   const char *name = joint->symbol;
   char *lower = number(joint->lower), *upper = number(joint->upper);
+  if (writer->options->has_stops) {
+    write_stops(writer, joint, lower, upper);
+    return;
+  }
   write_output(writer, format_text("%s_beyond", name), unit_of_joint(joint),
                format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
                format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
@@ -90,7 +124,10 @@ static void write_limits(const struct Writer *writer, const struct Joint *joint)
 static void write_single(const struct Writer *writer, const struct Joint *joint, const char *description) {
   struct Motion motion;
   if (joint->leader == joint) {
-    write_motor(writer, joint->symbol, unit_of_joint(joint), description);
+    double effort = writer->options->is_effort_limited ? joint->effort : NAN;
+    xmlNodePtr coordinate = write_motor(writer, joint->symbol, unit_of_joint(joint), effort, description);
+    if (writer->options->has_stops && (joint->lower > 0 || joint->upper < 0))
+      set_attribute(coordinate, "start", number(joint->lower > 0 ? joint->lower : joint->upper));
     motion = (struct Motion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);
   write_losses(writer, joint, &motion);
@@ -100,7 +137,7 @@ static void write_single(const struct Writer *writer, const struct Joint *joint,
 static void write_planar(const struct Writer *writer, const struct Joint *joint, const char *description) {
   static const char *const coordinates[3][2] = {{"x", "m"}, {"y", "m"}, {"angle", "rad"}};
   for (int i = 0; i < 3; i++)
-    write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], description);
+    write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], NAN, description);
 }
 
 void write_free_coordinates(const struct Writer *writer, const char *name, const char *description) {

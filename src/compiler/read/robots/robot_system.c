@@ -43,7 +43,8 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
 }
 
 /* The frame of a link, in that of the link to which the joint's other side is fixed. */
-static void write_link(struct Writer *writer, const struct Link *link, bool floats) {
+static void write_link(struct Writer *writer, const struct Link *link) {
+  bool floats = writer->options->floats;
   const struct Joint *joint = link->joint;
   bool moves = joint_moves(joint);
   if (moves) {
@@ -88,23 +89,25 @@ static void write_tool(struct Writer *writer, const struct Link *link) {
                  format_text("velocity of '%s' along %s", link->name, axes[i]));
 }
 
-static bool has_losses(const struct Robot *robot) {
+/* Whether damping, or friction that creeps, may make the robot stiff. */
+static bool has_losses(const struct Robot *robot, const struct RobotOptions *options) {
   for (size_t i = 0; i < robot->joint_count; i++)
-    if (robot->joints[i]->damping > 0 || robot->joints[i]->friction > 0) return true;
+    if (robot->joints[i]->damping > 0 || (robot->joints[i]->friction > 0 && !options->sticks)) return true;
   return false;
 }
 
-static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end, bool floats) {
+static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
   write_parameter(writer, copy_text("g"), 9.81, "m/s2", copy_text("gravitational acceleration, along -z"));
   set_attribute(write_element(writer, "gravity"), "z", copy_text("-g"));
   write_friction_parameters(writer, robot);
-  for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link, floats);
+  for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */
-  if (!has_losses(robot)) set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
+  if (!has_losses(robot, writer->options))
+    set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
   xmlNodePtr experiment = write_element(writer, "experiment");
   set_attribute(experiment, "stopTime", number(1));
   set_attribute(experiment, "stepSize", number(0.01));
@@ -124,20 +127,20 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
 
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
-  bool floats = options->base != NULL && strcmp(options->base, "floating") == 0;
-  struct Robot *robot = urdf_read(xmlDocGetRootElement(document), diagnostics);
+  struct Robot *robot = urdf_read(xmlDocGetRootElement(document), options, diagnostics);
   const struct Link *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
-    check_motion(robot, floats, diagnostics);
+    check_motion(robot, options->floats, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }
   xmlFreeDoc(document);
   document = NULL;
   if (diagnostics->errors == errors) {
     document = xmlNewDoc((const xmlChar *)"1.0");
-    struct Writer writer = {.system = xmlNewNode(NULL, (const xmlChar *)"system"), .line = robot->line};
+    struct Writer writer = {
+        .system = xmlNewNode(NULL, (const xmlChar *)"system"), .line = robot->line, .options = options};
     xmlDocSetRootElement(document, writer.system);
-    write_robot(&writer, robot, end, floats);
+    write_robot(&writer, robot, end);
     schema_check(document, diagnostics);
   }
   if (diagnostics->errors == errors) return document;

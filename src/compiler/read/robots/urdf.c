@@ -14,6 +14,7 @@ enum { LEFT_OUT_LIMIT = 20 };
 
 struct Urdf {
   struct Robot *robot;
+  const struct RobotOptions *options;
   struct Diagnostics *diagnostics;
   char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
   size_t left_out_count;
@@ -185,6 +186,15 @@ static void read_axis(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
   for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] /= length;
 }
 
+static void read_effort(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+  xmlNodePtr limit = child_of(urdf, node, "limit");
+  joint->effort = NAN;
+  if (limit == NULL || !has_attribute(limit, "effort") || joint->type == FIXED) return;
+  if (!urdf->options->is_effort_limited) leave_out(urdf, "effort of limit");
+  else if (joint->type == FLOATING || joint->type == PLANAR) leave_out(urdf, "effort of floating and planar joints");
+  else joint->effort = number_not_negative(urdf, limit, "effort");
+}
+
 /* A missing one of the two is 0, as in the format's definition; a file that gives neither has no limits. */
 static void read_limit(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
@@ -193,7 +203,10 @@ static void read_limit(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) 
   double lower = 0, upper = 0;
   bool is_given = read_numbers(urdf, limit, "lower", 1, &lower);
   is_given |= read_numbers(urdf, limit, "upper", 1, &upper);
-  if (has_attribute(limit, "effort")) leave_out(urdf, "effort of limit");
+  if (urdf->options->has_stops && is_given && lower == upper)
+    report_error(urdf->diagnostics, xmlGetLineNo(limit),
+                 "the limits of the joint '%s' are both %g; expected lower below upper, or type=\"fixed\"", joint->name,
+                 lower);
   if (has_attribute(limit, "velocity")) leave_out(urdf, "velocity of limit");
   if (lower > upper)
     report_error(urdf->diagnostics, xmlGetLineNo(limit),
@@ -241,6 +254,7 @@ static void read_joint(struct Urdf *urdf, xmlNodePtr node) {
   joint->child_name = read_end(urdf, node, "child");
   joint->origin = read_origin(urdf, node);
   read_axis(urdf, node, joint);
+  read_effort(urdf, node, joint);
   read_limit(urdf, node, joint);
   read_dynamics(urdf, node, joint);
   read_mimic(urdf, node, joint);
@@ -271,8 +285,8 @@ static void tell_left_out(struct Urdf *urdf) {
     report_warning(urdf->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
 }
 
-struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics) {
-  struct Urdf urdf = {.robot = allocate(1, sizeof *urdf.robot), .diagnostics = diagnostics};
+struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  struct Urdf urdf = {.robot = allocate(1, sizeof *urdf.robot), .options = options, .diagnostics = diagnostics};
   static const char *const known[] = {"link", "joint", NULL};
   xmlNodePtr xacro = find_xacro(root);
   urdf.robot->line = xmlGetLineNo(root);

@@ -10,4 +10,4 @@
 extern const char *const joint_types[JOINT_TYPES];
 
 /* Links and joints of a <robot>, not yet connected. Every mistake is reported, and what is left out told once. */
-struct Robot *urdf_read(xmlNodePtr root, struct Diagnostics *diagnostics);
+struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics);
