@@ -119,7 +119,7 @@ static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples
 }
 
 static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model) {
-  struct Samples samples = take_samples(model);
+  struct Samples samples = take_samples(model, false);
   struct Links links = find_links(&samples);
   struct Surfaces surfaces = find_surfaces(&samples);
   for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);

@@ -79,6 +79,10 @@ static void append_box(struct Drawing *drawing, const struct View *view, const s
   append_filled(drawing, corners, 8);
 }
 
+bool is_solid(const struct Body *body) {
+  return !body->has_angle && (body->tensor.row[0].along[0] != ZERO || body->tensor.row[2].along[2] != ZERO);
+}
+
 void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
                   const double *values) {
   const struct Matrix *turn = &model->mechanism.frames[body->frame].pose.rotation;

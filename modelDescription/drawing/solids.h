@@ -12,6 +12,9 @@ struct View {
 
 struct Spot seen(const struct View *view, const double position[3]);
 
+/* Whether it has a tensor of inertia, and so an extent in space. */
+bool is_solid(const struct Body *body);
+
 /* Nothing without mass and moments of inertia. */
 void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
                   const double *values);

@@ -1,5 +1,7 @@
 #include "svg.h"
 
+#include <string.h>
+
 #include "base/memory.h"
 #include "xml_output.h"
 
@@ -36,9 +38,13 @@ static void write_style(xmlTextWriterPtr writer) {
   xmlTextWriterStartElement(writer, BAD_CAST "style");
   xmlTextWriterWriteString(writer, BAD_CAST "circle, polygon { fill: currentColor } "
                                             "polyline { fill: none; stroke: currentColor; stroke-linecap: round }");
-  for (int i = 0; i < LOOK_COUNT; i++)
+  for (int i = 0; i < LOOK_COUNT; i++) {
+    int first = 0;
+    while (strcmp(looks[first].name, looks[i].name) != 0) first++;
+    if (first < i) continue; /* looks that share a class have its colour */
     xmlTextWriterWriteFormatString(writer, " .%s { color: #%02x%02x%02x }", looks[i].name, looks[i].colour[0],
                                    looks[i].colour[1], looks[i].colour[2]);
+  }
   xmlTextWriterEndElement(writer);
 }
 

@@ -2,19 +2,32 @@
 
 #include <math.h>
 
+#include "base/memory.h"
+#include "scene/configurations.h"
+#include "scene/links.h"
+#include "scene/surfaces.h"
 #include "solids.h"
-#include "surfaces.h"
 
 enum { MOST_WAYS = 8, MOST_DOTS = 60 };
 
+/* What of the system can be seen, where it starts. */
+struct Sight {
+  struct Samples samples;
+  struct Links links;
+  struct Surfaces surfaces;
+  double *values; /* of all nodes */
+  struct View view;
+  bool is_in_space;
+};
+
 /* In the plane x to the right and y upwards; in space from above and aside, where gravity points down. */
-static struct View view_of(const struct Model *model, const struct Things *things) {
+static struct View view_of(const struct Model *model, bool is_in_space) {
   const double azimuth = -1.1, elevation = 0.35;
   struct View view = {{1, 0, 0}, {0, 1, 0}};
   int up = 2;
   for (int axis = 0; axis < 3; axis++)
     if (model->mechanism.gravity.along[axis] != ZERO) up = axis;
-  if (!things->are_in_space) return view;
+  if (!is_in_space) return view;
   int first = (up + 1) % 3, second = (up + 2) % 3;
   view.right[up] = 0.0;
   view.right[first] = -sin(azimuth);
@@ -25,8 +38,18 @@ static struct View view_of(const struct Model *model, const struct Things *thing
   return view;
 }
 
-static struct Spot spot_of(const struct View *view, const struct Thing *thing, const double *values) {
-  return seen(view, (double[]){values[thing->position[0]], values[thing->position[1]], values[thing->position[2]]});
+static struct Spot spot_of(const struct Sight *sight, size_t thing) {
+  const Node *position = sight->samples.things[thing].position;
+  const double *values = sight->values;
+  return seen(&sight->view, (double[]){values[position[0]], values[position[1]], values[position[2]]});
+}
+
+/* A place on a body in the plane, or beside something that does not turn. */
+static struct Spot spot_on(const struct Sight *sight, size_t thing, double x, double y) {
+  const struct Thing *body = &sight->samples.things[thing];
+  double angle = body->is_planar ? sight->values[body->angle] : 0.0;
+  struct Spot spot = spot_of(sight, thing);
+  return (struct Spot){spot.right + x * cos(angle) - y * sin(angle), spot.up + x * sin(angle) + y * cos(angle)};
 }
 
 /* A uniform bar of mass m and length l has the moment of inertia m l^2/12. */
@@ -41,7 +64,7 @@ static void append_bar(struct Drawing *drawing, const struct Body *body, struct 
 /* Where the surface would be met from a spot. */
 static struct Spot foot_of(const struct Surface *surface, struct Spot spot) {
   double height =
-      (spot.right - surface->place[0]) * surface->normal[0] + (spot.up - surface->place[1]) * surface->normal[1];
+      (spot.right - surface->point[0]) * surface->normal[0] + (spot.up - surface->point[1]) * surface->normal[1];
   return (struct Spot){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
 }
 
@@ -53,7 +76,7 @@ static void append_surface(struct Drawing *drawing, const struct Surface *surfac
   for (size_t i = 0; i < drawing->count && !surface->is_stop; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
       struct Spot foot = foot_of(surface, drawing->shapes[i].points[j]);
-      double place = (foot.right - surface->place[0]) * along[0] + (foot.up - surface->place[1]) * along[1];
+      double place = (foot.right - surface->point[0]) * along[0] + (foot.up - surface->point[1]) * along[1];
       low = fmin(low, place - 0.12 * size);
       high = fmax(high, place + 0.12 * size);
     }
@@ -61,13 +84,13 @@ static void append_surface(struct Drawing *drawing, const struct Surface *surfac
   int hatches = surface->is_stop ? HATCHES / 3 : HATCHES;
   for (int i = 0; i <= hatches; i++) {
     double place = low + (high - low) * i / hatches;
-    struct Spot at = {surface->place[0] + place * along[0], surface->place[1] + place * along[1]};
+    struct Spot at = {surface->point[0] + place * along[0], surface->point[1] + place * along[1]};
     struct Spot behind = {at.right - depth * (surface->normal[0] + along[0]),
                           at.up - depth * (surface->normal[1] + along[1])};
     append_line(drawing, GROUND, at, behind);
   }
-  append_line(drawing, GROUND, (struct Spot){surface->place[0] + low * along[0], surface->place[1] + low * along[1]},
-              (struct Spot){surface->place[0] + high * along[0], surface->place[1] + high * along[1]});
+  append_line(drawing, GROUND, (struct Spot){surface->point[0] + low * along[0], surface->point[1] + low * along[1]},
+              (struct Spot){surface->point[0] + high * along[0], surface->point[1] + high * along[1]});
 }
 
 /* A piece of a plane in space, about its place. */
@@ -85,52 +108,107 @@ static void append_plane(struct Drawing *drawing, const struct View *view, const
     second[i] = surface->normal[(i + 1) % 3] * first[(i + 2) % 3] - surface->normal[(i + 2) % 3] * first[(i + 1) % 3];
   for (int k = 0; k < 5; k++) {
     double a = k == 1 || k == 2 ? half : -half, b = k == 2 || k == 3 ? half : -half;
-    for (int i = 0; i < 3; i++) corner[i] = surface->place[i] + a * first[i] + b * second[i];
+    for (int i = 0; i < 3; i++) corner[i] = surface->point[i] + a * first[i] + b * second[i];
     corners[k] = seen(view, corner);
   }
   append_shape(drawing, GROUND, true, corners, 4);
   append_shape(drawing, GROUND, false, corners, 5);
 }
 
-/* The directions of the base, and the way from the origin to what no rod holds. */
-static void append_axes(struct Drawing *drawing, const struct View *view, const struct Things *things,
-                        const struct Links *links, const double *values, double size) {
-  struct Spot origin = {0.0, 0.0};
-  for (int axis = 0; axis < (things->are_in_space ? 3 : 2); axis++) {
-    double tip[3] = {0.0, 0.0, 0.0};
-    tip[axis] = 0.3 * size;
-    append_line(drawing, AXIS, origin, seen(view, tip));
-  }
-  for (size_t i = 1; i < things->count && things->count <= MOST_WAYS; i++) {
-    bool is_held = things->items[i].kind != PARTICLE_POINT && things->items[i].kind != MERE_POINT;
-    for (size_t k = 0; k < links->count; k++) is_held |= links->items[k].from == i || links->items[k].to == i;
-    if (!is_held) append_line(drawing, AXIS, origin, spot_of(view, &things->items[i], values));
-  }
+static bool is_particle(const struct Thing *thing) {
+  return thing->body != NULL && !thing->is_planar && !is_solid(thing->body);
 }
 
-/* What is behind the points: solids, rods and bars. */
-static void append_bodies(struct Drawing *drawing, const struct View *view, const struct Things *things,
-                          const struct Links *links, const struct Model *model, const double *values) {
-  for (size_t i = 0; i < things->count; i++)
-    if (things->items[i].kind == SOLID_POINT) append_solid(drawing, view, model, things->items[i].body, values);
-  for (size_t i = 0; i < links->count; i++)
-    append_line(drawing, LINK, spot_of(view, &things->items[links->items[i].from], values),
-                spot_of(view, &things->items[links->items[i].to], values));
-  for (size_t i = 0; i < things->count; i++)
-    if (things->items[i].kind == BODY_POINT)
-      append_bar(drawing, things->items[i].body, spot_of(view, &things->items[i], values), values);
+/* Whether a rod or a joint leads to it. */
+static bool is_held(const struct Sight *sight, size_t thing) {
+  const struct Links *links = &sight->links;
+  bool held = !is_particle(&sight->samples.things[thing]);
+  for (size_t k = 0; k < links->rod_count; k++) held |= links->rods[k].from == thing || links->rods[k].to == thing;
+  for (size_t k = 0; k < links->joint_count; k++) held |= links->joints[k].with == thing;
+  return held;
+}
+
+/* The directions of the base, and the way from the origin to what nothing holds. */
+static void append_axes(struct Drawing *drawing, const struct Sight *sight, double size) {
+  struct Spot origin = {0.0, 0.0};
+  for (int axis = 0; axis < (sight->is_in_space ? 3 : 2); axis++) {
+    double tip[3] = {0.0, 0.0, 0.0};
+    tip[axis] = 0.3 * size;
+    append_line(drawing, AXIS, origin, seen(&sight->view, tip));
+  }
+  for (size_t i = 1; i < sight->samples.thing_count && sight->samples.thing_count <= MOST_WAYS; i++)
+    if (!is_held(sight, i)) append_line(drawing, AXIS, origin, spot_of(sight, i));
+}
+
+/* What is behind the points: solids, rods and bars; a body reaches to its joints, wherever its middle is. */
+static void append_bodies(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+  const struct Samples *samples = &sight->samples;
+  const struct Links *links = &sight->links;
+  for (size_t i = 0; i < samples->thing_count; i++)
+    if (samples->things[i].body != NULL && is_solid(samples->things[i].body))
+      append_solid(drawing, &sight->view, model, samples->things[i].body, sight->values);
+  for (size_t i = 0; i < links->rod_count; i++)
+    append_line(drawing, LINK, spot_of(sight, links->rods[i].from), spot_of(sight, links->rods[i].to));
+  for (size_t i = 0; i < links->joint_count; i++)
+    append_line(drawing, LINK, spot_of(sight, links->joints[i].of),
+                spot_on(sight, links->joints[i].of, links->joints[i].x, links->joints[i].y));
+  for (size_t i = 0; i < samples->thing_count; i++)
+    if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
+}
+
+static void append_pivot(struct Drawing *drawing, struct Spot spot) {
+  append_shape(drawing, BASE, true, &spot, 1);
+  append_shape(drawing, HOLE, true, &spot, 1);
 }
 
 /* The origin last, since it is what the rest hangs on. */
-static void append_points(struct Drawing *drawing, const struct View *view, const struct Things *things,
-                          const double *values) {
-  static const enum Look look[] = {[ORIGIN] = BASE,     [FRAME_POINT] = JOINT, [PARTICLE_POINT] = PARTICLE,
-                                   [BODY_POINT] = HOLE, [SOLID_POINT] = JOINT, [MERE_POINT] = JOINT};
-  for (size_t i = things->count; i-- > 0;) {
-    struct Spot spot = spot_of(view, &things->items[i], values);
-    bool is_small = things->items[i].kind == PARTICLE_POINT && things->count > MOST_DOTS;
-    append_shape(drawing, is_small ? JOINT : look[things->items[i].kind], true, &spot, 1);
-    if (things->items[i].kind == ORIGIN) append_shape(drawing, HOLE, true, &spot, 1);
+static void append_points(struct Drawing *drawing, const struct Sight *sight) {
+  const struct Samples *samples = &sight->samples;
+  for (size_t i = samples->thing_count; i-- > 1;) {
+    const struct Thing *thing = &samples->things[i];
+    struct Spot spot = spot_of(sight, i);
+    bool is_ball = is_particle(thing) && thing->body->mass.node != ZERO && samples->thing_count <= MOST_DOTS;
+    if (!thing->is_planar) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
+  }
+  for (size_t i = 0; i < sight->links.joint_count; i++) {
+    const struct Joint *joint = &sight->links.joints[i];
+    append_pivot(drawing, spot_on(sight, joint->of, joint->x, joint->y));
+  }
+  append_pivot(drawing, spot_of(sight, 0));
+}
+
+/* Planes that several contacts share are drawn once. */
+static bool is_first(const struct Surfaces *surfaces, size_t surface) {
+  const struct Surface *last = &surfaces->items[surface];
+  bool is_new = true;
+  for (size_t i = 0; i < surface && !last->is_stop; i++) {
+    const struct Surface *other = &surfaces->items[i];
+    double away = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      away = fmax(away,
+                  fmax(fabs(last->point[axis] - other->point[axis]), fabs(last->normal[axis] - other->normal[axis])));
+    is_new &= other->is_stop || away > 1e-9;
+  }
+  return is_new;
+}
+
+/* The surface where its thing would meet it from its start, from which a plane's point may be far. */
+static struct Surface met_surface(const struct Sight *sight, size_t surface) {
+  struct Surface met = sight->surfaces.items[surface];
+  const Node *position = sight->samples.things[met.thing].position;
+  double height = 0.0;
+  if (met.is_stop) return met;
+  for (int axis = 0; axis < 3; axis++) height += (sight->values[position[axis]] - met.point[axis]) * met.normal[axis];
+  for (int axis = 0; axis < 3; axis++) met.point[axis] = sight->values[position[axis]] - height * met.normal[axis];
+  return met;
+}
+
+static void append_surfaces(struct Drawing *drawing, const struct Sight *sight, double size) {
+  for (size_t i = 0; i < sight->surfaces.count; i++) {
+    struct Surface surface = met_surface(sight, i);
+    if (!is_first(&sight->surfaces, i)) continue;
+    if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
+    else append_surface(drawing, &surface, size);
   }
 }
 
@@ -145,25 +223,33 @@ static bool is_finite(const struct Rectangle *all) {
   return isfinite(all->least.right) && isfinite(all->least.up) && isfinite(all->most.right) && isfinite(all->most.up);
 }
 
-static bool draw_mechanism(struct Drawing *drawing, const struct Model *model, const struct Equations *equations) {
-  struct Things things = things_of(model);
-  double *values = values_at(model, equations, NULL);
+static struct Sight sight_of(const struct Model *model) {
+  struct Sight sight = {.samples = take_samples(model, true), .values = values_at(model, NULL)};
+  sight.links = find_links(&sight.samples);
+  sight.surfaces = find_surfaces(&sight.samples);
+  if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));
+  for (size_t i = 0; i < sight.samples.thing_count; i++)
+    sight.is_in_space |= sight.samples.things[i].position[2] != ZERO;
+  sight.view = view_of(model, sight.is_in_space);
+  return sight;
+}
+
+static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
+  struct Sight sight = sight_of(model);
   struct Drawing seen_things = {.count = 0};
-  if (values == NULL) values = graph_evaluate(model->graph, start_values(model));
-  struct View view = view_of(model, &things);
-  struct Links links = links_of(model, equations, &things, values);
-  append_bodies(&seen_things, &view, &things, &links, model, values);
-  append_points(&seen_things, &view, &things, values);
+  append_bodies(&seen_things, &sight, model);
+  append_points(&seen_things, &sight);
   struct Rectangle all = rectangle_of(&seen_things);
   double size = fmax(all.most.right - all.least.right, all.most.up - all.least.up);
-  if (things.count < 2 || !is_finite(&all)) return false;
-  struct Surfaces surfaces = surfaces_of(model, equations, &things);
-  for (size_t i = 0; i < surfaces.count; i++)
-    if (things.are_in_space) append_plane(&seen_things, &view, &surfaces.items[i], size);
-    else append_surface(&seen_things, &surfaces.items[i], size);
-  append_axes(drawing, &view, &things, &links, values, size);
-  append_drawing(drawing, &seen_things);
-  return fit_drawing(drawing);
+  bool is_seen = sight.samples.thing_count > 1 && is_finite(&all);
+  if (is_seen) {
+    append_surfaces(&seen_things, &sight, size);
+    append_axes(drawing, &sight, size);
+    append_drawing(drawing, &seen_things);
+  }
+  release_samples(&sight.samples);
+  release(sight.values);
+  return is_seen && fit_drawing(drawing);
 }
 
 /* Arrows to the block or away from it, one a variable as far as they can be told apart. */
@@ -187,8 +273,8 @@ static void draw_block(struct Drawing *drawing, const struct Model *model) {
   fit_drawing(drawing);
 }
 
-struct Drawing drawing_of(const struct Model *model, const struct Equations *equations) {
+struct Drawing drawing_of(const struct Model *model) {
   struct Drawing drawing = {.count = 0};
-  if (!draw_mechanism(&drawing, model, equations)) draw_block(&drawing, model);
+  if (!draw_mechanism(&drawing, model)) draw_block(&drawing, model);
   return drawing;
 }

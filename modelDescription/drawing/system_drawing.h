@@ -5,10 +5,10 @@
 #ifndef SYSTEM_DRAWING_H
 #define SYSTEM_DRAWING_H
 
-#include "mechanics/equations.h"
+#include "model/model.h"
 #include "shapes.h"
 
 /* In pixels of a picture of PICTURE_SIZE. */
-struct Drawing drawing_of(const struct Model *model, const struct Equations *equations);
+struct Drawing drawing_of(const struct Model *model);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "configurations.h"
 
 enum { BASE = 0, FEWEST = 8, MOST_CONSTRAINTS = 16 };
 
@@ -16,7 +17,8 @@ static Node component(const struct Model *model, const char *name, const char *a
 }
 
 /* A body that is in no frame gives its components itself, where it has them; NULL for none. */
-static void append_thing(struct Samples *samples, const struct Body *body, struct Thing thing) {
+static void append_thing(struct Samples *samples, struct Thing thing) {
+  const struct Body *body = thing.body;
   bool is_free = body != NULL && !body->is_in_frame;
   for (int axis = 0; axis < 3 && thing.name != NULL; axis++)
     if (!is_free || body->has_position[axis])
@@ -35,15 +37,15 @@ static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
 
 static void find_things(struct Samples *samples) {
   const struct Mechanism *mechanism = &samples->model->mechanism;
-  append_thing(samples, NULL, (struct Thing){.name = NULL});
+  append_thing(samples, (struct Thing){.name = NULL});
   for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
-    if (!mechanism->frames[i].is_of_body)
-      append_thing(samples, NULL, (struct Thing){.name = mechanism->frames[i].name});
+    if (!mechanism->frames[i].is_of_body) append_thing(samples, (struct Thing){.name = mechanism->frames[i].name});
   size_t first_body = samples->thing_count;
   for (size_t i = 0; i < mechanism->body_count; i++) {
     const struct Body *body = &mechanism->bodies[i];
-    append_thing(samples, body,
-                 (struct Thing){.name = body->name, .angle = body->angle.node, .is_planar = body->has_angle});
+    append_thing(
+        samples,
+        (struct Thing){.name = body->name, .body = body, .angle = body->angle.node, .is_planar = body->has_angle});
   }
   for (size_t i = BASE + 1, thing = 1; i < mechanism->frame_count; i++)
     if (!mechanism->frames[i].is_of_body)
@@ -53,15 +55,10 @@ static void find_things(struct Samples *samples) {
       samples->things[first_body + i].frame = thing_of_frame(samples, mechanism->bodies[i].frame);
 }
 
-static bool is_of_positions(const struct Graph *graph, Node node) {
-  return !graph_depends_on(graph, node, VELOCITY) && !graph_depends_on(graph, node, ACCELERATION) &&
-         graph_depends_on(graph, node, COORDINATE);
-}
-
 static void find_constraints(struct Samples *samples) {
   const struct VariableList *all = &samples->model->constraints;
   for (size_t i = 0; i < all->count && samples->constraint_count <= MOST_CONSTRAINTS; i++) {
-    if (!is_of_positions(samples->model->graph, all->items[i].node)) continue;
+    if (!holds_positions(samples->model, i)) continue;
     samples->constraints = make_room(samples->constraints, samples->constraint_count, sizeof *samples->constraints);
     samples->constraints[samples->constraint_count++] = i;
   }
@@ -73,7 +70,7 @@ static double moved(size_t sample, size_t symbol) {
   return sample == 0 ? 0.0 : 0.4 * sin(1.0 + 2.7 * (double)sample * (double)(symbol + 1));
 }
 
-struct Samples take_samples(const struct Model *model) {
+struct Samples take_samples(const struct Model *model, bool is_still) {
   struct Samples samples = {.model = model};
   find_things(&samples);
   find_constraints(&samples);
@@ -83,7 +80,8 @@ struct Samples take_samples(const struct Model *model) {
     double *symbols = start_values(model);
     for (size_t i = 0; i < model->graph->symbol_count; i++) {
       enum SymbolKind kind = model->graph->symbols[i].kind;
-      if (kind == COORDINATE || kind == INPUT || kind == TIME) symbols[i] += moved(k, i);
+      bool is_moved = kind == COORDINATE || (!is_still && (kind == INPUT || kind == TIME));
+      if (is_moved) symbols[i] += moved(k, i);
     }
     samples.values[k] = graph_evaluate(model->graph, symbols);
     release(symbols);
@@ -94,13 +92,4 @@ struct Samples take_samples(const struct Model *model) {
 void release_samples(struct Samples *samples) {
   for (size_t k = 0; k < samples->count; k++) release(samples->values[k]);
   samples->count = 0;
-}
-
-double *sample_with(const struct Samples *samples, Node symbol, double value) {
-  const struct Graph *graph = samples->model->graph;
-  double *symbols = start_values(samples->model);
-  symbols[graph->vertices[symbol].left] = value;
-  double *values = graph_evaluate(graph, symbols);
-  release(symbols);
-  return values;
 }

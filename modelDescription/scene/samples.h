@@ -5,8 +5,9 @@
 
 /* What has a place: the base, a frame, a body, a particle or a point. */
 struct Thing {
-  const char *name; /* NULL of the base */
-  size_t frame;     /* that it is in, among the things */
+  const char *name;        /* NULL of the base */
+  const struct Body *body; /* NULL of the base and frames */
+  size_t frame;            /* that it is in, among the things */
   Node position[3];
   Node angle;     /* of a body in the plane */
   bool is_planar; /* such a body */
@@ -22,10 +23,8 @@ struct Samples {
   size_t count;
 };
 
-struct Samples take_samples(const struct Model *model);
+/* is_still: time and inputs are those of the start, so that what they move stands still too. */
+struct Samples take_samples(const struct Model *model, bool is_still);
 
 /* Large systems have many nodes. */
 void release_samples(struct Samples *samples);
-
-/* The values of all nodes with this symbol changed in the first sample. */
-double *sample_with(const struct Samples *samples, Node symbol, double value);

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "configurations.h"
 #include "least_squares.h"
 
 static double norm(const double vector[3]) {
@@ -35,8 +36,13 @@ static bool is_plane(const struct Samples *samples, Node gap, struct Surface *su
   return true;
 }
 
-/* The one coordinate that the gap is, but for a number: gap = sign*(coordinate - limit). */
-static bool is_of_coordinate(const struct Samples *samples, Node gap, Node *coordinate, double *limit, double *sign) {
+/* A gap that is one coordinate but for numbers: slope*(coordinate - limit). */
+struct Limit {
+  size_t coordinate;
+  double slope;
+};
+
+static bool is_of_coordinate(const struct Samples *samples, Node gap, struct Limit *limit) {
   const struct VariableList *coordinates = &samples->model->coordinates;
   for (size_t i = 0; i < coordinates->count; i++) {
     struct LeastSquares system = least_squares_create(samples->count, 2);
@@ -48,37 +54,53 @@ static bool is_of_coordinate(const struct Samples *samples, Node gap, Node *coor
       row[2] = samples->values[k][gap];
     }
     if (!least_squares_solve(&system, 2, solution) || fabs(solution[1]) < 1e-9) continue;
-    *coordinate = coordinates->items[i].node;
-    *limit = -solution[0] / solution[1];
-    *sign = solution[1] > 0.0 ? 1.0 : -1.0;
+    *limit = (struct Limit){i, solution[1]};
     return true;
   }
   return false;
 }
 
+/* Moves the coordinate until the gap is this wide. NULL where that is not found. */
+static double *values_where(const struct Model *model, Node gap, const struct Limit *limit, double width) {
+  double *offsets = allocate(model->coordinates.count, sizeof *offsets), *values = NULL;
+  for (int i = 0; i < 20; i++) {
+    values = values_at(model, offsets);
+    if (values == NULL || fabs(values[gap] - width) < 1e-9) break;
+    offsets[limit->coordinate] -= (values[gap] - width) / limit->slope;
+    release(values);
+    values = NULL;
+  }
+  release(offsets);
+  return values;
+}
+
+/* The end of the way of a thing, on which it comes from beside. */
+static bool is_end(const struct Thing *thing, const double *at, const double *beside, struct Surface *surface) {
+  for (int axis = 0; axis < 3; axis++) {
+    surface->point[axis] = at[thing->position[axis]];
+    surface->normal[axis] = beside[thing->position[axis]] - at[thing->position[axis]];
+  }
+  double length = norm(surface->normal);
+  if (!(length > 1e-12)) return false;
+  for (int axis = 0; axis < 3; axis++) surface->normal[axis] /= length;
+  return true;
+}
+
 /* The first thing that the coordinate moves, where it is at its limit. */
 static void add_stop(struct Surfaces *surfaces, const struct Samples *samples, Node gap) {
   const double little = 1e-4;
-  Node coordinate = ZERO;
-  double limit = 0.0, sign = 0.0;
-  if (!is_of_coordinate(samples, gap, &coordinate, &limit, &sign)) return;
-  double *at = sample_with(samples, coordinate, limit),
-         *beside = sample_with(samples, coordinate, limit + sign * little);
-  for (size_t thing = 1; thing < samples->thing_count; thing++) {
+  struct Limit limit;
+  if (!is_of_coordinate(samples, gap, &limit)) return;
+  double *at = values_where(samples->model, gap, &limit, 0.0),
+         *beside = at == NULL ? NULL : values_where(samples->model, gap, &limit, fabs(limit.slope) * little);
+  bool is_found = false;
+  for (size_t thing = 1; thing < samples->thing_count && beside != NULL && !is_found; thing++) {
     struct Surface surface = {.thing = thing, .is_stop = true};
-    for (int axis = 0; axis < 3; axis++) {
-      Node position = samples->things[thing].position[axis];
-      surface.point[axis] = at[position];
-      surface.normal[axis] = beside[position] - at[position];
-    }
-    double length = norm(surface.normal);
-    if (!(length > 1e-9 * little)) continue;
-    for (int axis = 0; axis < 3; axis++) surface.normal[axis] /= length;
-    append(surfaces, surface);
-    break;
+    is_found = is_end(&samples->things[thing], at, beside, &surface);
+    if (is_found) append(surfaces, surface);
   }
-  release(at);
-  release(beside);
+  if (at != NULL) release(at);
+  if (beside != NULL) release(beside);
 }
 
 struct Surfaces find_surfaces(const struct Samples *samples) {

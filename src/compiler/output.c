@@ -158,7 +158,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
-  struct Drawing drawing = drawing_of(program->model, program->equations);
+  struct Drawing drawing = drawing_of(program->model);
   written = written && write_buffers(program, summary, guid, &drawing, buffers);
   for (int i = 0; i < FILE_COUNT; i++) contents[i] = text_content((const char *)xmlBufferContent(buffers[i]));
   const struct Method *method = program->equations->method;

@@ -31,7 +31,7 @@ static void write_texts(const struct Program *program, const struct Summary *sum
   code_write(file, program);
   close_text(&code);
   xmlBufferPtr buffer = xmlBufferCreate();
-  struct Drawing drawing = drawing_of(program->model, program->equations);
+  struct Drawing drawing = drawing_of(program->model);
   bool written =
       model_description_write(buffer, program, "") && documentation_write(buffer, program, summary, &drawing);
   if (!written || !write_icon(buffer, &drawing)) abort();

@@ -1,22 +1,17 @@
 #include "configurations.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "algebra/differentiate.h"
 #include "base/memory.h"
 
-/* Constraints g(q) = 0 with their derivatives. */
+enum { MOST_COORDINATES = 200 };
+
+/* Constraints g(q) = 0 with their derivatives by each coordinate. */
 struct Levels {
   Node *level, **slope;
   size_t count;
 };
-
-Node *slopes_of(const struct Model *model, Node node) {
-  Node *slopes = allocate(model->coordinates.count + 1, sizeof *slopes);
-  gradient_of(model->graph, node, COORDINATE, model->coordinates.count, slopes);
-  return slopes;
-}
 
 /* What contacts and frictions hold is not at every time. */
 static bool belongs_to_switch(const struct Switches *switches, size_t constraint) {
@@ -26,16 +21,24 @@ static bool belongs_to_switch(const struct Switches *switches, size_t constraint
   return belongs;
 }
 
-static struct Levels levels_of(const struct Model *model, const struct Equations *equations) {
-  const struct Constraints *constraints = equations->constraints;
+bool holds_positions(const struct Model *model, size_t constraint) {
+  Node node = model->constraints.items[constraint].node;
+  return !graph_depends_on(model->graph, node, VELOCITY) && !graph_depends_on(model->graph, node, ACCELERATION) &&
+         graph_depends_on(model->graph, node, COORDINATE) && !belongs_to_switch(&model->switches, constraint);
+}
+
+static struct Levels levels_of(const struct Model *model) {
+  size_t count = model->constraints.count, coordinates = model->coordinates.count;
   struct Levels levels = {.count = 0};
-  if (constraints == NULL || model->coordinates.count > MOST_COORDINATES) return levels;
-  levels.level = allocate(constraints->count + 1, sizeof *levels.level);
-  levels.slope = allocate(constraints->count + 1, sizeof *levels.slope);
-  for (size_t j = 0; j < constraints->count; j++) {
-    if (constraints->position[j] == ZERO || belongs_to_switch(&model->switches, j)) continue;
-    levels.level[levels.count] = constraints->position[j];
-    levels.slope[levels.count++] = slopes_of(model, constraints->position[j]);
+  if (coordinates > MOST_COORDINATES) return levels;
+  levels.level = allocate(count + 1, sizeof *levels.level);
+  levels.slope = allocate(count + 1, sizeof *levels.slope);
+  for (size_t j = 0; j < count; j++) {
+    if (!holds_positions(model, j)) continue;
+    Node *slopes = allocate(coordinates, sizeof *slopes);
+    gradient_of(model->graph, model->constraints.items[j].node, COORDINATE, coordinates, slopes);
+    levels.level[levels.count] = model->constraints.items[j].node;
+    levels.slope[levels.count++] = slopes;
   }
   return levels;
 }
@@ -45,7 +48,11 @@ static bool can_move(const struct Model *model, size_t coordinate) {
   return !is_driven && !model->coordinates.items[coordinate].is_fixed;
 }
 
-void solve_small(size_t n, double *matrix, double *x) {
+/*
+ * Solves matrix x = x of n rows, by Gauss; the matrix is lost. Rows that follow from others, as in closed chains with a constraint too
+ * many, leave 0 in the solution.
+ */
+static void solve_small(size_t n, double *matrix, double *x) {
   size_t *pivot = allocate(n + 1, sizeof *pivot);
   bool *is_used = allocate(n + 1, sizeof *is_used);
   for (size_t k = 0; k < n; k++) {
@@ -91,9 +98,9 @@ static double step(const struct Model *model, const struct Levels *levels, const
   return largest;
 }
 
-double *values_at(const struct Model *model, const struct Equations *equations, const double *offsets) {
+double *values_at(const struct Model *model, const double *offsets) {
   enum { MOST_STEPS = 30 };
-  struct Levels levels = levels_of(model, equations);
+  struct Levels levels = levels_of(model);
   double *symbols = start_values(model);
   for (size_t k = 0; k < model->coordinates.count && offsets != NULL; k++)
     symbols[model->graph->vertices[model->coordinates.items[k].node].left] += offsets[k];
