@@ -7,27 +7,26 @@ until all are there, so that the same command goes on after a kill.
 
 import argparse
 import hashlib
-import io
 import itertools
 import json
-import logging
 import os
 import shutil
 import sys
-from contextlib import ExitStack
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from distributed import Client, LocalCluster, as_completed
 from fmpy import read_model_description
 
+import sweep_worker
 from progress import Progress
 from variables import settable, why_not
 
 ROOT = Path(__file__).resolve().parent.parent
-CHUNK = 250  # runs a task
+RUNNER = ROOT / "build" / "libsweep_runs.so"
+CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
 IN_FLIGHT = 3  # tasks a worker thread, so that memory does not grow with the number of runs
 
 
@@ -72,96 +71,6 @@ def points(variations, random, seed):
             sys.exit(f"scripts/sweep: '{name}' has no COUNT; expected {name}=FROM:TO:COUNT, or --random RUNS")
         axes.append(np.linspace(*values) if isinstance(values, tuple) else values)
     return np.array(list(itertools.product(*axes)))
-
-
-opened = {}  # in a worker: the FMU's instance, and what it logs, by the digest of its archive
-
-
-def open_instance(archive):
-    """One instance a worker, which every run resets."""
-    import hashlib
-    import tempfile
-
-    from fmpy import calloc, extract, free, read_model_description
-    from fmpy.fmi2 import (
-        FMU2Slave,
-        fmi2CallbackAllocateMemoryTYPE,
-        fmi2CallbackFreeMemoryTYPE,
-        fmi2CallbackFunctions,
-        fmi2CallbackLoggerTYPE,
-    )
-
-    digest = hashlib.sha256(archive).hexdigest()
-    if digest not in opened:
-        folder = tempfile.TemporaryDirectory(prefix="sweep-")
-        (Path(folder.name) / "system.fmu").write_bytes(archive)
-        unzipped = extract(str(Path(folder.name) / "system.fmu"), folder.name)
-        description = read_model_description(unzipped)
-        slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, instanceName="sweep",
-                          modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
-        messages = []
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        slave.instantiate(callbacks=callbacks)
-        opened[digest] = slave, description, messages, callbacks, folder  # which go with the worker
-    return opened[digest][:3]
-
-
-def lawful_energies(description):
-    """What to watch for the law of the energy: none where it may change, as in systems that are moved in a given way."""
-    law = next((v.description or "" for v in description.modelVariables if v.name == "totalEnergy"), "")
-    if law.endswith("; constant"):
-        return ["totalEnergy", "kineticEnergy"]
-    return ["totalEnergy", "kineticEnergy", "nonConservativeWork"] if law.endswith("; changes by nonConservativeWork alone") else []
-
-
-def run_chunk(archive, numbers, rows, names, settings):
-    """A table of the results of some runs, as Parquet in bytes."""
-    import time
-
-    from fmpy.fmi1 import FMICallException
-
-    slave, description, messages = open_instance(archive)
-    references = {v.name: v.valueReference for v in description.modelVariables}
-    states = [unknown.variable.derivative.name for unknown in description.derivatives]
-    varied = [references[name] for name in names]
-    ends = [references[name] for name in states]
-    watched = [references[name] for name in lawful_energies(description)]
-    columns = {"run": list(numbers)} | {name: list(column) for name, column in zip(names, np.transpose(rows))}
-    results = {f"{state}_end": [] for state in states} | {"energyError": [], "runTime": [], "problem": []}
-    for row in rows:
-        begin, end, problem, error = time.perf_counter(), [np.nan] * len(states), None, np.nan
-        messages.clear()
-        try:
-            slave.reset()
-            slave.setupExperiment(tolerance=settings["tolerance"], startTime=0.0)
-            slave.setReal(varied, list(row))
-            slave.enterInitializationMode()
-            slave.exitInitializationMode()
-            before = slave.getReal(watched) if watched else []
-            for k in range(settings["steps"]):
-                start, stop = (settings["stop"] * (k + i) / settings["steps"] for i in (0, 1))
-                slave.doStep(start, stop - start)
-            end = slave.getReal(ends) if ends else []
-            if watched:
-                after = slave.getReal(watched)
-                work = after[2] - before[2] if len(watched) > 2 else 0.0
-                scale = max(abs(before[0]), before[1], after[1]) or 1.0
-                error = (after[0] - before[0] - work) / scale
-        except FMICallException as exception:
-            problem = "; ".join([str(exception), *messages])
-        results["energyError"].append(error)
-        results["runTime"].append(time.perf_counter() - begin)
-        results["problem"].append(problem)
-        for state, value in zip(states, end):
-            results[f"{state}_end"].append(value)
-    table = pa.table(columns | results, schema=None)
-    table = table.set_column(table.schema.get_field_index("problem"), "problem", pa.array(results["problem"], pa.string()))
-    buffer = io.BytesIO()
-    pq.write_table(table, buffer)
-    return buffer.getvalue()
 
 
 def replace(temporary, path):
@@ -215,43 +124,46 @@ class Parts:
         shutil.rmtree(self.folder)
 
 
-def simulate(client, archive, rows, names, settings, parts):
-    """Keeps a few tasks a worker in flight; writes each as it arrives."""
-    count = -(-len(rows) // CHUNK)
-    runs_of = lambda chunk: range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(rows)))
+def simulate(executor, width, archive, rows, names, settings, parts):
+    """Keeps that many tasks in flight; writes each as it ends."""
+    size = max(CHUNK, -(-len(rows) // PARTS))
+    count = -(-len(rows) // size)
+    runs_of = lambda chunk: range(chunk * size, min((chunk + 1) * size, len(rows)))
     finished = parts.finished(runs_of)
     waiting = [chunk for chunk in range(count) if chunk not in finished]
     done = sum(len(runs_of(chunk)) for chunk in finished)
     if done:
         print(f"{done} of {len(rows)} runs are there already")
-    progress, chunks = Progress(len(rows), done), {}
-
-    def submit(chunk):
-        numbers = runs_of(chunk)
-        future = client.submit(run_chunk, archive, numbers, rows[numbers.start : numbers.stop], names, settings, pure=False, retries=3)
-        chunks[future.key] = chunk
-        return future
-
-    width = IN_FLIGHT * max(1, sum(client.nthreads().values()))
-    queue = as_completed([submit(chunk) for chunk in waiting[:width]])
-    waiting = waiting[width:]
-    for future in queue:
-        chunk = chunks.pop(future.key)
-        parts.write(chunk, future.result())
-        future.release()
-        if waiting:
-            queue.add(submit(waiting.pop(0)))
-        progress("runs", len(runs_of(chunk)))
+    progress, running, runner = Progress(len(rows), done), {}, RUNNER.read_bytes()
+    while waiting or running:
+        while waiting and len(running) < width:
+            chunk = waiting.pop(0)
+            numbers = runs_of(chunk)
+            future = executor.submit(sweep_worker.run_chunk, archive, runner, numbers, rows[numbers.start : numbers.stop], names, settings)
+            running[future] = chunk
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            chunk = running.pop(future)
+            parts.write(chunk, future.result())
+            progress("runs", len(runs_of(chunk)))
     return count
 
 
-def simulate_with_dask(scheduler, *words):
-    with ExitStack() as stack:
-        if not scheduler:
-            # What fails reaches us by the futures; workers that close also log heartbeats that nobody answers any more.
-            cluster = LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL)
-            scheduler = stack.enter_context(cluster)
-        return simulate(stack.enter_context(Client(scheduler)), *words)
+def simulate_in_threads(*words):
+    """The time of a run is spent in C, which Python's lock does not hold."""
+    executor = ThreadPoolExecutor(os.cpu_count())
+    try:
+        return simulate(executor, 2 * os.cpu_count(), *words)
+    except KeyboardInterrupt:
+        print("scripts/sweep: interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
+        os._exit(130)  # runs that have begun may take long
+
+
+def simulate_with_dask(address, *words):
+    from distributed import Client
+
+    with Client(address) as client:
+        client.upload_file(sweep_worker.__file__)
+        return simulate(client.get_executor(pure=False, retries=3), IN_FLIGHT * max(1, sum(client.nthreads().values())), *words)
 
 
 def print_summary(output):
@@ -276,7 +188,7 @@ def arguments_of():
     parser.add_argument("--stop", type=float, metavar="S", help="the end of each run; default: that of the FMU")
     parser.add_argument("--step", type=float, metavar="S", help="communication step; default: the whole run")
     parser.add_argument("--tolerance", type=float, help="relative tolerance; default: that of the FMU")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; default: a process for each core")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; default: a thread for each core")
     parser.add_argument("--output", type=Path, help="default: build/results/SYSTEM-sweep.parquet")
     return parser.parse_args()
 
@@ -301,7 +213,8 @@ def main():
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), **settings}
     try:
         parts = Parts(output, plan)
-        count = simulate_with_dask(arguments.scheduler, archive, rows, names, settings, parts)
+        words = archive, rows, names, settings, parts
+        count = simulate_with_dask(arguments.scheduler, *words) if arguments.scheduler else simulate_in_threads(*words)
         parts.join(output, count)
     except OSError as problem:
         sys.exit(f"scripts/sweep: {problem}; finished runs are kept beside {output}, and the same command goes on with them")

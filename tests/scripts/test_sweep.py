@@ -152,6 +152,7 @@ def test_on_a_cluster_that_exists(tmp_path):
         words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "8000", "--stop", "5", "--scheduler", cluster.scheduler_address]
         running = subprocess.Popen(command(tmp_path / "x.parquet", *words), env={"PYTHONPATH": str(ROOT / "scripts")})
         while not list(tmp_path.glob("*.parts-*/*.parquet")):
+            assert running.poll() is None
             time.sleep(0.05)
         cluster.workers[0].process.process._process.kill()
         assert running.wait(timeout=120) == 0

@@ -1,0 +1,109 @@
+"""What a thread or a worker of a cluster does in a sweep: runs one after another, by C, from bytes to bytes."""
+
+import hashlib
+import io
+import tempfile
+import threading
+from ctypes import CDLL, Structure, byref, c_char_p, c_double, c_size_t, c_void_p, cast
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from fmpy import calloc, extract, free, read_model_description
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+
+opened = {}  # instances of FMUs, by the threads that run them and the digests of their archives
+
+
+class Instance:
+    """An FMU that every run resets, and the C that runs it."""
+
+    def __init__(self, archive, runner):
+        self.folder = tempfile.TemporaryDirectory(prefix="sweep-")  # which goes with the worker
+        place = Path(self.folder.name)
+        (place / "system.fmu").write_bytes(archive)
+        (place / "runner").write_bytes(runner)
+        unzipped = extract(str(place / "system.fmu"), self.folder.name)
+        self.description, self.messages = read_model_description(unzipped), []
+        self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
+                               modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: self.messages.append(words[4].decode().replace("%%", "%")))
+        self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        self.slave.instantiate(callbacks=self.callbacks)
+        called = ("Reset", "SetupExperiment", "SetReal", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal")
+        self.functions = (c_void_p * len(called))(*(cast(getattr(self.slave.dll, f"fmi2{name}"), c_void_p) for name in called))
+        self.runner = CDLL(str(place / "runner"))
+        self.runner.sweep_runs.restype = c_size_t
+
+    def references(self, names):
+        known = {variable.name: variable.valueReference for variable in self.description.modelVariables}
+        return np.array([known[name] for name in names], dtype=np.uintc)
+
+    def run(self, sweep, count):
+        """What went wrong in each of the runs."""
+        problems, first, failed = [None] * count, 0, c_char_p()
+        while first < count:
+            self.messages.clear()
+            component = c_void_p(self.slave.component)
+            at = self.runner.sweep_runs(self.functions, component, byref(sweep), c_size_t(first), c_size_t(count), byref(failed))
+            if at < count:
+                problems[at] = "; ".join([f"{failed.value.decode()} failed", *self.messages])
+            first = at + 1
+        return problems
+
+
+class Sweep(Structure):
+    """That of sweep_runs.c."""
+
+    _fields_ = [
+        *((f"{variables}_{what}", kind) for variables in ("varied", "watched", "ends") for what, kind in (("count", c_size_t), ("references", c_void_p))),
+        ("values", c_void_p), ("tolerance", c_double), ("stop", c_double), ("steps", c_size_t),
+        *((name, c_void_p) for name in ("before", "after", "end_values", "seconds")),
+    ]  # fmt: skip
+
+
+def lawful_energies(description):
+    """What to watch for the law of the energy: none where it may change, as in systems that are moved in a given way."""
+    law = next((v.description or "" for v in description.modelVariables if v.name == "totalEnergy"), "")
+    if law.endswith("; constant"):
+        return ["totalEnergy", "kineticEnergy"]
+    return ["totalEnergy", "kineticEnergy", "nonConservativeWork"] if law.endswith("; changes by nonConservativeWork alone") else []
+
+
+def energy_errors(before, after):
+    """Relative to the largest energy there was; NaN without a law."""
+    if before.shape[1] == 0:
+        return np.full(len(before), np.nan)
+    work = after[:, 2] - before[:, 2] if before.shape[1] > 2 else 0.0
+    scale = np.maximum(np.maximum(np.abs(before[:, 0]), before[:, 1]), after[:, 1])
+    return (after[:, 0] - before[:, 0] - work) / np.where(scale > 0, scale, 1.0)
+
+
+def run_chunk(archive, runner, numbers, rows, names, settings):
+    """A table of the results of some runs, as Parquet in bytes."""
+    place = threading.get_ident(), hashlib.sha256(archive).hexdigest()
+    if place not in opened:
+        opened[place] = Instance(archive, runner)
+    instance = opened[place]
+    states = [unknown.variable.derivative.name for unknown in instance.description.derivatives]
+    watched, count = lawful_energies(instance.description), len(rows)
+    variables = [instance.references(of) for of in (names, watched, states)]
+    before, after = (np.full((count, len(watched)), np.nan) for _ in range(2))
+    ends, seconds, rows = np.full((count, len(states)), np.nan), np.zeros(count), np.ascontiguousarray(rows, dtype=float)
+    sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data,
+                  settings["tolerance"] or 0.0, settings["stop"], settings["steps"], *(a.ctypes.data for a in (before, after, ends, seconds)))  # fmt: skip
+    problems = instance.run(sweep, count)
+    columns = {"run": np.array(numbers)} | dict(zip(names, rows.T)) | {f"{state}_end": column for state, column in zip(states, ends.T)}
+    columns |= {"energyError": energy_errors(before, after), "runTime": seconds, "problem": pa.array(problems, pa.string())}
+    buffer = io.BytesIO()
+    pq.write_table(pa.table(columns), buffer)
+    return buffer.getvalue()
