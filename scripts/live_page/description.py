@@ -71,7 +71,7 @@ def shown_variables(tree, description, scene):
     continuous = {v.get("name"): v for v in tree.iterfind("ModelVariables/ScalarVariable") if v.get("variability") == "continuous"}
     continuous = {name: variable for name, variable in continuous.items() if variable.get("causality") not in ("independent", "parameter")}
     if len(continuous) > MANY:
-        continuous = {n: v for n, v in continuous.items() if v.get("causality") == "output" or n in of_scene | forces or "Energy" in n}
+        continuous = {n: v for n, v in continuous.items() if v.get("causality") == "output" or n in of_scene | forces or "Energy" in n or "Work" in n}
     return [place for place, one in enumerate(description["variables"]) if one["name"] in continuous and one["type"] == "Real"]
 
 
