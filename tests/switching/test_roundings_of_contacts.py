@@ -14,9 +14,12 @@ DOME = """<system name="{name}"><coordinate name="x" velocity="vx" velocityStart
   <particle mass="1" x="x" y="y"/><gravity y="-9.81"/><contact name="dome" gap="sqrt(x^2 + y^2) - 1"/><solver method="{method}"/></system>"""
 PRESSED = """<system name="{name}"><coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>100*(x + 0.1)^2/2</potential>
   <stop coordinate="x" min="0" max="5" restitution="0.5"/><solver method="{method}"/></system>"""
+GRAZED = """<system name="{name}"><coordinate name="x" velocity="v" velocityStart="5"/><coordinate name="y" velocity="w" velocityStart="2"/>
+  <particle mass="2" x="x" y="y"/><gravity y="-10"/><contact name="ground" gap="y" restitution="0.7"/>
+  <friction name="grip" coordinate="x" force="0.3*ground.force"/><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "bdf"]),
-    ("Pressed", PRESSED, ["radau", "bdf", "erk"])
+    ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"])
 ] for method in methods}  # fmt: skip
 
 
@@ -61,6 +64,14 @@ def test_errors_of_a_method_keep_no_bounces_up(method, tolerance):
     instance = Instance(f"Pressed_{method}").initialize(tolerance=tolerance)
     instance.step(3)
     assert instance.get("x", "v", "x.min.force") == pytest.approx([0, 0, 10], abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
+def test_the_friction_of_bounces_that_are_cut_short(method):
+    """Over all bounces, without end in 1.33 s, and at rest the ground pushes by m (g t - 2 m/s) in all, and friction by 0.3 of that."""
+    instance = Instance(f"Grazed_{method}").initialize(tolerance=1e-8)
+    instance.step(1.4)
+    assert instance.get("v", "w") == pytest.approx([5 - 0.3 * (10 * 1.4 - 2), 0], abs=1e-11)
 
 
 def test_a_solver_recommends_others_only():

@@ -13,16 +13,11 @@
 #include "events/continuity.h"
 #include "events/indicators.h"
 #include "events/settlement.h"
-#include "instance/solver.h"
 
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
-/* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
-static const double shortest_flight = 1000.0;
 /* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
-/* Below this share of the tolerance bounces are as high as the errors of some methods, which would keep them up. */
-static const double lost_share = 0.02;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
@@ -115,28 +110,12 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   return done;
 }
 
-/* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
-static double lost_height(const struct Settlement *settlement) {
-  if (lagrangian.solver->finer == NULL || settlement->occasion == IN_EXCHANGE) return 0.0;
-  double smallest = INFINITY;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
-  return lost_share * settlement->instance->situation->tolerance * smallest;
-}
-
 /* Whether an open contact that touches would come back at once. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
-  const double *value = &settlement->value[gap];
-  double rate = fmax(value[CONTACT_RATE], 0.0), fall = -value[CONTACT_ACCELERATION];
+  size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
   if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
-  if (!(fall > settlement->noise[gap + CONTACT_ACCELERATION])) return false;
-  double start = settlement->instance->situation->start_time;
-  double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
-  /* Roundings leave it a little below the ground, importers more, and no flight that ends there has a further zero. */
-  double height = rate * rate / (2.0 * fall), depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
-  return rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate / fall <= shortest_flight * resolution ||
-         height <= fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * value[CONTACT_GAP]) ||
-         height <= lost_height(settlement);
+  if (!(-settlement->value[acceleration] > settlement->noise[acceleration])) return false;
+  return bounce_is_lost(settlement, contact, contact_value(settlement, contact, CONTACT_RATE));
 }
 
 /* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */

@@ -99,6 +99,16 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   return moves;
 }
 
+/*
+ * The restitution of a contact; 0 where what bounces would be lost. The friction of a bounce that is cut short is then that
+ * of the rest: together they push as much as all bounces to come.
+ */
+static double restitution_of(const struct Settlement *settlement, size_t contact) {
+  double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
+  double rate = -restitution * contact_value(settlement, contact, CONTACT_RATE);
+  return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;
+}
+
 /* Rates that are to be kept from falling below 0, as shares of the largest. Returns this. */
 static double fill_rates(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
@@ -106,7 +116,7 @@ static double fill_rates(const struct Settlement *settlement, struct ImpactProbl
   memset(problem->rate, 0, problem->count * sizeof *problem->rate);
   for (size_t i = 0; i < pushes->count; i++) {
     bool is_contact = i < pushes->contact_count;
-    double bounce = is_contact ? contact_value(settlement, pushes->member[i], CONTACT_RESTITUTION) : 0.0;
+    double bounce = is_contact ? restitution_of(settlement, pushes->member[i]) : 0.0;
     double rate = pushes->rate[i] * problem->unit[i] * (1.0 + (pushes->rate[i] < 0.0 ? share * bounce : 0.0));
     problem->rate[i] = rate;
     if (!is_contact) problem->rate[i + pushes->friction_count] = -rate;
@@ -196,7 +206,7 @@ static void add_impulses(struct Settlement *settlement, const struct Pushes *pus
 
 /* A contact that is hit alone, without friction. */
 static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
-  double bounce = bounces ? contact_value(settlement, pushes->member[0], CONTACT_RESTITUTION) : 0.0;
+  double bounce = bounces ? restitution_of(settlement, pushes->member[0]) : 0.0;
   double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
   if (!(pushes->mobility[0] > DBL_MIN)) return false;
   add_impulses(settlement, pushes, &impulse);

@@ -1,15 +1,42 @@
 #include "contacts/pushes.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/solver.h"
+
+/* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
+static const double shortest_flight = 1000.0;
+/* Below this share of the tolerance bounces are as high as the errors of some methods, which would keep them up. */
+static const double lost_share = 0.02;
 
 bool is_touching(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
   double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
   return settlement->value[gap] <= noise || is_hit(settlement, contact_indicator(settlement->switches, contact));
+}
+
+/* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
+static double lost_height(const struct Settlement *settlement) {
+  if (lagrangian.solver->finer == NULL || settlement->occasion == IN_EXCHANGE) return 0.0;
+  double smallest = INFINITY;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
+  return lost_share * settlement->instance->situation->tolerance * smallest;
+}
+
+bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate) {
+  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
+  double fall = -settlement->value[gap + CONTACT_ACCELERATION];
+  double start = settlement->instance->situation->start_time;
+  double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
+  if (rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * resolution * fall) return true;
+  /* Roundings leave it a little below the ground, importers more, and no flight that ends there has a further zero. */
+  double depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
+  double lost = fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * settlement->value[gap]);
+  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(settlement));
 }
 
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
