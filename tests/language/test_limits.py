@@ -118,7 +118,7 @@ def test_files_that_include_each_other_in_a_row(tmp_path):
 def test_errors_without_end(tmp_path):
     """Of 38,000 wrong elements a hundred are told, in a time that does not grow as their square; long texts are cut."""
     before = seconds_of_children()
-    result = compile_with('<contact name="c" restitution="1">x</contact>' * 38000, tmp_path)
+    result = compile_with('<contact name="c" restitution="1">x</contact>\n' * 38000, tmp_path)
     lines = result.stderr.splitlines()
     assert result.returncode == 1 and len(lines) == 101 and "there are more mistakes" in lines[-1]
     result = compile_with("<potential>" + ".".join("q" * 5000) + "</potential>", tmp_path)

@@ -158,6 +158,11 @@ BAD = [
     ('<spring from="bob" to="tip" stiffness="k"/>', "there is no point 'tip'"),
     ('<spring from="bob" to="base" stiffness="2*x"/>', "stiffness of <spring> cannot depend on coordinates"),
     ('<output name="o">distance(bob)</output>', "expected ',' between the two points of distance"),
+    ('<joint name="h" type="hinge" from="base" to="bob"/>', "expected pin, spherical, universal, revolute, cylindrical, prismatic, planar or fixed"),
+    ('<joint name="h" type="pin" from="bob" to="bob"/>', "nor does anything move the rest of what it holds; expected 'bob' and 'bob' that move"),
+    ('<frame name="A"><rotate axis="z" angle="x"/></frame><frame name="B"><rotate axis="x" angle="1"/><rotate axis="z" angle="y"/></frame><joint name="h" type="universal" from="A" to="B"/>',
+     'expected <constraint name="h">A.R11*B.R12 + A.R21*B.R22 + A.R31*B.R32</constraint> for shafts whose places are held already'),
+    ('<spring from="bob" to="bob" stiffness="k"/>', "the ends 'bob' and 'bob' of <spring> are 0 m apart at all times; expected two that move"),
 ]  # fmt: skip
 
 
@@ -170,3 +175,16 @@ def test_refused(tmp_path, line, message):
 </system>""")
     result = lagc(file, "-o", tmp_path)
     assert result.returncode == 1 and f"{file}:3: " in result.stderr and message in result.stderr, result.stderr
+
+
+def test_a_mistake_in_a_spring_is_told_once(tmp_path):
+    """Its stiffness is read for its energy, its length and its force; a negative one is warned of."""
+    (tmp_path / "system.xml").write_text("""<system name="Bad"><parameter name="c" start="2" unit="N"/>
+<coordinate name="x" velocity="v" unit="m"/><particle name="bob" mass="1" x="x"/>
+<spring name="s" from="base" to="bob" stiffness="c"/><spring from="base" to="bob" stiffness="-3" damping="-1"/>
+</system>""")
+    lines = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr.splitlines()
+    assert lines == ["system.xml:3: unit mismatch: stiffness has the unit kg.m/s2, expected kg/s2"]
+    (tmp_path / "system.xml").write_text((tmp_path / "system.xml").read_text().replace('stiffness="c"', 'stiffness="c/1"').replace('unit="N"', 'unit="N/m"'))
+    lines = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr.splitlines()
+    assert lines == [f"system.xml:3: warning: the {of} of <spring> is {value} at the start values; expected none below 0" for of, value in (("stiffness", -3), ("damping", -1))]

@@ -26,9 +26,7 @@ static void print_text(const char *text) {
   fprintf(stderr, "%.*s ... %s", (int)head, text, tail);
 }
 
-static void print_message(const struct Diagnostics *diagnostics, long line, const char *kind, const char *format,
-                          va_list arguments) {
-  char *text = format_arguments(format, arguments);
+static void print_message(const struct Diagnostics *diagnostics, long line, const char *kind, const char *text) {
   fprintf(stderr, "%s:", diagnostics->file);
   if (line > 0) fprintf(stderr, "%ld:", line);
   fprintf(stderr, " %s", kind);
@@ -43,8 +41,24 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
   va_end(arguments);
 }
 
+/* Among those that there is room for. */
+static bool was_told(const struct Diagnostics *diagnostics, const char *error) {
+  for (int i = 0; i < ERROR_LIMIT && diagnostics->told[i] != NULL; i++)
+    if (strcmp(diagnostics->told[i], error) == 0) return true;
+  return false;
+}
+
+static void note_told(struct Diagnostics *diagnostics, char *error) {
+  int count = 0;
+  while (count < ERROR_LIMIT && diagnostics->told[count] != NULL) count++;
+  if (count < ERROR_LIMIT) diagnostics->told[count] = error;
+}
+
+/* What is read in several places, as the stiffness of a spring, is wrong in each. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
-  if (diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", format, arguments);
+  char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", diagnostics->file, line, text);
+  if (diagnostics->errors < ERROR_LIMIT && !was_told(diagnostics, error)) print_message(diagnostics, line, "", text);
+  note_told(diagnostics, error);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
 }
@@ -52,6 +66,6 @@ void report_error_of(struct Diagnostics *diagnostics, long line, const char *for
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  print_message(diagnostics, line, "warning: ", format, arguments);
+  print_message(diagnostics, line, "warning: ", format_arguments(format, arguments));
   va_end(arguments);
 }

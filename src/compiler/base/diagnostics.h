@@ -10,6 +10,7 @@ struct Diagnostics {
   const char *file;   /* the file being read, as named by the user */
   const char *origin; /* how it comes to be read, for the end of messages; NULL for the user's own */
   int errors;
+  char *told[ERROR_LIMIT]; /* errors, none of which is told twice */
 };
 
 /* Prints an error to stderr, unless there have been many, and counts it; line 0 where no line can be named. */

@@ -112,6 +112,17 @@ static void check_quaternions(const struct Reader *reader, const double *values)
   }
 }
 
+static void check_expectations(const struct Reader *reader, const double *values) {
+  for (size_t i = 0; i < reader->expectation_count; i++) {
+    const struct Expectation *expected = &reader->expectations[i];
+    double value = values[expected->node];
+    if (!(value < 0.0)) continue;
+    static const char message[] = "%s is %g at the start values; expected none below 0";
+    if (expected->is_required) report_error(reader->diagnostics, expected->line, message, expected->what, value);
+    else report_warning(reader->diagnostics, expected->line, message, expected->what, value);
+  }
+}
+
 static void warn_at_start(const struct Reader *reader) {
   const struct Model *model = reader->model;
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
@@ -122,6 +133,7 @@ static void warn_at_start(const struct Reader *reader) {
     if (body->is_in_frame) warn_of_tensor(reader, body, values);
   }
   check_quaternions(reader, values);
+  check_expectations(reader, values);
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
 }
 

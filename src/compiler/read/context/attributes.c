@@ -116,3 +116,10 @@ void require_unit(struct Reader *reader, long line, const char *what, struct Qua
   report_error(reader->diagnostics, line, "unit mismatch: %s has the unit %s, expected %s%s", what, actual_unit,
                expected_unit, unit_hint(quantity.dimension));
 }
+
+void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {
+  size_t count = reader->expectation_count++;
+  reader->expectations = make_room(reader->expectations, count, sizeof *reader->expectations);
+  reader->expectations[count] =
+      (struct Expectation){value, scope_line(reader->scope, xmlGetLineNo(node)), what, is_required};
+}

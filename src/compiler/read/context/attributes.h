@@ -15,6 +15,14 @@ struct Dissipation {
   long line;
 };
 
+/* What should not be below 0 at the start values. */
+struct Expectation {
+  Node node;
+  long line;
+  const char *what;
+  bool is_required;
+};
+
 struct Source;
 struct Loop;
 
@@ -41,6 +49,8 @@ struct Reader {
   bool has_solver, has_experiment;
   struct Dissipation *dissipations; /* each <dissipation> that was read */
   size_t dissipation_count;
+  struct Expectation *expectations;
+  size_t expectation_count;
   Node *undisplaced; /* one node a symbol: what replaces it where nothing is displaced; NULL until it is asked for */
   size_t undisplaced_count;
   struct Occurrence *occurrences; /* all elements, without <for> and <include> */
@@ -106,6 +116,9 @@ struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, cons
 
 /* The unit in an attribute of the element; unknown where missing or after an error. */
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
+
+/* Notes that a node of parameters should not be below 0 at the start values: an error where required, else a warning. */
+void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required);
 
 /* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,

@@ -20,24 +20,38 @@
 #include "read/space/joints.h"
 #include "read/space/springs.h"
 
+/* The value, which an <include> may give, with the unit that it has by itself. */
+static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given,
+                                struct Quantity *value) {
+  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
+  if (is_given(given, "value")) node = given->node;
+  char *text = attribute(node, "value");
+  struct Place place = {.line = xmlGetLineNo(node), .what = "value"};
+  bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place, value);
+  source_enter(reader, present);
+  return right;
+}
+
 static void read_constant(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
-  double value = 0;
+  struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
   const struct Given *given = given_for(reader, node, name);
-  bool right = name != NULL && given_number_attribute(reader, node, given, "value", &value);
+  bool right = name != NULL && read_constant_value(reader, node, given, &value);
   struct Place place = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
     size_t length = strlen(name);
     if (strncmp(definition, name, length) != 0 || definition[length] != '=') continue;
     reader->definition_used[i] = true;
-    right = parse_number(reader->scope, definition + length + 1, place, &value);
+    right = parse_constant(reader->scope, definition + length + 1, place, &value);
   }
-  bool has_unit = has_attribute(node, "unit");
-  struct Quantity number = {.node = graph_constant(reader->model->graph, value),
-                            .dimension = has_unit ? unit_attribute(reader, node, "unit") : dimension_one,
-                            .literal = !has_unit};
-  if (name != NULL) scope_define(reader->scope, name, number, xmlGetLineNo(node));
+  if (has_attribute(node, "unit")) {
+    struct Dimension unit = unit_attribute(reader, node, "unit");
+    require_unit(reader, xmlGetLineNo(node), "the value of the constant", value, unit);
+    value.dimension = unit;
+    value.literal = false;
+  }
+  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
 }
 
 static Node append_input_rate(struct Reader *reader) {

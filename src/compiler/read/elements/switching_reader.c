@@ -111,6 +111,12 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
     report_error(reader->diagnostics, constraint->line, "the restitution %g; expected one from 0 to 1", value);
   contact->gap = gap;
   contact->restitution = restitution.node;
+  if (!graph_depends_on(model->graph, gap, COORDINATE))
+    report_error(
+        reader->diagnostics, constraint->line,
+        "the gap of the contact '%s' holds no coordinate; expected an expression such as y - r, which is 0 where "
+        "it touches",
+        constraint->name);
   constraint->node = function(model->graph, GATE, contact->mode, negate(model->graph, gap));
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }
@@ -133,6 +139,7 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
   static const char *const ends[] = {"min", "max"};
   size_t number = reader->present->number;
   bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no right name then */
+  Node room = ZERO;                                                  /* max - min */
   for (int end = 0; end < 2 && symbol != NULL && is_declared; end++) {
     struct Quantity limit;
     if (!expression_attribute(reader, node, ends[end], IN_GAP, &limit)) continue;
@@ -140,9 +147,13 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
     struct Switches *switches = &reader->model->switches;
     reader->model->constraints.items[switches->contacts[number].constraint].dimension = coordinate->dimension;
+    room = end == 0 ? negate(graph, limit.node) : add(graph, room, limit.node);
     Node way = subtract(graph, symbol->node, limit.node);
     set_contact(reader, node, number++, end == 0 ? way : negate(graph, way));
   }
+  bool is_fixed = !graph_depends_on(graph, room, COORDINATE) && !graph_depends_on(graph, room, MODE);
+  if (has_attribute(node, "min") && has_attribute(node, "max") && is_fixed)
+    expect_not_negative(reader, node, format_text("max - min of the <stop> of '%s'", name), room, true);
 }
 
 /* --- Friction --- */

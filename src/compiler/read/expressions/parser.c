@@ -477,10 +477,14 @@ bool parse_when(struct Scope *scope, const char *text, struct Place place, Node 
   return graph_is_constant_in_time(scope->graph, *value) && !rests_on_parameters(scope->graph, *value);
 }
 
-bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
+bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
   place.kinds = 0;
+  return read_expression(scope, text, place, value);
+}
+
+bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
   struct Quantity quantity;
-  if (!read_expression(scope, text, place, &quantity)) return false;
+  if (!parse_constant(scope, text, place, &quantity)) return false;
   *value = graph_value(scope->graph, quantity.node);
   return true;
 }

@@ -22,6 +22,9 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
 struct Quantity parse_sum(struct Parser *parser);
 
 /* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
+bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value);
+
+/* The same without the unit. */
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
 
 /*

@@ -124,15 +124,46 @@ static Node expression_of(struct Graph *graph, enum Held held, const struct Side
   return vector_dot(graph, axis_of(from, (int)held), between);
 }
 
-static void check_held(struct Reader *reader, xmlNodePtr node, const struct Variable *constraint) {
-  if (graph_is_constant(reader->model->graph, constraint->node))
-    report_at(
-        reader, node,
-        "the joint '%s' holds %s, which nothing moves: it is %g at all times; expected a type that leaves it out, "
-        "such as pin for what moves in a plane",
-        attribute(node, "name"), strrchr(constraint->name, '.') + 1,
-        graph_value(reader->model->graph, constraint->node));
-  else check_constraint(reader, constraint);
+/* The first of a joint's constraints that nothing moves; NULL where all can be moved. */
+static const struct Variable *find_unmoved(const struct Graph *graph, const struct Variable *first, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (graph_is_constant(graph, first[i].node)) return &first[i];
+  return NULL;
+}
+
+/* Whether expressions know the axes of what an attribute names. */
+static bool has_axes(struct Reader *reader, xmlNodePtr node, const char *name) {
+  char *full_name = reference_attribute(reader, node, name);
+  return full_name != NULL && scope_find(reader->scope, format_text("%s.R11", full_name)) != NULL;
+}
+
+/* What to write where places, or some axes, are held without the joint. */
+static char *remedy_for(struct Reader *reader, xmlNodePtr node, const struct Variable *first, size_t count) {
+  const struct Graph *graph = reader->model->graph;
+  const char *from = attribute(node, "from"), *to = attribute(node, "to");
+  size_t unmoved = 0;
+  for (size_t i = 0; i < count; i++) unmoved += graph_is_constant(graph, first[i].node);
+  if (unmoved == count)
+    return format_text("nor does anything move the rest of what it holds; expected '%s' and '%s' that move "
+                       "against one another",
+                       from, to);
+  if (attribute_is(node, "type", "universal") && !graph_is_constant(graph, first[count - 1].node) &&
+      has_axes(reader, node, "from") && has_axes(reader, node, "to"))
+    return format_text("expected <constraint name=\"%s\">%s.R11*%s.R12 + %s.R21*%s.R22 + %s.R31*%s.R32</constraint> "
+                       "for shafts whose places are held already",
+                       attribute(node, "name"), from, to, from, to, from, to);
+  return copy_text("expected a type that leaves it out, such as pin for what moves in a plane, or a <constraint> of "
+                   "what moves alone");
+}
+
+static void check_held(struct Reader *reader, xmlNodePtr node, const struct Variable *first, size_t count) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Variable *unmoved = find_unmoved(graph, first, count);
+  if (unmoved != NULL)
+    report_at(reader, node, "the joint '%s' holds %s, which nothing moves: it is %g at all times; %s",
+              attribute(node, "name"), strrchr(unmoved->name, '.') + 1, graph_value(graph, unmoved->node),
+              remedy_for(reader, node, first, count));
+  for (size_t i = 0; i < count && reader->diagnostics->errors == 0; i++) check_constraint(reader, &first[i]);
 }
 
 void read_joint(struct Reader *reader, xmlNodePtr node) {
@@ -142,9 +173,9 @@ void read_joint(struct Reader *reader, xmlNodePtr node) {
   bool is_right = read_side(reader, node, "from", &from);
   is_right &= read_side(reader, node, "to", &to);
   if (type == NULL || !is_right) return;
-  struct Variable *constraint = &model->constraints.items[reader->present->number];
-  for (const enum Held *held = type->held; *held != NOTHING && reader->diagnostics->errors == 0; held++, constraint++) {
-    constraint->node = expression_of(model->graph, *held, &from, &to);
-    check_held(reader, node, constraint);
-  }
+  struct Variable *first = &model->constraints.items[reader->present->number];
+  size_t count = 0;
+  for (; type->held[count] != NOTHING; count++)
+    first[count].node = expression_of(model->graph, type->held[count], &from, &to);
+  check_held(reader, node, first, count);
 }

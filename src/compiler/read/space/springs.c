@@ -86,6 +86,11 @@ void read_spring(struct Reader *reader, xmlNodePtr node) {
   if (reader->diagnostics->errors > 0) return;
   if (spring.stiffness == ZERO && spring.damping == ZERO)
     report_at(reader, node, "<spring> has neither stiffness nor damping; expected one of them");
+  if (graph_is_constant(graph, spring.length))
+    report_at(reader, node, "the ends '%s' and '%s' of <spring> are %g m apart at all times; expected two that move",
+              attribute(node, "from"), attribute(node, "to"), graph_value(graph, spring.length));
+  expect_not_negative(reader, node, "the stiffness of <spring>", spring.stiffness, false);
+  expect_not_negative(reader, node, "the damping of <spring>", spring.damping, false);
   Node energy = half_of_square(graph, spring.stiffness, spring.stretch);
   add_energy(reader, node, "the energy of <spring>", energy, &energies->displaced_potential, &energies->potential);
   if (spring.damping != ZERO) {

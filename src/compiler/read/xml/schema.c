@@ -90,10 +90,13 @@ static struct Choices choices_in(const struct Check *check, xmlNodePtr element, 
   return choices;
 }
 
-/* The values that the schema lists for an attribute, none where it lists none. */
-static struct Choices choices_of_value(const struct Check *check, const char *attribute) {
+/* The values that the schema lists for an attribute, in the type named like its element or anywhere; none where it lists none. */
+static struct Choices choices_of_value(const struct Check *check, xmlNodePtr element, const char *attribute) {
   struct Choices choices = {.count = 0};
-  xmlNodePtr schema = xmlDocGetRootElement(check->schema), place = find_declared(schema, "attribute", attribute);
+  xmlNodePtr schema = xmlDocGetRootElement(check->schema);
+  xmlNodePtr type = find_declared(schema, "complexType", (const char *)element->name);
+  xmlNodePtr place = find_declared(type != NULL ? type : schema, "attribute", attribute);
+  if (place == NULL) place = find_declared(schema, "attribute", attribute);
   if (place != NULL) collect(schema, place, "enumeration", "value", &choices);
   return choices;
 }
@@ -205,7 +208,7 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
                             strstr(error->str2, "\\[") != NULL ? ", and an index as in name[1]" : "");
     break;
   case XML_SCHEMAV_CVC_ENUMERATION_VALID: {
-    char *list = remedy(value, choices_of_value(check, name));
+    char *list = remedy(value, choices_of_value(check, element, name));
     what_then = format_text("is not known; %s", list);
     break;
   }
