@@ -419,10 +419,20 @@ PLACES = [
     ("return sum != ZERO ? power_number(graph, sum, -1.0) : ONE;", "return sum != ZERO ? sum : ONE;", pytest("test_massless", "")),
     ("cardinals.slope[count - 1] = way_behind(scope, x, knots[count - 1]);", "", pytest("test_tables_of_two", "values_and_derivatives")),
     ("if (k != l) dense[component][places[j] * size + places[i]] += product;", "", pytest("test_massless", "one_after_the_other")),
+    ("static const double rounding = 1e-10;", "static const double rounding = 0.0;", pytest("test_massless", "rounding_leaves")),
+    ("case LIMIT_ANGLE: series_limit_angle(limit, u, at(frame->base, check->other_row)); break;", "case LIMIT_ANGLE: break;",
+     pytest("test_instructions", "angle_jumps")),
+    # Up to twice the length the bounds have to spare.
+    ("if (half >= 0.5 * length) return true;", "if (half >= 0.1 * length) return true;", pytest("test_hills", "")),
+    ("return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;", "return restitution;",
+     pytest("test_roundings_of_contacts", "friction_of_bounces")),
+    ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
 ]
 
 # Changes that are no faults, since what they leave out follows from the rest: (what stands there, what was planted, why).
 EQUIVALENT = [
+    ("fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length)", "fmin(fmax(2.0 * half, 0.125 * length), length)",
+     "half is then below half the length, so that the window shrinks all the same, and ends when it is sure"),
     ("if (near_secant * far_secant <= 0 && fabs(slope) > 3 * fabs(near_secant)) return", "if (fabs(slope) > 3 * fabs(near_secant)) return",
      "of two secants of one sign the parabola's slope at the end is less than twice the nearer one"),
     ("if (curve->count == 3 && i == 2) return (struct Row){1, 1, 0, 2 * secant(curve, 1)};", "",

@@ -199,6 +199,19 @@ def test_motions_without_inertia_one_after_the_other(tmp_path):
     assert result.returncode == 0, result.stderr
 
 
+def test_rounding_leaves_no_inertia(tmp_path):
+    """Three of four motions have none; of the squares of these levers, elimination leaves 1e-17."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Four">'
+        + "".join(f'<coordinate name="{q}" velocity="v{q}"/>' for q in "abcd")
+        + '<particle mass="0.37" x="1.481*a + 1.953*b + 0.537*c + 1.941*d"/>'
+        + "".join(f'<constraint name="{p}{q}">{p} - {q}</constraint>' for p, q in zip("abc", "bcd"))
+        + "</system>"
+    )
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
 def test_model_exchange(open_fmu):
     instance = open_fmu("Dumbbell", kind=FMU2Model)
     instance.initialize()

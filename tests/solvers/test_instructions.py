@@ -1,7 +1,10 @@
 """Code in tables does what code in statements does: the same bits, the same number of steps, the same messages."""
 
+from math import atan, pi
+
 import pytest
 from fmpy.fmi1 import FMICallException
+from scipy.integrate import quad
 
 from differential.build import compile_system
 from differential.simulation import Built
@@ -29,6 +32,13 @@ ALONE = """<system name="Forms">
   <particle mass="1" x="x"/>
   <force coordinate="x">-x + atan2(0.001, x - 0.1)</force>
   <output name="push">der(v)*x</output>
+  <solver method="taylor" tolerance="1e-9"/>
+</system>"""
+# The angle jumps from -pi to pi at x = 0.2.
+TURN = """<system name="Forms">
+  <coordinate name="x" velocity="v" velocityStart="2"/>
+  <particle mass="1" x="x"/>
+  <force coordinate="x">atan2(x - 0.2, -1 - x)</force>
   <solver method="taylor" tolerance="1e-9"/>
 </system>"""
 RESULTS = ["r", "phi", "x", "y", "vr", "w", "v", "u", "far", "der(v)", "totalEnergy"]
@@ -81,3 +91,19 @@ def test_slopes_of_accelerations_are_the_same(tmp_path):
         finally:
             instance.free()
     assert runs[0] == runs[1]
+
+
+def test_an_angle_jumps_where_it_does(tmp_path):
+    """The force is -pi + arctan((x - 0.2)/(-1 - x)) before the jump, and 2 pi more behind it; what it works is its integral."""
+    before, behind = (quad(lambda x, turn=turn: turn + atan((x - 0.2) / (-1 - x)), a, b)[0] for turn, a, b in ((-pi, 0, 0.2), (pi, 0.2, 1)))
+    rows = []
+    for form in ("statements", "tables"):
+        instance = built(TURN, form, tmp_path / form)
+        try:
+            rows.append(instance.initialize().run(0.5, 0.5, "x", "v")[-1][1:] + instance.fmu.getInteger(instance.vr("solverSteps")))
+            x, v = rows[-1][:2]
+            to_x = behind - quad(lambda x: pi + atan((x - 0.2) / (-1 - x)), x, 1)[0]
+            assert v**2 / 2 == pytest.approx(2 + before + to_x, abs=1e-7) and x > 0.3
+        finally:
+            instance.free()
+    assert rows[0] == rows[1]

@@ -82,9 +82,7 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
       Node product = multiply(graph, axis.along[i], axis.along[j]), *element = &turn.row[i].along[j];
       Node lever = i == j ? ZERO : multiply(graph, sine, axis.along[3 - i - j]);
       if ((i + 1) % 3 == j) lever = negate(graph, lever);
-      /* Along an axis of the frame both terms would only cancel. */
-      if (i == j && product == ONE) *element = ONE;
-      else *element = add(graph, multiply(graph, rest, product), i == j ? cosine : lever);
+      *element = add(graph, multiply(graph, rest, product), i == j ? cosine : lever);
     }
   turn_axes(graph, pose, &turn, vector_scale(graph, rate, axis));
 }

@@ -17,35 +17,48 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-size_t settlement_work_count(void) {
+/* The next numbers of the workspace; NULL where there is none yet and they are counted alone. */
+static double *next_of(double *work, size_t *used, size_t count) {
+  double *next = work != NULL ? work + *used : NULL;
+  *used += count;
+  return next;
+}
+
+/* Returns how many numbers there are. */
+static size_t lay_out(struct Settlement *settlement, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t corrections = lagrangian.coordinate_count + 3 * lagrangian.constraints.count;
-  return switching_search_count() + 4 * settlement_value_count(switches) + switches->event_count +
-         2 * indicator_count(switches) + 2 * switches->contact_count + switches->friction_count +
-         switches->energy_count + rows_of_matrix() + switches->mode_count + 2 * lagrangian.state_count + corrections;
+  size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
+  size_t contacts = switches->contact_count, used = switching_search_count();
+  settlement->value = next_of(work, &used, values);
+  settlement->noise = next_of(work, &used, values);
+  settlement->other_noise = next_of(work, &used, values);
+  settlement->largest = next_of(work, &used, values);
+  settlement->condition = next_of(work, &used, switches->event_count);
+  settlement->flips = next_of(work, &used, indicators);
+  settlement->was_opened = next_of(work, &used, contacts);
+  settlement->takes_part = next_of(work, &used, contacts + switches->friction_count);
+  settlement->energy = next_of(work, &used, switches->energy_count);
+  settlement->acceleration = next_of(work, &used, rows_of_matrix());
+  settlement->kept_modes = next_of(work, &used, switches->mode_count);
+  settlement->rounded = next_of(work, &used, lagrangian.state_count);
+  settlement->derivative = next_of(work, &used, lagrangian.state_count);
+  settlement->rounding = next_of(work, &used, indicators);
+  settlement->correction = next_of(work, &used, lagrangian.coordinate_count + 3 * lagrangian.constraints.count);
+  return used;
+}
+
+size_t settlement_work_count(void) {
+  struct Settlement settlement;
+  return lay_out(&settlement, NULL);
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
   struct Settlement settlement = {.instance = instance, .switches = switches};
-  settlement.value = instance->switching_work + switching_search_count();
-  settlement.noise = settlement.value + values;
-  settlement.other_noise = settlement.noise + values;
-  settlement.largest = settlement.other_noise + values;
-  settlement.condition = settlement.largest + values;
-  settlement.flips = settlement.condition + switches->event_count;
-  settlement.was_opened = settlement.flips + indicators;
-  settlement.takes_part = settlement.was_opened + switches->contact_count;
-  settlement.energy = settlement.takes_part + switches->contact_count + switches->friction_count;
-  settlement.acceleration = settlement.energy + switches->energy_count;
-  settlement.kept_modes = settlement.acceleration + rows_of_matrix();
-  settlement.rounded = settlement.kept_modes + switches->mode_count;
-  settlement.derivative = settlement.rounded + lagrangian.state_count;
-  settlement.rounding = settlement.derivative + lagrangian.state_count;
-  settlement.correction = settlement.rounding + indicators;
-  memset(settlement.largest, 0, values * sizeof(double));
-  memset(settlement.flips, 0, (indicators + switches->contact_count) * sizeof(double));
+  lay_out(&settlement, instance->switching_work);
+  memset(settlement.largest, 0, settlement_value_count(switches) * sizeof(double));
+  memset(settlement.flips, 0, indicator_count(switches) * sizeof(double));
+  memset(settlement.was_opened, 0, switches->contact_count * sizeof(double));
   return settlement;
 }
 
