@@ -426,6 +426,7 @@ PLACES = [
     ("if (half >= 0.5 * length) return true;", "if (half >= 0.1 * length) return true;", pytest("test_hills", "")),
     ("return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;", "return restitution;",
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
+    ("if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);", "", pytest("test_roundings_of_contacts", "lift_off")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
 ]
 

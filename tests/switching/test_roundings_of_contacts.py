@@ -18,7 +18,7 @@ GRAZED = """<system name="{name}"><coordinate name="x" velocity="v" velocityStar
   <particle mass="2" x="x" y="y"/><gravity y="-10"/><contact name="ground" gap="y" restitution="0.7"/>
   <friction name="grip" coordinate="x" force="0.3*ground.force"/><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
-    ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "bdf"]),
+    ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
     ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"])
 ] for method in methods}  # fmt: skip
 
@@ -74,15 +74,26 @@ def test_the_friction_of_bounces_that_are_cut_short(method):
     assert instance.get("v", "w") == pytest.approx([5 - 0.3 * (10 * 1.4 - 2), 0], abs=1e-11)
 
 
+@pytest.mark.parametrize("speed", [0.2, 1.0, 2.6])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+@pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
+def test_lift_off_without_speed(method, tolerance, speed):
+    """The dome is left where c = cos(theta) = 2/3 + v^2/3g, at sqrt(g c) along it: a parabola from there on, whose gap grows as t^3."""
+    instance = Instance(f"Dome_{method}").initialize({"vx": speed}, tolerance=tolerance)
+    instance.step(2)
+    c = (2 + speed**2 / 9.81) / 3
+    s = (1 - c**2) ** 0.5
+    x, y, vx = instance.get("x", "y", "vx")
+    assert vx == pytest.approx(c * (9.81 * c) ** 0.5, rel=30 * tolerance)
+    assert y == pytest.approx(c - s / c * (x - s) - (x - s) ** 2 / (2 * c**3), rel=100 * tolerance)
+
+
 def test_a_solver_recommends_others_only():
-    """The dome is left where cos(theta) = 2/3 + v^2/3g, without speed across it: bdf cannot tell it, taylor can."""
-    start, leaves = {"vx": 1.0}, (2 + 1 / 9.81) / 3
-    instance = Instance("Dome_bdf").initialize(start)
+    """Errors of 1e-4 hide how the dome is left from bdf where a step ends just behind; taylor can tell."""
+    instance = Instance("Dome_bdf").initialize({"vx": 3.0}, tolerance=1e-4)
     with instance.fails(DISCARD, "a contact opens and closes there without end$"):
-        instance.step(3)
+        for _ in range(20):
+            instance.step(0.01)
     [text] = [text for _, _, text in instance.messages if "contact 'dome'" in text]
     assert '<solver method="taylor"/>' in text and "bdf" not in text
-    assert instance.get("y") == pytest.approx(leaves, abs=1e-4)
-    instance = Instance("Dome_taylor").initialize(start)
-    instance.step(0.6)
-    assert instance.get("dome.force") == 0 and instance.get("y") < leaves
+    assert instance.get("y") == pytest.approx((2 + 9 / 9.81) / 3, abs=3e-3)

@@ -6,7 +6,6 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
-#include "instance/solver.h"
 
 /* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
 static const double shortest_flight = 1000.0;
@@ -21,10 +20,7 @@ bool is_touching(const struct Settlement *settlement, size_t contact) {
 
 /* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
 static double lost_height(const struct Settlement *settlement) {
-  if (lagrangian.solver->finer == NULL || settlement->occasion == IN_EXCHANGE) return 0.0;
-  double smallest = INFINITY;
-  for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
-  return lost_share * settlement->instance->situation->tolerance * smallest;
+  return settlement->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(settlement->instance);
 }
 
 bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate) {

@@ -63,3 +63,10 @@ bool solver_lacks_memory(const struct Instance *instance) {
 bool solver_rests(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
+
+double solver_error(const struct Instance *instance) {
+  if (lagrangian.solver->finer == NULL) return 0.0;
+  double smallest = INFINITY;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
+  return instance->situation->tolerance * smallest;
+}

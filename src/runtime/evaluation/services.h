@@ -34,6 +34,9 @@ bool solver_lacks_memory(const struct Instance *instance);
 /* Whether a step is only a few units in the last place of the time. */
 bool solver_rests(double time, double step);
 
+/* What the method may make of a coordinate; 0 for one that errs by rounding alone. */
+double solver_error(const struct Instance *instance);
+
 /* What a user reads where a solver rests. */
 extern const char solver_resting[];
 

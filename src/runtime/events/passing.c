@@ -113,13 +113,14 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
+  const size_t *lifted = progress->has_lifted ? &progress->indicator : NULL;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
     *time = NAN;
     const double *samples;
     bool is_sure = switching_narrow(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (switching_find(instance, progress->searched, near, samples, time, indicator)) return true;
+    if (switching_find(instance, progress->searched, near, samples, lifted, time, indicator)) return true;
     window = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->gathered = 0;
@@ -167,6 +168,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
+  progress->has_lifted = is_of_contact(indicator) && switching_is_force(instance, indicator);
   progress->searched = time;
 }
 

@@ -237,8 +237,15 @@ bool switching_jump(struct Instance *instance, double *time, double *state, size
   return true;
 }
 
-bool switching_find(struct Instance *instance, double from, double to, const double *samples, double *time,
-                    size_t *indicator) {
+/* What an indicator may fall to without an event, that begins at a value: what an event, or the method, has made of it. */
+static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
+  double noise = FLOOR_IN_NOISE * search->noise[indicator], error = 0.0;
+  if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);
+  return start >= -error - noise && (error == 0.0 || start <= error + noise) ? fmin(start, -error) : 0.0;
+}
+
+bool switching_find(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+                    double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
@@ -253,7 +260,7 @@ bool switching_find(struct Instance *instance, double from, double to, const dou
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
-    search.floor = start >= -FLOOR_IN_NOISE * search.noise[i] ? fmin(start, 0.0) : 0.0;
+    search.floor = floor_of(&search, i, start, lifted);
     double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
                                                       : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
     bool is_lost = search.windows > WINDOW_LIMIT;

@@ -14,11 +14,12 @@ size_t switching_search_count(void);
 
 /*
  * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign; samples: as
- * switching_narrow() gives them for this window. False where none does. The time is NAN where its zeros cannot be told from
- * one another.
+ * switching_narrow() gives them for this window; lifted: of a contact that has just opened without speed, whose gap may fall
+ * by the errors of the method, NULL for none. False where none does. The time is NAN where its zeros cannot be told from one
+ * another.
  */
-bool switching_find(struct Instance *instance, double from, double to, const double *samples, double *time,
-                    size_t *indicator);
+bool switching_find(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+                    double *time, size_t *indicator);
 
 /*
  * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the

@@ -30,6 +30,7 @@ struct EventProgress {
   double reach;     /* in s: how far the solver may go at once, since events lie too close for more; 0 for any */
   int nearer;       /* how often that was shortened since a step without events */
   size_t indicator; /* whose zero the last one was */
+  bool has_lifted;  /* it was a contact that opened as its force went */
 };
 
 struct EventLaws {
