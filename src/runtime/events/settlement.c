@@ -25,7 +25,7 @@ static double *next_of(double *work, size_t *used, size_t count) {
 }
 
 /* Returns how many numbers there are. */
-static size_t lay_out(struct Settlement *settlement, double *work) {
+static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
   size_t contacts = switches->contact_count, used = switching_search_count();
@@ -49,13 +49,13 @@ static size_t lay_out(struct Settlement *settlement, double *work) {
 
 size_t settlement_work_count(void) {
   struct Settlement settlement;
-  return lay_out(&settlement, NULL);
+  return lay_out_settlement(&settlement, NULL);
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Settlement settlement = {.instance = instance, .switches = switches};
-  lay_out(&settlement, instance->switching_work);
+  lay_out_settlement(&settlement, instance->switching_work);
   memset(settlement.largest, 0, settlement_value_count(switches) * sizeof(double));
   memset(settlement.flips, 0, indicator_count(switches) * sizeof(double));
   memset(settlement.was_opened, 0, switches->contact_count * sizeof(double));
