@@ -2,8 +2,10 @@
 
 import html
 import re
+import subprocess
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 import fmi3
@@ -78,6 +80,28 @@ def test_templates(template, command, tmp_path):
     assert succeed(result).startswith("Mine: ") and result.stderr == ""
 
 
+def test_a_sweep(command, tmp_path):
+    """Of a linear pendulum: theta = theta0 cos(sqrt(g/l) t)."""
+    words = ["--vary", "l=0.5,2", "--vary", "theta0=0.1:0.3:3", "--stop-time", "2", "--output", "runs.parquet"]
+    assert "6 runs, 0 failed" in succeed(command("sweep", fmu.archive("SimplePendulumLinear"), *words, cwd=tmp_path))
+    runs = pq.read_table(tmp_path / "runs.parquet").to_pydict()
+    expected = [start * np.cos(2 * np.sqrt(9.81 / l)) for l in (0.5, 2) for start in (0.1, 0.2, 0.3)]
+    np.testing.assert_allclose(runs["theta_end"], expected, rtol=1e-9)
+
+
+def test_completion(command, tmp_path):
+    """What bash is given completes commands, words and files."""
+    (tmp_path / "completion").write_text(succeed(command("--print-completion", "bash", cwd=tmp_path)))
+    (tmp_path / "arm.urdf").touch()
+    for typed, completed in (("linea", "linearize"), ("run --stop", "--stop-time"), ("run ar", "arm.urdf")):
+        script = f"source completion; COMP_WORDS=(lagrange-fmu {typed}); COMP_CWORD=${{#COMP_WORDS[@]}}; ((COMP_CWORD--)); _shtab_lagrange_fmu; echo ${{COMPREPLY[@]}}"
+        assert subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True).stdout.split() == [completed]
+
+
+def test_no_command_shows_the_help(command, tmp_path):
+    assert "linearize" in succeed(command(cwd=tmp_path))
+
+
 def test_reference(command, tmp_path):
     text = succeed(command("words", "restitution", cwd=tmp_path))
     assert "<contact" in text and len(text) < len(succeed(command("words", cwd=tmp_path))) / 5
@@ -96,6 +120,9 @@ def test_reference(command, tmp_path):
     (["run", fmu.archive("SimplePendulum"), "--step", "-1"], "'-1' is no positive number"),
     (["linearize", fmu.archive("SimplePendulum"), "--at", "q=1"], "'q' is not a variable of SimplePendulum"),
     (["linearize", fmi3.archive("SimplePendulum")], "has no directional derivatives of FMI 2.0; expected a system"),
+    (["sweep", "text.fmu", "--vary", "l=1:2:3"], "text.fmu is not an FMU, which is a zip archive"),
+    (["sweep", fmu.archive("SimplePendulum"), "--vary", "l=1:2"], "'l' has no COUNT; expected l=FROM:TO:COUNT"),
+    (["sweep", fmi3.archive("SimplePendulum"), "--vary", "l=1,2"], "SimplePendulum.fmu is of FMI 3.0; expected one of FMI 2.0"),
     (["words", "qqq"], "the reference says nothing about 'qqq'"),
 ])  # fmt: skip
 def test_mistakes(words, message, command, tmp_path):

@@ -17,7 +17,7 @@ def assemble(folder):
     shutil.copytree(SCRIPTS / "animation", package / "animation", ignore=shutil.ignore_patterns("__pycache__"))
     (package / "bin").mkdir()
     (package / "runtime" / "scripts").mkdir(parents=True)
-    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "simulation", "variables")}
+    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "progress", "simulation", "sweep_words", "sweeping", "variables")}
     files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
     for name, source in files.items():
         shutil.copy(source, package / name)

@@ -5,9 +5,14 @@ import sys
 import warnings
 from importlib import import_module
 
+import shtab
+
 from . import __version__, caching
 from .commands import COMMANDS
 from .problem import Problem
+
+
+FILES = ("system", "input")  # the words of commands that name files
 
 
 def parser():
@@ -18,13 +23,18 @@ def parser():
         epilog=f"What was compiled is kept in {caching.folder()}, or where LAGRANGE_FMU_CACHE says; the folder can be deleted.",
     )
     words.add_argument("--version", action="version", version=f"lagrange-fmu {__version__}")
-    commands = words.add_subparsers(required=True, metavar="COMMAND")
+    shtab.add_argument_to(words, help="prints what a shell completes the command's words by")
+    words.set_defaults(run=lambda arguments: words.print_help())
+    commands = words.add_subparsers(metavar="COMMAND")
     for name in COMMANDS:
         module = import_module(f".commands.{name}", __package__)
         text = module.__doc__.strip()
         command = commands.add_parser(name, help=text, description=text)
         command.set_defaults(run=module.run)
         module.arguments(command)
+        for action in command._actions:
+            if action.dest in FILES:
+                action.complete = shtab.FILE
     return words
 
 

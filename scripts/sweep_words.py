@@ -1,0 +1,33 @@
+"""The words of a sweep on a command line. Also a module of the wheel."""
+
+import argparse
+from pathlib import Path
+
+
+def variation(text):
+    """NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,..."""
+    name, separator, values = text.partition("=")
+    try:
+        if not separator:
+            raise ValueError
+        if ":" not in values:
+            return name, [float(value) for value in values.split(",")]
+        first, last, *count = values.split(":")
+        if len(count) > 1 or (count and int(count[0]) < 1):
+            raise ValueError
+        return name, (float(first), float(last), int(count[0]) if count else None)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
+
+
+def sweep_words(parser, output):
+    """Declares them; output tells where the file goes if nothing is said."""
+    parser.add_argument("--vary", action="append", type=variation, required=True, metavar="NAME=FROM:TO:COUNT",
+                        help="or NAME=VALUE,VALUE,...; several make a grid. theta0 is the start value of theta")  # fmt: skip
+    parser.add_argument("--random", type=int, metavar="RUNS", help="a random sample of the ranges instead of a grid")
+    parser.add_argument("--seed", type=int, default=0, help="of the random sample")
+    parser.add_argument("--stop-time", "--stop", type=float, metavar="S", help="the end of each run; else that of the FMU")
+    parser.add_argument("--step", type=float, metavar="S", help="the communication step; else the whole run")
+    parser.add_argument("--tolerance", type=float, help="the relative tolerance; else that of the FMU")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; else a thread for each core")
+    parser.add_argument("--output", type=Path, metavar="FILE.parquet", help=f"else {output}")

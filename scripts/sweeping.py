@@ -1,0 +1,187 @@
+"""
+Runs an FMU over a grid or a random sample. Each run starts from the FMU's own values but for those that vary, and ends
+as a row of one Parquet file: what varied, the states at the end, the error of the energy, the run time, and what went
+wrong; the energy has an error only where the FMU says which law it obeys. Finished runs are kept in parts beside the file
+until all are there, so that the same command goes on after a kill. Also a module of the wheel.
+"""
+
+import hashlib
+import itertools
+import json
+import os
+import shutil
+import sys
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from . import sweep_worker
+from .problem import Problem
+from .progress import Progress
+from .simulation import described
+from .variables import settable, why_not
+
+CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
+IN_FLIGHT = 3  # tasks a worker thread, so that memory does not grow with the number of runs
+
+
+def known_name(name, description):
+    """The variable of this name; theta0 is the start value of theta."""
+    names = settable(description)
+    if name in names:
+        return name
+    if name.endswith("0") and name[:-1] in names:
+        return name[:-1]
+    what = f"'{name}' has no start value in {description.modelName}{why_not(name, description)}"
+    raise Problem(f"{what}; these have one: {', '.join(names)}")
+
+
+def points(variations, random, seed):
+    """A row of values for each run."""
+    if random:
+        generator, columns = np.random.default_rng(seed), []
+        for _, values in variations:
+            spread = generator.uniform(*values[:2], random) if isinstance(values, tuple) else generator.choice(values, random)
+            columns.append(spread)
+        return np.array(columns).T
+    axes = []
+    for name, values in variations:
+        if isinstance(values, tuple) and values[2] is None:
+            raise Problem(f"'{name}' has no COUNT; expected {name}=FROM:TO:COUNT, or --random RUNS")
+        axes.append(np.linspace(*values) if isinstance(values, tuple) else values)
+    return np.array(list(itertools.product(*axes)))
+
+
+def replace(temporary, path):
+    """Gives a file its name when it is on the disk, so that a machine that loses power leaves it whole or not at all."""
+    with open(temporary, "rb+") as file:
+        os.fsync(file.fileno())
+    os.replace(temporary, path)
+
+
+class Parts:
+    """Finished chunks beside the result, in a folder whose name tells which plan they belong to."""
+
+    def __init__(self, output, plan):
+        digest = hashlib.sha256(json.dumps(plan, sort_keys=True).encode()).hexdigest()[:16]
+        self.folder = output.with_suffix("").parent / f"{output.stem}.parts-{digest}"
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def path(self, chunk):
+        return self.folder / f"{chunk:06}.parquet"
+
+    def write(self, chunk, data):
+        temporary = self.path(chunk).with_suffix(".part")
+        temporary.write_bytes(data)
+        replace(temporary, self.path(chunk))
+
+    def finished(self, runs_of):
+        """The chunks that are there. One whose file was cut short is dropped."""
+        chunks = sorted(int(path.stem) for path in self.folder.glob("*.parquet"))
+        whole = [chunk for chunk in chunks if self.is_whole(chunk, len(runs_of(chunk)))]
+        for chunk in set(chunks) - set(whole):
+            runs = runs_of(chunk)
+            print(f"{self.path(chunk)} is damaged: runs {runs.start} to {runs.stop - 1} are run again")
+            self.path(chunk).unlink()
+        return set(whole)
+
+    def is_whole(self, chunk, runs):
+        try:
+            return pq.read_table(self.path(chunk)).num_rows == runs
+        except (pa.ArrowException, OSError):
+            return False
+
+    def join(self, output, count):
+        """One file of all parts in the order of the runs, a part at a time."""
+        temporary, writer = output.with_suffix(".part"), None
+        for chunk in range(count):
+            table = pq.read_table(self.path(chunk))
+            writer = writer or pq.ParquetWriter(temporary, table.schema)
+            writer.write_table(table)
+        writer.close()
+        replace(temporary, output)
+        shutil.rmtree(self.folder)
+
+
+def simulate(executor, width, archive, runner, rows, names, settings, parts):
+    """Keeps that many tasks in flight; writes each as it ends."""
+    size = max(CHUNK, -(-len(rows) // PARTS))
+    count = -(-len(rows) // size)
+    runs_of = lambda chunk: range(chunk * size, min((chunk + 1) * size, len(rows)))
+    finished = parts.finished(runs_of)
+    waiting = [chunk for chunk in range(count) if chunk not in finished]
+    done = sum(len(runs_of(chunk)) for chunk in finished)
+    if done:
+        print(f"{done} of {len(rows)} runs are there already")
+    progress, running = Progress(len(rows), done), {}
+    while waiting or running:
+        while waiting and len(running) < width:
+            chunk = waiting.pop(0)
+            numbers = runs_of(chunk)
+            future = executor.submit(sweep_worker.run_chunk, archive, runner, numbers, rows[numbers.start : numbers.stop], names, settings)
+            running[future] = chunk
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            chunk = running.pop(future)
+            parts.write(chunk, future.result())
+            progress("runs", len(runs_of(chunk)))
+    return count
+
+
+def simulate_in_threads(*words):
+    """The time of a run is spent in C, which Python's lock does not hold."""
+    executor = ThreadPoolExecutor(os.cpu_count())
+    try:
+        return simulate(executor, 2 * os.cpu_count(), *words)
+    except KeyboardInterrupt:
+        print("interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
+        os._exit(130)  # runs that have begun may take long
+
+
+def simulate_with_dask(address, *words):
+    import cloudpickle
+    from distributed import Client
+
+    cloudpickle.register_pickle_by_value(sweep_worker)  # a cluster's workers need not have this module
+    with Client(address) as client:
+        return simulate(client.get_executor(pure=False, retries=3), IN_FLIGHT * max(1, sum(client.nthreads().values())), *words)
+
+
+def print_summary(output):
+    table = pq.read_table(output, columns=["energyError", "runTime", "problem"])
+    problems = [p for p in table["problem"].to_pylist() if p is not None]
+    errors = np.abs(np.array(table["energyError"].to_pylist(), dtype=float))
+    print(f"{table.num_rows} runs, {len(problems)} failed")
+    if problems:
+        print(f"the first failure: {problems[0]}")
+    if np.any(np.isfinite(errors)):
+        print(f"largest relative error of the energy: {np.nanmax(errors):.3g}")
+    print(f"result  {output.resolve()}")
+
+
+def sweep(path, output, arguments, runner):
+    """Of an FMU, to a Parquet file, by the words of sweep_words.py; runner: sweep_runs.c as a shared library's bytes."""
+    description = described(path)
+    if description.fmiVersion != "2.0":
+        raise Problem(f"{path} is of FMI {description.fmiVersion}; expected one of FMI 2.0")
+    names = [known_name(name, description) for name, _ in arguments.vary]
+    if len(set(names)) < len(names):
+        raise Problem("a variable varies twice")
+    rows = points(arguments.vary, arguments.random, arguments.seed)
+    experiment = description.defaultExperiment
+    stop = arguments.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
+    steps = max(1, round(stop / arguments.step)) if arguments.step else 1
+    settings = {"stop": stop, "steps": steps, "tolerance": arguments.tolerance}
+    output = arguments.output or Path(output) / f"{description.modelName}-sweep.parquet"
+    archive = Path(path).read_bytes()
+    plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), **settings}
+    try:
+        parts = Parts(output, plan)
+        words = archive, runner, rows, names, settings, parts
+        count = simulate_with_dask(arguments.scheduler, *words) if arguments.scheduler else simulate_in_threads(*words)
+        parts.join(output, count)
+    except OSError as problem:
+        raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command goes on with them") from None
+    print_summary(output)
