@@ -37,10 +37,11 @@ CHAIN = """<system name="DisplacedChain" description="Rods on a pivot that moves
   <parameter name="g" start="9.81" unit="m/s2"/>
   <input name="F" unit="N"/>
   <constant name="N" value="3"/>
+  <constant name="sway" value="0.1" unit="m"/>
   <for index="i" from="1" to="N">
     <coordinate name="theta[i]" velocity="omega[i]" unit="rad" start="0.3*i"/>
     <displacement name="stretch[i]" unit="m"/>
-    <particle name="bob[i]" mass="m" x="0.1*sin(2*time) + sum(j, 1, i, (l + stretch[j])*sin(theta[j]))"
+    <particle name="bob[i]" mass="m" x="sway*sin(2*time) + sum(j, 1, i, (l + stretch[j])*sin(theta[j]))"
               y="-sum(j, 1, i, (l + stretch[j])*cos(theta[j]))"/>
     <potential>m*g*bob[i].y</potential>
     <output name="T[i]" unit="N">stretch[i].force</output>

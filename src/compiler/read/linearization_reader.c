@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/paths.h"
 #include "read/elements/elements.h"
+#include "read/expressions/number_units.h"
 #include "read/expressions/parser.h"
 
 char *linearized_path(xmlNodePtr root, const char *path) {
@@ -37,8 +38,10 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   struct Dimension dimension = quantity->dimension;
   struct Place place = {.line = line, .what = name, .kinds = 1u << PARAMETER};
   struct Quantity parsed = parse_expression(scope, value, place);
-  if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension))
-    report_error(diagnostics, line, "unit mismatch: the value for '%s' has another unit than the variable", name);
+  static const char message[] = "unit mismatch: the value for '%s' has another unit than the variable";
+  if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension) &&
+      !number_may_have_unit(scope, line, parsed, dimension, message, name))
+    report_error(diagnostics, line, message, name);
   model->point.values[symbol] = parsed.node;
   model->point.given[symbol] = true;
 }

@@ -35,7 +35,7 @@ struct Dimension dimension_multiply(struct Dimension first, struct Dimension sec
 /* Whether all exponents are whole numbers, as FMI asks for; false where unknown. */
 bool dimension_is_whole(struct Dimension dimension);
 
-/* How a message goes on about a quantity of the unit 1 where another is expected, such as 0.3*cos(a) for a length; else "". */
+/* How a message goes on about a quantity of the unit 1 where another is expected, such as cos(a) for a length; else "". */
 const char *unit_hint(struct Dimension dimension);
 
 /* Whether both are the same quantity; the radian counts as 1, unknown agrees with all. */

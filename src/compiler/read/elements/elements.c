@@ -47,10 +47,9 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   }
   if (has_attribute(node, "unit")) {
     struct Dimension unit = unit_attribute(reader, node, "unit");
-    require_unit(reader, xmlGetLineNo(node), "the value of the constant", value, unit);
-    value.dimension = unit;
-    value.literal = false;
-  }
+    if (!value.literal) require_unit(reader, xmlGetLineNo(node), "the value of the constant", value, unit);
+    value = (struct Quantity){.node = value.node, .dimension = unit};
+  } else if (value.literal) value.factor = (struct NumberFactor){.text = name, .power = 1.0};
   if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
 }
 

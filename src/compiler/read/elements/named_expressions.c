@@ -25,9 +25,8 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
   struct Dimension unit = unit_attribute(reader, node, "unit");
   source_enter(reader, present);
   require_unit(reader, xmlGetLineNo(where), what, value, unit);
-  if (unit.known) value.dimension = unit;
-  value.literal = value.literal && !unit.known;
-  return value;
+  if (!unit.known) return value;
+  return (struct Quantity){.node = value.node, .dimension = unit};
 }
 
 static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, const char *component) {
@@ -35,8 +34,9 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   bool is_angle = strcmp(component, "angle") == 0;
   expression_attribute(reader, node, component, IN_POSITION, &value);
   if (definitions_are_waiting(reader->definitions)) return value;
-  require_unit(reader, xmlGetLineNo(node), is_angle ? "the angle" : component, value, unit_of(is_angle ? "rad" : "m"));
-  return value;
+  struct Dimension unit = unit_of(is_angle ? "rad" : "m");
+  require_unit(reader, xmlGetLineNo(node), is_angle ? "the angle" : component, value, unit);
+  return (struct Quantity){.node = value.node, .dimension = value.dimension.known ? unit : dimension_unknown};
 }
 
 struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,

@@ -68,11 +68,11 @@ static struct Quantity parse_literal(struct Parser *parser) {
          parser->place.what, parser->next);
     return nothing;
   }
+  char *text = format_text("%.*s", (int)(end - parser->next), parser->next);
   parser->next = end;
-  /* 9.81 may carry a hidden unit, 2 and 0.5 are pure numbers. */
-  bool pure = 2 * value == floor(2 * value);
   return (struct Quantity){.node = graph_constant(parser->graph, value),
-                           .dimension = pure ? dimension_one : dimension_unknown,
+                           .dimension = dimension_one,
+                           .factor = {.text = text, .power = 1.0},
                            .literal = true};
 }
 
@@ -260,7 +260,8 @@ static struct Quantity parse_derivative(struct Parser *parser) {
       FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
            is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, place.kinds));
   if (parser->failed) return nothing;
-  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(value.dimension, unit_of("s"), -1.0)};
+  return (struct Quantity){
+      .node = derivative, .dimension = dimension_multiply(value.dimension, unit_of("s"), -1.0), .factor = value.factor};
 }
 
 static struct Quantity parse_table(struct Parser *parser, const struct Table *table, const char *name) {

@@ -6,12 +6,32 @@
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/expressions/number_units.h"
 #include "read/names/branches.h"
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
   char *unit = unit_text(value.dimension);
-  FAIL(parser, "%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what, unit);
+  static const char message[] = "%s: unit mismatch: %s has the unit %s, expected 1 or rad";
+  if (!number_may_have_unit(parser->scope, current_line(parser), value, dimension_one, message, parser->place.what,
+                            what, unit))
+    FAIL(parser, message, parser->place.what, what, unit);
+}
+
+/* The unit of operands that do not agree: the one of a is kept, unless only a number in a could mend it. */
+static struct Dimension mended_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
+                                         const char *where) {
+  static const char message[] = "%s: unit mismatch: %s and %s in one %s; expected the same unit";
+  const char *what = parser->place.what, *first = unit_text(a.dimension), *second = unit_text(b.dimension);
+  long line = current_line(parser);
+  bool mends_b = number_may_have_unit(parser->scope, line, b, a.dimension, message, what, first, second, where);
+  if (mends_b) return a.dimension;
+  if (number_may_have_unit(parser->scope, line, a, b.dimension, message, what, first, second, where))
+    return b.dimension;
+  const char *hint = unit_hint(a.dimension);
+  FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit%s", what, first, second, where,
+       *hint != '\0' ? hint : unit_hint(b.dimension));
+  return a.dimension;
 }
 
 /* The dimension of a sum, a minimum and the like, whose operands must agree. */
@@ -19,12 +39,7 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
                                          const char *where) {
   if (a.literal) return b.dimension;
   if (b.literal) return a.dimension;
-  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) {
-    char *first = unit_text(a.dimension), *second = unit_text(b.dimension);
-    const char *hint = unit_hint(a.dimension);
-    FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit%s", parser->place.what, first, second,
-         where, *hint != '\0' ? hint : unit_hint(b.dimension));
-  }
+  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) return mended_dimension(parser, a, b, where);
   return a.dimension.known ? a.dimension : b.dimension;
 }
 
@@ -35,8 +50,10 @@ static void require_finite(struct Parser *parser, const char *what) {
 }
 
 static struct Quantity sum_with(struct Parser *parser, struct Quantity a, struct Quantity b, Node node) {
-  struct Quantity result = {
-      .node = node, .dimension = common_dimension(parser, a, b, "sum"), .literal = a.literal && b.literal};
+  struct Quantity result = {.node = node,
+                            .dimension = common_dimension(parser, a, b, "sum"),
+                            .factor = factor_of_sum(a, b),
+                            .literal = a.literal && b.literal};
   require_finite(parser, "a sum");
   return result;
 }
@@ -52,6 +69,7 @@ struct Quantity quantity_subtract(struct Parser *parser, struct Quantity a, stru
 struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, struct Quantity b) {
   struct Quantity result = {.node = multiply(parser->graph, a.node, b.node),
                             .dimension = dimension_multiply(a.dimension, b.dimension, 1.0),
+                            .factor = factor_of_product(a.factor, b.factor),
                             .literal = a.literal && b.literal};
   require_finite(parser, "a product");
   return result;
@@ -61,6 +79,7 @@ struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct
   if (b.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
   struct Quantity result = {.node = divide(parser->graph, a.node, b.node),
                             .dimension = dimension_multiply(a.dimension, b.dimension, -1.0),
+                            .factor = factor_of_product(a.factor, factor_raised(b.factor, -1.0)),
                             .literal = a.literal && b.literal};
   require_finite(parser, "a quotient");
   return result;
@@ -94,9 +113,11 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
                             .dimension = dimension_unknown,
                             .literal = base.literal && exponent.literal};
   check_power(parser, base.node, exponent.node);
-  if (graph_is_constant(parser->graph, exponent.node))
-    result.dimension = dimension_multiply(dimension_one, base.dimension, graph_value(parser->graph, exponent.node));
-  else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
+  double n = graph_value(parser->graph, exponent.node);
+  if (graph_is_constant(parser->graph, exponent.node)) {
+    result.dimension = dimension_multiply(dimension_one, base.dimension, n);
+    result.factor = factor_raised(base.factor, n);
+  } else if (dimension_agrees(base.dimension, dimension_one)) result.dimension = base.dimension;
   return result;
 }
 
@@ -123,7 +144,9 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
     return result;
   }
   struct Dimension common = has_two ? common_dimension(parser, a, b, operation_name(operation)) : a.dimension;
-  if (functions[operation].units == UNIT_KEPT) result.dimension = common;
+  if (functions[operation].units != UNIT_KEPT) return result;
+  result.dimension = common;
+  result.factor = has_two ? factor_of_sum(a, b) : a.factor;
   return result;
 }
 
@@ -131,8 +154,12 @@ static bool check_argument(struct Parser *parser, struct Dimension unit, const c
                            struct Quantity argument) {
   if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
   char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
-  FAIL(parser, "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s%s", parser->place.what, which,
-       name, actual, expected, unit_hint(argument.dimension));
+  static const char message[] = "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s%s";
+  const char *what = parser->place.what, *hint = unit_hint(argument.dimension);
+  if (number_may_have_unit(parser->scope, current_line(parser), argument, unit, message, what, which, name, actual,
+                           expected, ""))
+    return true;
+  FAIL(parser, message, what, which, name, actual, expected, hint);
   return false;
 }
 

@@ -19,6 +19,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->diagnostics = diagnostics;
   scope->names = names_create();
   scope->tables = names_create();
+  scope->warned_numbers = names_create();
   scope->prefix = "";
   return scope;
 }

@@ -22,6 +22,7 @@ struct Scope {
   size_t time_derivative_count;     /* of the symbols so far; branches make some without the scope */
   const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
   bool keeps_whole;                 /* the present expression stays whole */
+  struct Names *warned_numbers;     /* "file:line:number" of those that a warning has named */
   long table_line;                  /* where the present table is used */
   long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */
 };

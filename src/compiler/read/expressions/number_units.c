@@ -1,0 +1,55 @@
+#include "read/expressions/number_units.h"
+
+#include <ctype.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/names/definitions.h"
+
+/* Of two numbers the one with more digits is the likelier one to be measured: 9.81 and not 2. */
+struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second) {
+  if (first.text == NULL) return second;
+  return second.text != NULL && strlen(second.text) > strlen(first.text) ? second : first;
+}
+
+struct NumberFactor factor_raised(struct NumberFactor factor, double power) {
+  return (struct NumberFactor){.text = power != 0.0 ? factor.text : NULL, .power = factor.power * power};
+}
+
+struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second) {
+  if (first.literal) return second.factor;
+  if (second.literal) return first.factor;
+  return first.factor.text != NULL ? second.factor : first.factor;
+}
+
+/* The unit that the number must have so that the quantity has the one that is expected, where one is; the radian counts as 1. */
+static const char *missing_unit(struct Quantity quantity, struct Dimension expected) {
+  struct Dimension ratio = dimension_multiply(expected, quantity.dimension, -1.0);
+  struct Dimension unit = dimension_multiply(dimension_one, ratio, 1.0 / quantity.factor.power);
+  unit.exponent[RADIAN] = 0.0;
+  return dimension_is_whole(unit) ? unit_text(unit) : "...";
+}
+
+bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quantity, struct Dimension expected,
+                          const char *format, ...) {
+  const char *number = quantity.factor.text;
+  if (number == NULL) return false;
+  char *place = format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
+  if (definitions_are_waiting(scope->definitions) || names_find(scope->warned_numbers, place) != NULL) return true;
+  names_set(scope->warned_numbers, place, place);
+  va_list arguments;
+  va_start(arguments, format);
+  const char *problem = format_arguments(format, arguments), *unit = missing_unit(quantity, expected);
+  va_end(arguments);
+  bool is_constant = isalpha((unsigned char)*number) || *number == '_';
+  if (is_constant)
+    report_warning(scope->diagnostics, line, "%s; '%s' is a number without a unit: if it has one, add unit=\"%s\"",
+                   problem, number, unit);
+  else
+    report_warning(scope->diagnostics, line,
+                   "%s; %s is a number without a unit: if it has one, write it as <constant name=\"...\" value=\"%s\" "
+                   "unit=\"%s\"/>",
+                   problem, number, number, unit);
+  return true;
+}
