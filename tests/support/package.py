@@ -17,8 +17,10 @@ def assemble(folder):
     shutil.copytree(SCRIPTS / "animation", package / "animation", ignore=shutil.ignore_patterns("__pycache__"))
     (package / "bin").mkdir()
     (package / "runtime" / "scripts").mkdir(parents=True)
-    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "progress", "simulation", "sweep_words", "sweeping", "variables")}
+    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "progress", "simulation", "sweep_words", "sweep_worker", "sweeping", "variables")}
     files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
+    files |= {"runtime/scripts/sweep_runs.c": SCRIPTS / "sweep_runs.c", "runtime/include/fmi2.h": ROOT / "include" / "fmi2.h"}
+    (package / "runtime" / "include").mkdir()
     for name, source in files.items():
         shutil.copy(source, package / name)
     information = folder / "lagrange_fmu-1.dist-info"
