@@ -186,7 +186,7 @@ PLACES = [
     ("if (column[a - 1] > column[b - 1]) a--;", "if (column[a - 1] >= column[b - 1]) a--;", ctest("test_mass_matrix")),
     ("instance->prepared_is_stale = instance->solver_is_stale = true;\n  instance->told_early_reading", "instance->solver_is_stale = true;\n  instance->told_early_reading",
      pytest("test_state", f"restored_parameters and {PENDULUM}", "SimplePendulum")),
-    ('if (header.version != VERSION) return "they are of another version";', "", pytest("test_up_to_date", "another_version")),
+    ('if (header.version != VERSION) return "they come from another version";', "", pytest("test_up_to_date", "another_version")),
     ("if (fixed.kind != (int32_t)instance->kind) return", "if (false) return",
      pytest("test_state", "truncated_and_foreign", "SimplePendulum")),
     ("fixed->last_step.start <= fixed->last_step.end &&", "", pytest("test_state", "forged_states and StateFeedback", "StateFeedback")),

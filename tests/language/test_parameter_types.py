@@ -154,7 +154,7 @@ def test_given_in_an_include(tmp_path):
     ('<parameter name="a" type="Integer" start="true"/>', "start: unknown name 'true'"),
     ('<parameter name="a" type="Integer" start="2" unit="m"/>', "'a' has a unit and type=\"Integer\", which has none"),
     ('<parameter name="a" type="Boolean" start="2"/>', "'a': 2 is not a Boolean; expected true or false"),
-    ('<parameter name="a" type="Boolean" start="True"/>', "did you mean 'true'?"),
+    ('<parameter name="a" type="Boolean" start="True"/>', "did you mean 'true', in small letters?"),
     ('<parameter name="a" type="Boolean" start="true" min="0"/>', "'a': a Boolean has neither min nor max"),
     ('<parameter name="a" type="Bool" start="true"/>', "type=\"Bool\" of <parameter> is not known; expected Real, Integer or Boolean"),
     ('<parameter name="a" type="Integer" value="2"/>', "a <parameter> with a value and a type"),

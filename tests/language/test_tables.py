@@ -155,9 +155,9 @@ def test_a_file_that_changes_is_built_anew(tmp_path):
 
 @pytest.mark.parametrize("table, message", [
     ("<table name='f' file='no.csv'/>", "the file 'no.csv' cannot be read: No such file or directory; expected columns of numbers"),
-    ("<table name='f' file='bad.csv'/>", "bad.csv:3: 'three 4' is no point; expected two numbers, the argument and the value"),
+    ("<table name='f' file='bad.csv'/>", "bad.csv:3: 'three 4' is not a point; expected two numbers, the argument and the value"),
     ("<table name='f' file='back.csv'/>", "back.csv:2: the point at 1 follows that at 1; expected points from left to right"),
-    ("<table name='f'>\n0 1\n1\n</table>", "system.xml:4: '1' is no point"),
+    ("<table name='f'>\n0 1\n1\n</table>", "system.xml:4: '1' is not a point"),
     ("<table name='f'><point x='0'/></table>", "<point> needs the attribute 'y'"),
     ("<table name='f'><point x='0' y='x'/><point x='1' y='2'/></table>", "y cannot depend on coordinates"),
     ("<table name='f' file='ok.csv' interpolation='cubic'/>", "interpolation=\"cubic\" of <table> is not known; expected monotone, spline or linear"),

@@ -214,7 +214,7 @@ def test_what_is_beside_the_equations(tmp_path):
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"units": {"q": "m"}}, "q is no parameter, input or coordinate of this LagrangesMethod; expected"),
+    ({"units": {"q": "m"}}, "q is not a parameter, input or coordinate of this LagrangesMethod; expected"),
     ({"constraints": ["rod", "wire"]}, "there are 2 names and 1 constraints; expected one for each, holonomic ones first"),
     ({"points": {"bob": (1,)}}, "the point bob has 1 coordinates; expected two or three"),
     ({"points": {"height": (1, 2)}}, "height is a point and an output; expected two names"),
@@ -246,9 +246,9 @@ UNEXPRESSED = {
     "floor(x) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.floor(X), [X]), {}),
     "the potential energy: I cannot be expressed": (LagrangesMethod(X.diff() ** 2 - sm.I * X, [X]), {}),
     "is an acceleration; expected energies": (LagrangesMethod(X.diff() ** 2 + X.diff(t, 2), [X]), {}),
-    "there is no value of m; expected parameters={m: 1.0, ...}": (LagrangesMethod(m * X.diff() ** 2, [X]), {}),
-    "q is no parameter of this LagrangesMethod; expected m": (LagrangesMethod(m * X.diff() ** 2, [X]), {m: 1, "q": 2}),
-    "m: one is no number": (LagrangesMethod(m * X.diff() ** 2, [X]), {m: "one"}),
+    "no value is given for m; expected parameters={m: 1.0, ...}": (LagrangesMethod(m * X.diff() ** 2, [X]), {}),
+    "q is not a parameter of this LagrangesMethod; expected m": (LagrangesMethod(m * X.diff() ** 2, [X]), {m: 1, "q": 2}),
+    "m: one is not a number": (LagrangesMethod(m * X.diff() ** 2, [X]), {m: "one"}),
 }
 
 
@@ -267,7 +267,7 @@ def test_other_mistakes(tmp_path):
     for words, message in (
         ({"path": "2.xml"}, "'2' cannot name a system; expected a file of letters"),
         ({"speeds": dynamicsymbols("u v")}, "there are 2 speeds and 1 coordinates; expected one for each"),
-        ({"start": {dynamicsymbols("y"): 1}}, r"y\(t\) is no coordinate, velocity or input of this LagrangesMethod; expected x\(t\), Derivative"),
+        ({"start": {dynamicsymbols("y"): 1}}, r"y\(t\) is not a coordinate, velocity or input of this LagrangesMethod; expected x\(t\), Derivative"),
     ):
         with pytest.raises(Problem, match=message):
             from_sympy(method, **{"path": tmp_path / "Good.xml", "parameters": {}} | words)

@@ -171,8 +171,8 @@ def test_solvers_of_sundials(tmp_path):
 
 
 @pytest.mark.parametrize("words, message", [
-    (["build", "nothing.xml"], "there is no file nothing.xml; expected that of a <system>"),
-    (["check", "."], "there is no file system.xml; expected that of a <system>"),
+    (["build", "nothing.xml"], "there is no file nothing.xml; expected a system in XML"),
+    (["check", "."], "there is no file system.xml; expected a system in XML"),
     (["check", "bad.xml"], "bad.xml:2: the potential: unknown name 'q'"),
     (["build", "good.xml", "--platforms", "win46"], "the platform 'win46' is not known; expected linux64, win64, darwin64"),
     (["build", "good.xml", "--solver", "euler"], "--solver euler is not known; expected taylor,"),

@@ -31,7 +31,7 @@ def system_file(system):
     if path.is_dir():
         path = path / "system.xml"
     if not path.is_file():
-        raise Problem(f"there is no file {path}; expected that of a <system> or a robot in URDF, or its folder with a system.xml in it")
+        raise Problem(f"there is no file {path}; expected a system in XML, a robot in URDF, or a folder with a system.xml in it")
     return path
 
 

@@ -37,7 +37,7 @@ class Result(np.ndarray):
         try:
             return figure_of(self.description, self)
         except ModuleNotFoundError:
-            raise Problem("matplotlib is not installed; expected it after pip install matplotlib") from None
+            raise Problem("matplotlib is not installed; it comes with pip install matplotlib") from None
 
     def to_pandas(self) -> Any:
         """A DataFrame with time, in s, as its index; needs pip install pandas."""

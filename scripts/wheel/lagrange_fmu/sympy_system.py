@@ -97,7 +97,7 @@ def _by_quantity(given, quantities, kind):
     known = {str(quantity): quantity for quantity in quantities}
     for key in given:
         if str(key) not in known:
-            raise Problem(f"{key} is no {kind} of this LagrangesMethod; expected {', '.join(known)}")
+            raise Problem(f"{key} is not a {kind} of this LagrangesMethod; expected {', '.join(known)}")
     return {known[str(key)]: value for key, value in given.items()}
 
 
@@ -108,7 +108,7 @@ def _values(given, quantities, kind):
         try:
             values[key] = repr(float(value))
         except (TypeError, ValueError):
-            raise Problem(f"{key}: {value} is no number") from None
+            raise Problem(f"{key}: {value} is not a number") from None
     return values
 
 
@@ -117,7 +117,7 @@ def _variables(content, parameters, start, units):
     values = _values(parameters, content.parameters, "parameter")
     missing = [str(symbol) for symbol in content.parameters if symbol not in values]
     if missing:
-        raise Problem(f"there is no value of {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
+        raise Problem(f"no value is given for {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
     start = {content.velocity_of.get(key, key): value for key, value in start.items()}
     start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
     units = _by_quantity(units, [*content.parameters, *content.inputs, *content.coordinates], "parameter, input or coordinate")

@@ -15,7 +15,7 @@ enum { FRICTION_FLIP_LIMIT = 500 };
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
 
-static const char neither[] = "a friction changes to and fro there without end";
+static const char neither[] = "a friction switches back and forth there without end";
 
 /* What decides on the mode of a friction. */
 struct FrictionState {
@@ -88,7 +88,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
 
 static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
   log_message(settlement->instance, STATUS_DISCARD,
-              "time %g: the friction '%s' neither sticks nor slides; expected a stiction that is not less than the "
+              "time %g: the friction '%s' neither sticks nor slides; expected a stiction of at least the "
               "force while it slides",
               settlement->time, settlement->switches->frictions[friction].name);
   return neither;
@@ -163,9 +163,9 @@ static const char *check_frictions(const struct Settlement *settlement) {
     if (!(force < -settlement->noise[place])) continue;
     log_message(
         settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
-        "time %g: the force of the friction '%s' is %g; expected none below 0, as the abs of what it follows from",
+        "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...) of what it depends on",
         settlement->time, settlement->switches->frictions[i].name, force);
-    return "friction pushes";
+    return "the force of a friction is negative";
   }
   return NULL;
 }

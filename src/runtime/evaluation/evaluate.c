@@ -16,7 +16,7 @@ void log_singularity(const struct Instance *instance, enum Status status, double
   if (instance->singular == 0) {
     log_message(
         instance, status,
-        "time %g: the accelerations are not finite, as where something is divided by 0, or exp or cosh takes a large "
+        "time %g: the accelerations are not finite, as when something is divided by 0, or exp or cosh gets a large "
         "argument; try other parameters, inputs or start values",
         time);
     return;

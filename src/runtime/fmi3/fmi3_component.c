@@ -42,7 +42,7 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
     unsigned place = place_of_reference(references[i]);
     if (place < lagrangian.variable_count && is_intermediate(&lagrangian.variables[place])) continue;
     log_write(log, STATUS_ERROR,
-              "%s: the value reference %u among requiredIntermediateVariables is of no variable with "
+              "%s: the value reference %u among requiredIntermediateVariables does not belong to a variable with "
               "intermediateUpdate=\"true\"",
               function, references[i]);
     return false;

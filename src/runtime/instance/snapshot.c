@@ -143,16 +143,17 @@ const char *snapshot_fault(const struct Instance *instance, const void *block, s
   struct Header header;
   if (size < sizeof header) return "they are cut off";
   memcpy(&header, block, sizeof header);
-  if (memcmp(header.magic, magic, sizeof magic) != 0) return "they are no state of such an FMU";
-  if (header.version != VERSION) return "they are of another version";
-  if (strncmp(header.guid, lagrangian.guid, sizeof header.guid) != 0) return "they are of another model";
+  if (memcmp(header.magic, magic, sizeof magic) != 0) return "they are not a state of this FMU";
+  if (header.version != VERSION) return "they come from another version";
+  if (strncmp(header.guid, lagrangian.guid, sizeof header.guid) != 0) return "they come from another model";
   if (size != snapshot_size()) return "they have another length";
   const char *situation = (const char *)block + sizeof header;
   struct Header expected = header_of(situation);
   struct Situation fixed;
   memcpy(&fixed, situation, sizeof fixed);
   if (memcmp(&header, &expected, sizeof header) != 0) return "they are damaged";
-  if (fixed.kind != (int32_t)instance->kind) return "they are of the other kind of instance";
+  if (fixed.kind != (int32_t)instance->kind)
+    return "they come from an instance of the other kind, model exchange or co-simulation";
   return is_possible(instance, &fixed, situation) ? NULL : "no instance can have saved what they hold";
 }
 

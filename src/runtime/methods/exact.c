@@ -283,11 +283,11 @@ static const char *advance(struct Instance *instance, const struct Communication
   span->end = is_whole ? step->end : span->start + possible;
   if (!is_whole && (possible == 0.0 || !compute_next(instance, exact, possible))) {
     memcpy(exact->next, instance->state, lagrangian.state_count * sizeof(double));
-    return "the motion grows beyond all numbers";
+    return "the motion grows without bound";
   }
   memcpy(instance->saved, exact->next_low, lagrangian.state_count * sizeof(double));
   instance->situation->statistics[STATISTIC_STEPS]++;
-  return is_whole ? NULL : "the motion grows beyond all numbers";
+  return is_whole ? NULL : "the motion grows without bound";
 }
 
 /* A step has no states inside: its end is all that advance() computes. */

@@ -243,10 +243,10 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* one of an open contact has no slope */
-      log_message(
-          instance, STATUS_DONE,
-          "time %g: the constraint '%s' follows from the others; their forces are the least that carry the load",
-          instance->situation->time, lagrangian.constraints.names[j]);
+      log_message(instance, STATUS_DONE,
+                  "time %g: the constraint '%s' follows from the others; of all forces that carry the load, theirs are "
+                  "the smallest",
+                  instance->situation->time, lagrangian.constraints.names[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what) {

@@ -31,7 +31,7 @@ static void keep_message(void *receiver, enum Status status, const char *message
 static void tell_impossible_start(struct Instance *instance, const char *reason) {
   if (instance->told_impossible_start) return;
   log_message(instance, STATUS_WARNING,
-              "what is read in initialization mode is as it was set, since the simulation cannot start there: %s",
+              "values read in initialization mode are as they were set, since the simulation cannot start there: %s",
               reason);
   instance->told_impossible_start = true;
 }

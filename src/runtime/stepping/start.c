@@ -26,7 +26,7 @@ enum Status start_find(struct Instance *instance) {
   if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance)) return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
   log_singularity(instance, STATUS_ERROR, instance->situation->time);
-  return refuse_call(instance, "the system has no acceleration at its start values");
+  return refuse_call(instance, "the accelerations cannot be computed at the start values");
 }
 
 bool start_step(struct Instance *instance) {

@@ -60,7 +60,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
       "maxSteps of <solver> in system.xml %s",
       lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
       lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps : (long)((double)step->count * WORK_LIMIT / work),
-      lagrangian.steps.max_steps > 0 ? "sets" : "can set: without it after so many as take some 10 s");
+      lagrangian.steps.max_steps > 0 ? "sets" : "can change: by default it is as many as take about 10 s");
 }
 
 /* What is known on the way through a communication step. */
@@ -83,9 +83,10 @@ static double work_in_step(const struct Instance *instance, const struct Communi
 /* NULL, or why the solver gives up. */
 static const char *excess(const struct CommunicationStep *step, double work) {
   if (lagrangian.steps.max_steps == 0)
-    return work < WORK_LIMIT ? NULL
-                             : "it has taken as many steps within one communication step as take some 10 s; expected a "
-                               "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
+    return work < WORK_LIMIT
+               ? NULL
+               : "it has taken as many steps within one communication step as take about 10 s; expected a "
+                 "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
   return step->count < lagrangian.steps.max_steps
              ? NULL
              : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
@@ -159,8 +160,8 @@ static void log_weakest(struct Instance *instance, double time) {
   if (name != NULL && (laws == NULL || !laws->holds_at_times(name)))
     log_message(
         instance, STATUS_DISCARD,
-        "time %g: of the constraints, '%s' has least hold on the motion here, as where a mechanism comes to the "
-        "limit of its reach; constraints also end where they contradict each other, jump or have a kink",
+        "time %g: of the constraints, '%s' holds the motion most weakly here, as happens at the limit of a mechanism's "
+        "reach; constraints also fail where they contradict each other, jump or have a kink",
         time, name);
 }
 
@@ -214,8 +215,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* what was told already stays */
   if (law != NULL) return stop(instance, step, law, true, *reached);
-  return stop(instance, step, problem != NULL ? problem : "the motion grows beyond all numbers", ends_at_event,
-              *reached);
+  return stop(instance, step, problem != NULL ? problem : "the motion grows without bound", ends_at_event, *reached);
 }
 
 struct Advance {
@@ -262,7 +262,8 @@ static enum Status check_step(struct Instance *instance, double time, double siz
   if (time + size <= time)
     return refuse_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
   if (!isfinite(time + size))
-    return refuse_call(instance, "step %g from time %g ends beyond all numbers; expected a shorter one", size, time);
+    return refuse_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
+                       time);
   double excess = fmax(rounding, rounding_of_sum(situation, time + size, size));
   if (situation->stop_time_defined && time + size - situation->stop_time > excess)
     return refuse_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
@@ -282,7 +283,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   struct Situation *situation = instance->situation;
   if (check_step(instance, time, size) != STATUS_DONE) return STATUS_ERROR;
   if (evaluate_prepare(instance) != STATUS_DONE)
-    return refuse_call(instance, "the parameters leave no acceleration at time %g", time);
+    return refuse_call(instance, "the accelerations cannot be computed with these parameters at time %g", time);
   situation->time = time;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));

@@ -38,7 +38,7 @@ def run(arguments):
     try:
         from ..sweeping import sweep
     except ModuleNotFoundError as missing:
-        raise Problem(f"{missing.name} is not installed; expected it after pip install pyarrow") from None
+        raise Problem(f"{missing.name} is not installed; it comes with pip install pyarrow") from None
     from ..running import fmu_of
 
     with fmu_of(arguments.system) as fmu:

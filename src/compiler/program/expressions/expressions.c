@@ -161,7 +161,7 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
                  "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
   if (model->switches.contact_count + model->switches.friction_count + model->switches.event_count > 0)
     report_error(diagnostics, model->solver.line,
-                 "the method 'exact' knows no events; expected another method for a system that switches");
+                 "the method 'exact' cannot have events; expected another method for a system that switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
   if (expressions->equations->has_work)
     report_error(diagnostics, model->solver.line,

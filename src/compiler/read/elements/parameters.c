@@ -64,7 +64,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
   bool is_true = strcmp(text, "true") == 0, is_false = strcmp(text, "false") == 0;
   if (variable->type == TYPE_BOOLEAN && (is_true || is_false)) variable->start = is_true ? 1.0 : 0.0;
   else if (variable->type == TYPE_BOOLEAN && (strcasecmp(text, "true") == 0 || strcasecmp(text, "false") == 0))
-    report_at(reader, node, "'%s': did you mean '%s'? It is written so", text,
+    report_at(reader, node, "'%s': did you mean '%s', in small letters?", text,
               strcasecmp(text, "true") == 0 ? "true" : "false");
   else if (!number_in(reader, node, name, text, &variable->start)) variable->start = 0.0;
 }

@@ -135,7 +135,8 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_at(reader, node, "a <stop> of '%s', which is no coordinate; expected one", name != NULL ? name : "");
+    report_at(reader, node, "a <stop> of '%s', which is not a coordinate; expected the name of one",
+              name != NULL ? name : "");
   static const char *const ends[] = {"min", "max"};
   size_t number = reader->present->number;
   bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no right name then */
@@ -169,7 +170,8 @@ static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantit
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_at(reader, node, "a <friction> of '%s', which is no coordinate; expected one", name != NULL ? name : "");
+    report_at(reader, node, "a <friction> of '%s', which is not a coordinate; expected the name of one",
+              name != NULL ? name : "");
   else {
     const struct Variable *variable = &reader->model->velocities.items[symbol->index];
     *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
@@ -193,7 +195,7 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
     const struct Symbol *symbol = graph_symbol_of(graph, gradient.symbols[i]);
     if ((size_t)symbol->index < reader->model->coordinates.count)
       report_error(reader->diagnostics, line,
-                   "the %s of a friction holds '%s'; expected the forces of contacts and constraints alone, as in "
+                   "the %s of a friction depends on '%s'; expected the forces of contacts and constraints alone, as in "
                    "mu*ground.force",
                    what, symbol->name);
     else if (graph_depends_on(graph, gradient.values[i], ACCELERATION))
@@ -224,7 +226,8 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   struct Quantity velocity = {.node = ZERO};
   if (!read_velocity(reader, node, &velocity)) return;
   if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
-    report_at(reader, node, "the velocity of a <friction> holds no velocity; expected an expression such as v - vBelt");
+    report_at(reader, node,
+              "the velocity of a <friction> depends on no velocity; expected an expression such as v - vBelt");
   struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
   friction->velocity = velocity.node;
   if (!read_friction_forces(reader, node, unit, friction)) return;
@@ -269,9 +272,10 @@ void undisplace_branches(struct Reader *reader) {
     if (!graph_depends_on(graph, branch->indicator, DISPLACEMENT)) continue;
     branch->indicator = without_displacements(reader, branch->line, branch->function, branch->indicator);
     if (simplify_fraction(graph, branch->indicator) == ZERO)
-      report_error(reader->diagnostics, branch->line,
-                   "%s turns where the displacements are 0, so that the force of reaction has no value there; expected "
-                   "it to turn elsewhere",
-                   branch->function);
+      report_error(
+          reader->diagnostics, branch->line,
+          "%s has its kink where the displacements are 0, so that the force of reaction has no value there; expected "
+          "the kink elsewhere",
+          branch->function);
   }
 }

@@ -50,7 +50,7 @@ static void take_line(struct TableLines *lines, const char *line) {
   if (count == 2 && *rest == '\0') append_point((struct Points *)lines, numbers[0], numbers[1]);
   else if (!lines->is_heading) {
     report_error(lines->reader->diagnostics, lines->line,
-                 "'%.40s' is no point; expected two numbers, the argument and the value, such as 0.5 2", line);
+                 "'%.40s' is not a point; expected two numbers, the argument and the value, such as 0.5 2", line);
     lines->wrong = true;
   }
 }

@@ -186,7 +186,7 @@ static void check_numbers(struct Connection *connection, const struct Link *link
   if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
   report_error(
       connection->diagnostics, link->line,
-      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is no finite number; "
+      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is not a finite number; "
       "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
       link->name, link->carrier->name);
 }

@@ -128,7 +128,7 @@ static const char *advance(struct Instance *instance, const struct Communication
     erk->trial = 0.1 * fmin(erk->trial, rest);
     N_VScale(1.0, erk->before, state);
     if (solver_rests(before, erk->trial)) return "the equations have no solution there, or steps would be too short";
-    if (!start_method(instance, erk, before, erk->trial, step->end)) return "SUNDIALS does not start again";
+    if (!start_method(instance, erk, before, erk->trial, step->end)) return "SUNDIALS cannot be restarted there";
   }
   ERKStepGetCurrentStep(erk->arkode, &erk->trial);
   situation->suggested_step = erk->trial;
