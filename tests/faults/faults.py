@@ -117,10 +117,10 @@ PLACES = [
     ("isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time", "0.0", broken("time that begins later"), "start_values"),
     # The compiler: what it reads
     ('require_dimensionless(parser, exponent, "an exponent");', "", broken("unit of an exponent")),
-    ("if (functions[operation].units == UNIT_KEPT) result.dimension", "result.dimension",
+    ("if (functions[operation].units != UNIT_KEPT) return result;", "",
      broken("unit of an angle")),
     ("if (a.literal) return b.dimension;", "", broken("unit of a minimum")),
-    ("base.dimension, graph_value(parser->graph, exponent.node));", "base.dimension, 1.0);",
+    ("dimension_multiply(dimension_one, base.dimension, n);", "dimension_multiply(dimension_one, base.dimension, 1.0);",
      broken("unit of a power")),
     ("if (head.first > head.last) skip_to_end(parser);", "", pytest("test_language", "empty_sum")),
     ("if (!parser->failed && scope_find(parser->scope, head.index) != NULL)", "if (false)", broken("sum over a name")),

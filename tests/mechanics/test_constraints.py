@@ -431,7 +431,7 @@ def test_limit_of_a_mechanism(open_fmu):
     with instance.fails(DISCARD, "stopped at time 4.88"):
         instance.step(0.1)
     told = " ".join(text for status, _, text in instance.messages if status == 2)
-    assert ("'pull'" in told or "'line'" in told) and "limit of its reach" in told
+    assert ("'pull'" in told or "'line'" in told) and "limit of a mechanism's reach" in told
     assert all(np.isfinite(instance.get("p", "q", "vp", "vq")))
 
 
