@@ -106,14 +106,18 @@ def test_row_of_accelerations():
 
 
 def test_accelerations_without_pinocchio(monkeypatch, tmp_path):
-    """A sentence in its place: without the package, the compiler or a header, and in a quick report that would have to compile it."""
+    """
+    A sentence in its place: without the package, the compiler or a header, wherever a release of Debian has it, and in a quick
+    report that would have to compile it.
+    """
     monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
-    monkeypatch.setattr(accelerations, "HEADERS", [(tmp_path, "libeigen3-dev")] * 2)
+    monkeypatch.setattr(accelerations, "HEADERS", [("here.h", [tmp_path / "elsewhere", tmp_path], "libeigen3-dev")] * 2)
+    (tmp_path / "here.h").touch()
     monkeypatch.setattr(accelerations.shutil, "which", lambda name: "/usr/bin/g++")
     with pytest.raises(Missing, match="takes minutes to compile"):
         accelerations.pinocchio_program(True)
-    monkeypatch.setattr(accelerations, "HEADERS", [(tmp_path / "eigen3", "libeigen3-dev")])
-    with pytest.raises(Missing, match="needs .*eigen3 .*libeigen3-dev"):
+    monkeypatch.setattr(accelerations, "HEADERS", [("Eigen/Core", [tmp_path], "libeigen3-dev")] * 2)
+    with pytest.raises(Missing, match="needs Eigen/Core .*libeigen3-dev"):
         accelerations.pinocchio_program(False)
     monkeypatch.setattr(accelerations.shutil, "which", lambda name: None)
     with pytest.raises(Missing, match="needs g\\+\\+"):

@@ -19,7 +19,10 @@ ROBOTS = [
     ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
 ]
 ROUND = 0.05  # seconds of one program in one round
-HEADERS = [(Path("/usr/include/eigen3"), "libeigen3-dev"), (Path("/usr/include/urdfdom_headers"), "liburdfdom-headers-dev")]
+# Of each package a header, and the folders where releases of Debian have it.
+SYSTEM = Path("/usr/include")
+HEADERS = [("Eigen/Core", [SYSTEM / "eigen3"], "libeigen3-dev"),
+           ("urdf_model/model.h", [SYSTEM / "urdfdom_headers", SYSTEM], "liburdfdom-headers-dev")]  # fmt: skip
 # Pinocchio's headers have lists longer than Boost's preprocessed ones. Without -march=native, with which the library is not built.
 FLAGS = ["-O3", "-DNDEBUG", "-std=c++17", "-DPINOCCHIO_WITH_URDFDOM", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
          "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]  # fmt: skip
@@ -66,6 +69,14 @@ def our_program(name, path, base):
     return program
 
 
+def folder_of(header, folders, package):
+    """Where a header is installed."""
+    found = next((folder for folder in folders if (folder / header).exists()), None)
+    if found is None:
+        raise Missing(f"Pinocchio's times are not here: its program needs {header} (Debian's {package}).")
+    return found
+
+
 def pinocchio_program(quick):
     """Compiled once, which takes minutes: too long for a quick report."""
     program, source, folder = FOLDER / "aba", SOURCES / "aba.cpp", prefix()
@@ -73,13 +84,12 @@ def pinocchio_program(quick):
         return program
     if shutil.which("g++") is None:
         raise Missing("Pinocchio's times are not here: its program needs g++, which is not installed.")
-    for headers, package in HEADERS:
-        if not headers.exists():
-            raise Missing(f"Pinocchio's times are not here: its program needs {headers} (Debian's {package}).")
+    eigen, robots = (folder_of(*header) for header in HEADERS)
     if quick:
         raise Missing("Pinocchio's times are not here: its program takes minutes to compile, which a report without --quick does once.")
     FOLDER.mkdir(parents=True, exist_ok=True)
-    includes = [f"-I{path}" for path in (HEADERS[0][0], folder / "include", folder / "include" / "urdfdom", HEADERS[1][0])]
+    includes = [f"-I{path}" for path in (eigen, folder / "include", folder / "include" / "urdfdom")]
+    includes += [f"-I{robots}"] if robots != SYSTEM else []  # it is searched last anyway
     run("g++", *FLAGS, *includes, source, "-o", program, f"-L{folder}/lib", *LIBRARIES, f"-Wl,-rpath,{folder}/lib")
     return program
 
