@@ -56,6 +56,14 @@ class Control {
     this.slider.value = String(1000 * Math.min(1, Math.max(0, share)));
   }
 
+  // A value was not taken: shows the one that holds, unless another was chosen meanwhile, and why.
+  refuse(words, value, held) {
+    if (this.value === value) this.value = held;
+    this.show();
+    this.say(words);
+  }
+
+  // Until the next value is taken.
   say(words) {
     this.words.textContent = words;
   }

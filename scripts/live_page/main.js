@@ -27,7 +27,17 @@ async function load(text) {
   });
 }
 
-const order = (name, content = {}) => worker.postMessage({ name, ...content });
+let resetDue = null; // the timer of a reset that waits for more to be set
+
+// All but what is set finds a reset done that was due.
+function order(name, content = {}) {
+  if (resetDue !== null && name !== "set") {
+    clearTimeout(resetDue);
+    resetDue = null;
+    if (name !== "reset") worker.postMessage({ name: "reset" });
+  }
+  worker.postMessage({ name, ...content });
+}
 
 // The value of a formula of parameters; NaN where it holds more than that.
 function valueOf(formula) {
@@ -73,12 +83,11 @@ const answers = {
     setPlaying(false);
   },
   accepted({ about }) {
-    if (about === "start") for (const control of controls.values()) control.say("");
-    else controls.get(about)?.say("");
+    controls.get(about)?.say("");
     say("");
   },
-  refused({ words, about }) {
-    if (controls.has(about)) controls.get(about).say(words);
+  refused({ words, about, value, held }) {
+    if (controls.has(about)) controls.get(about).refuse(words, value, held);
     else say(words);
   },
   ran(message) {
@@ -117,20 +126,12 @@ function addControls() {
   }
 }
 
-let waiting = false;
-
 function set(place, value) {
   order("set", { place, value });
   const { role, isFixed } = description.variables[place];
-  if ((role !== "start" && !isFixed) || waiting) return;
+  if ((role !== "start" && !isFixed) || resetDue !== null) return;
   // Seen at once where nothing has moved yet, or at the next start.
-  if (history.length <= 1) {
-    waiting = true;
-    setTimeout(() => {
-      waiting = false;
-      order("reset");
-    }, 50);
-  }
+  if (history.length <= 1) resetDue = setTimeout(() => order("reset"), 50);
 }
 
 // The arrow keys push the first two inputs as long as they are held.

@@ -17,9 +17,9 @@ let saved = [], free = []; // [time, a state for each FMU]; states whose places 
 
 const tell = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
-function refuse(problem, about) {
+function refuse(problem, content = {}) {
   if (!(problem instanceof Refusal)) throw problem;
-  tell("refused", { words: problem.message, about });
+  tell("refused", { words: problem.message, ...content });
 }
 
 // No longer than the step that the author gave, and 30 of them a second to see.
@@ -160,7 +160,7 @@ const orders = {
       sample(); // which it may refuse only then
       tell("accepted", { about: place });
     } catch (problem) {
-      refuse(problem, place);
+      refuse(problem, { about: place, value, held: earlier[0] });
       fmus.forEach((fmu, i) => {
         values[i].set(place, earlier[i]);
         fmu.restore(kept[i]);
@@ -169,15 +169,15 @@ const orders = {
     if (!playing) tellNow(true);
   },
   // Begins anew, with what was set meanwhile.
-  reset({ set = [], about }) {
+  reset({ set = [] }) {
     for (const [place, value] of set) values[0].set(place, value);
     try {
       startAnew();
       tellNow(true);
-      tell("accepted", { about: "start" });
+      tell("accepted");
     } catch (problem) {
       pause();
-      refuse(problem, "start");
+      refuse(problem);
     }
   },
   ghost({ differences }) {
