@@ -183,13 +183,18 @@ def test_solvers_of_sundials(tmp_path):
     (["new", "3D"], "'3D' cannot name a system; expected letters, digits and _"),
     (["new", "good"], "good.xml is already there; expected another name"),
     (["make"], "invalid choice: 'make' (choose from"),
-    ([], "the following arguments are required: COMMAND"),
 ])  # fmt: skip
 def test_mistakes(words, message, tmp_path):
     (tmp_path / "good.xml").write_text('<system name="Good"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/></system>')
     (tmp_path / "bad.xml").write_text('<system name="Bad"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/>\n<potential>q</potential></system>')
     result = wheel.run(*words, cwd=tmp_path)
     assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr
+
+
+def test_no_words_show_the_help(tmp_path):
+    """As with pip: somebody who types the command alone asks what it can do."""
+    shown = succeed(cwd=tmp_path)
+    assert shown == succeed("--help", cwd=tmp_path) and "linearize" in shown
 
 
 def test_a_likely_mistake_is_a_warning(tmp_path):
