@@ -37,8 +37,11 @@ REFUSED = {
                 '<event when="time &gt; 0.4"><set mode="on">1</set></event>', "an event sets modes so that the constraints do not hold"),
     "ToAndFro": ('<force coordinate="x">-sign(x + v*abs(v)/2)</force><solver maxSteps="5000"/>',
                  r"there were \d+ events in the step, the last of (abs|sign), line \d+"),
+    "DryBySign": ('<force coordinate="x">1 - 3*sign(v - 0.2)</force>', r"sign, line \d+ of system.xml, jumps back and forth there"),
 }  # fmt: skip
 FINE = {
+    # A force equal to the stiction moves nothing.
+    "AtTheLimit": ('<friction name="F" coordinate="x" force="1" stiction="2"/><force coordinate="x">2</force>', (1, 0.5)),
     "MovedTogether": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set>'
                       '<set coordinate="y">1</set></event>', (2, 1)),
     # The law of the impact is the author's: together they go on, at half the velocity of 0.4 of that along x.

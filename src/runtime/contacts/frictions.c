@@ -62,9 +62,8 @@ static double mode_without_force(const struct FrictionState *state) {
 
 /* Of one that sticks. */
 static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
-  /* An importer comes to a zero or past it, and does not tell whose. */
-  bool is_reached = state->is_hit || (settlement->occasion == IN_EXCHANGE && fabs(state->force) >= state->stiction);
-  bool slips = fabs(state->force) > state->stiction || (is_reached && state->is_first && !settlement->jumped);
+  /* An importer comes past the limit: at the limit itself it sticks. */
+  bool slips = fabs(state->force) > state->stiction || (state->is_hit && state->is_first && !settlement->jumped);
   return slips ? (state->force > 0.0 ? 1.0 : -1.0) : 0.0;
 }
 

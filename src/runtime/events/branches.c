@@ -8,7 +8,10 @@
 
 enum { FLIP_LIMIT = 8 };
 
-static const char without_end[] = "a mode changes to and fro there without end";
+static const char without_end[] = "a mode changes back and forth there without end";
+
+/* In s: an importer who is back at the zero sooner would get no further. */
+static const double soonest_return = 1e-6;
 
 static double sign_with_noise(double value, double noise) {
   return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
@@ -55,8 +58,8 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
 static const char *refuse_branch(const struct Settlement *settlement, size_t branch) {
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
   log_message(
-      settlement->instance, STATUS_DISCARD,
-      "time %g: %s, line %ld of system.xml, jumps to and fro there: on either side of its jump the motion leads "
+      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+      "time %g: %s, line %ld of system.xml, jumps back and forth there: on either side of its jump the motion leads "
       "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
       settlement->time, facts->function, facts->line);
   return without_end;
@@ -71,8 +74,23 @@ const char *branches_switch(struct Settlement *settlement, bool sides, bool *swi
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
     if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
     continuity_note(settlement, i);
+    settlement->rate[i] = settlement->value[branch_rate_place(switches, i)];
     settlement_set_mode(settlement, switches->branches[i].mode, mode);
     *switched = true;
+  }
+  return NULL;
+}
+
+const char *branches_check(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  if (settlement->occasion != IN_EXCHANGE || settlement->jumped || settlement->set_mode) return NULL;
+  for (size_t i = 0; i < switches->branch_count; i++) {
+    if (settlement->flips[i] == 0.0) continue;
+    size_t place = branch_rate_place(switches, i);
+    double mode = mode_of(settlement, switches->branches[i].mode), noise = settlement->noise[place];
+    double rate = settlement->value[place];
+    bool leads_back = mode * settlement->rate[i] > noise && mode * rate < -noise;
+    if (leads_back && fabs(settlement->value[i]) <= soonest_return * fabs(rate)) return refuse_branch(settlement, i);
   }
   return NULL;
 }

@@ -7,6 +7,9 @@
 /* Switches those of pieces, or the sides; *switched where any does. NULL, or the reason why one cannot. */
 const char *branches_switch(struct Settlement *settlement, bool sides, bool *switched);
 
+/* NULL, or the reason why an importer would come to a zero again and again: both sides of it lead back to it. */
+const char *branches_check(const struct Settlement *settlement);
+
 /* As the signs of the start values say. False where there are no accelerations. */
 bool branches_begin(struct Settlement *settlement);
 

@@ -32,7 +32,7 @@ static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
 static const char flutter[] = "a contact opens and closes there without end";
 static const char too_close[] = "events lie closer there than can be told";
-static const char no_modes[] = "the parameters leave no acceleration there";
+static const char no_modes[] = "with these parameters there is no acceleration there";
 
 /* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
 static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
@@ -98,7 +98,7 @@ static const char *stop_at_event(struct Instance *instance, struct Communication
  */
 static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
                               size_t indicator) {
-  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows beyond all numbers";
+  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
   const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
   instance->situation->last_step = (struct Span){time, time};
@@ -269,5 +269,5 @@ void switching_explain(struct Instance *instance, const struct CommunicationStep
   name_indicator(progress->indicator, name, sizeof name);
   log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of %s%s",
               instance->situation->last_step.end, progress->count, name,
-              is_branch ? " as where the motion follows a switch by going to and fro" : "");
+              is_branch ? " as where the motion follows a switch by going back and forth" : "");
 }

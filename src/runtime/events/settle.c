@@ -107,6 +107,7 @@ const char *settle(struct Instance *instance, double time, double *state, enum O
   settlement.indicator = indicator;
   const char *problem = begin_settlement(&settlement);
   if (problem == NULL) problem = settle_in_rounds(&settlement);
+  if (problem == NULL) problem = branches_check(&settlement);
   if (problem == NULL) problem = push(&settlement);
   if (problem == NULL) problem = continuity_check(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);

@@ -35,6 +35,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
   settlement->largest = next_of(work, &used, values);
   settlement->condition = next_of(work, &used, switches->event_count);
   settlement->flips = next_of(work, &used, indicators);
+  settlement->rate = next_of(work, &used, switches->branch_count);
   settlement->was_opened = next_of(work, &used, contacts);
   settlement->takes_part = next_of(work, &used, contacts + switches->friction_count);
   settlement->energy = next_of(work, &used, switches->energy_count);
