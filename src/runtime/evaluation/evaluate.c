@@ -5,9 +5,9 @@
 #include "instance/initial_state.h"
 #include "instance/event_laws.h"
 
-const char *evaluate_state_name(size_t state) {
+const char *evaluate_name(enum VariableKind kind, size_t index) {
   for (size_t i = 0; i < lagrangian.variable_count; i++)
-    if (lagrangian.variables[i].kind == VARIABLE_STATE && lagrangian.variables[i].index == state)
+    if (lagrangian.variables[i].kind == kind && lagrangian.variables[i].index == index)
       return lagrangian.variables[i].name;
   return "";
 }
@@ -22,7 +22,7 @@ void log_singularity(const struct Instance *instance, enum Status status, double
     return;
   }
   size_t coordinate = (size_t)instance->singular - 1;
-  const char *name = evaluate_state_name(coordinate);
+  const char *name = evaluate_name(VARIABLE_STATE, coordinate);
   log_message(instance, status,
               "time %g: the mass matrix is singular or not positive definite in coordinate '%s' (%s = %g); it depends "
               "on %s: keep these away from values where the coordinate is not defined",

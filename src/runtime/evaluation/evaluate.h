@@ -25,8 +25,8 @@ static inline double largest_scale(const double *state, size_t first) {
   return scale;
 }
 
-/* The name of the state with this index. */
-const char *evaluate_state_name(size_t state);
+/* The name of the variable of a kind with this index; "" for none. */
+const char *evaluate_name(enum VariableKind kind, size_t index);
 
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);

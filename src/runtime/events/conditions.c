@@ -1,5 +1,7 @@
 #include "events/conditions.h"
 
+#include "evaluation/evaluate.h"
+
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
   const double *value = settlement->value + assignment_place(switches, 0);
@@ -60,15 +62,15 @@ static bool happens(const struct Settlement *settlement, size_t event) {
   return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
 }
 
-/* Whether two events set the same. */
-static bool are_rivals(const struct SwitchTable *switches, const struct EventFacts *one,
-                       const struct EventFacts *other) {
+/* What two events both set; NULL for nothing. */
+static const struct AssignmentFacts *rival_assignment(const struct SwitchTable *switches, const struct EventFacts *one,
+                                                      const struct EventFacts *other) {
   for (size_t i = one->first_assignment; i < one->first_assignment + one->assignment_count; i++)
     for (size_t j = other->first_assignment; j < other->first_assignment + other->assignment_count; j++) {
       const struct AssignmentFacts *first = &switches->assignments[i], *second = &switches->assignments[j];
-      if (first->kind == second->kind && first->index == second->index) return true;
+      if (first->kind == second->kind && first->index == second->index) return first;
     }
-  return false;
+  return NULL;
 }
 
 /* Logs two events that happen at once and set the same. Whether there are any. */
@@ -76,12 +78,13 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t k = 0; k < event; k++) {
     if (!happens(settlement, k)) continue;
-    if (!are_rivals(switches, &switches->events[k], &switches->events[event])) continue;
-    log_message(
-        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
-        "time %g: the events of when=\"%s\" and when=\"%s\" happen at once and set the same; expected one event, or "
-        "conditions that keep them apart",
-        settlement->time, switches->events[k].when, switches->events[event].when);
+    const struct AssignmentFacts *rival = rival_assignment(switches, &switches->events[k], &switches->events[event]);
+    if (rival == NULL) continue;
+    log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+                "time %g: the events number %zu, when=\"%s\", and number %zu, when=\"%s\", happen at once and both set "
+                "'%s'; expected one event, or conditions that keep them apart",
+                settlement->time, k + 1, switches->events[k].when, event + 1, switches->events[event].when,
+                evaluate_name(rival->kind, rival->index));
     return true;
   }
   return false;

@@ -233,7 +233,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
     double after = instance->state[i];
     if (fabs(after - before[i]) <= share * scale_of(before, i)) continue;
     length += snprintf(text + length, sizeof text - (size_t)length, "%s%.60s from %.9g to %.9g", length > 0 ? ", " : "",
-                       evaluate_state_name(i), before[i], after);
+                       evaluate_name(VARIABLE_STATE, i), before[i], after);
   }
   if (length > 0)
     log_message(instance, STATUS_DONE, "time %g: moved to fulfil the constraints: %s%s", instance->situation->time,
@@ -306,7 +306,7 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
       refuse_call(instance,
                   "the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
                   "start value there, or fewer fixed coordinates",
-                  evaluate_state_name(i), instance->state[i], before[i]);
+                  evaluate_name(VARIABLE_STATE, i), instance->state[i], before[i]);
       return false;
     }
     instance->state[i] = before[i];
