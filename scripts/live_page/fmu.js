@@ -40,8 +40,9 @@ class Fmu {
     this.isNew = true;
   }
 
+  // Without the names of functions that refused: a reader of the page called none.
   said() {
-    const words = this.memory.text(this.wasm.messages()).trim();
+    const words = this.memory.text(this.wasm.messages()).trim().replace(/^fmi2\w+: /gm, "");
     this.wasm.forgetMessages();
     return words;
   }

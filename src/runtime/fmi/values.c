@@ -110,6 +110,16 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
                      variable->name, variable->follows_from);
 }
 
+static enum Status refuse_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+  if (isinf(variable->maximum))
+    return refuse_call(instance, "%g for '%s' is outside its range from %g upwards", value, variable->name,
+                       variable->minimum);
+  if (isinf(variable->minimum))
+    return refuse_call(instance, "%g for '%s' is outside its range up to %g", value, variable->name, variable->maximum);
+  return refuse_call(instance, "%g for '%s' is outside its range from %g to %g", value, variable->name,
+                     variable->minimum, variable->maximum);
+}
+
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
   const struct ScalarVariable *variable = check_reference(instance, reference, type);
   if (variable == NULL) return STATUS_ERROR;
@@ -121,9 +131,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
     return refuse_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
                        value);
-  if (value < variable->minimum || value > variable->maximum)
-    return refuse_call(instance, "%g for '%s' is outside its range from %g to %g", value, variable->name,
-                       variable->minimum, variable->maximum);
+  if (value < variable->minimum || value > variable->maximum) return refuse_range(instance, variable, value);
   return STATUS_DONE;
 }
 
