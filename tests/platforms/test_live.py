@@ -126,7 +126,7 @@ def test_sliders(browser, page_file):
         page.get_by_role("spinbutton", name="m1").press("Enter")
         page.click("#reset")
         found, _ = run_in_page(page, 2.0)
-        assert page.inner_text(".control .words:not(:empty)") == "-1 for 'm1' is outside its range from 0 upwards"
+        assert page.inner_text(".control .words:not(:empty)") == "-1 for 'm1' is below its minimum, 0"
         assert page.get_by_role("spinbutton", name="m1").input_value() == "1"
         page.get_by_role("spinbutton", name="m1").fill("2")
         page.get_by_role("spinbutton", name="m1").press("Enter")

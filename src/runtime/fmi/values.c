@@ -111,13 +111,10 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
 }
 
 static enum Status refuse_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
-  if (isinf(variable->maximum))
-    return refuse_call(instance, "%g for '%s' is outside its range from %g upwards", value, variable->name,
-                       variable->minimum);
-  if (isinf(variable->minimum))
-    return refuse_call(instance, "%g for '%s' is outside its range up to %g", value, variable->name, variable->maximum);
-  return refuse_call(instance, "%g for '%s' is outside its range from %g to %g", value, variable->name,
-                     variable->minimum, variable->maximum);
+  bool is_below = value < variable->minimum;
+  return refuse_call(instance, "%g for '%s' is %s, %g", value, variable->name,
+                     is_below ? "below its minimum" : "above its maximum",
+                     is_below ? variable->minimum : variable->maximum);
 }
 
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
