@@ -85,7 +85,6 @@ const char *branches_check(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (settlement->occasion != IN_EXCHANGE || settlement->jumped || settlement->set_mode) return NULL;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    if (settlement->flips[i] == 0.0) continue;
     size_t place = branch_rate_place(switches, i);
     double mode = mode_of(settlement, switches->branches[i].mode), noise = settlement->noise[place];
     double rate = settlement->value[place];

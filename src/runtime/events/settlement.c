@@ -17,34 +17,37 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* The next numbers of the workspace; NULL where there is none yet and they are counted alone. */
-static double *next_of(double *work, size_t *used, size_t count) {
-  double *next = work != NULL ? work + *used : NULL;
-  *used += count;
-  return next;
-}
-
-/* Returns how many numbers there are. */
+/* Returns how many numbers there are; without a workspace they are counted alone. */
 static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
-  size_t contacts = switches->contact_count, used = switching_search_count();
-  settlement->value = next_of(work, &used, values);
-  settlement->noise = next_of(work, &used, values);
-  settlement->other_noise = next_of(work, &used, values);
-  settlement->largest = next_of(work, &used, values);
-  settlement->condition = next_of(work, &used, switches->event_count);
-  settlement->flips = next_of(work, &used, indicators);
-  settlement->rate = next_of(work, &used, switches->branch_count);
-  settlement->was_opened = next_of(work, &used, contacts);
-  settlement->takes_part = next_of(work, &used, contacts + switches->friction_count);
-  settlement->energy = next_of(work, &used, switches->energy_count);
-  settlement->acceleration = next_of(work, &used, rows_of_matrix());
-  settlement->kept_modes = next_of(work, &used, switches->mode_count);
-  settlement->rounded = next_of(work, &used, lagrangian.state_count);
-  settlement->derivative = next_of(work, &used, lagrangian.state_count);
-  settlement->rounding = next_of(work, &used, indicators);
-  settlement->correction = next_of(work, &used, lagrangian.coordinate_count + 3 * lagrangian.constraints.count);
+  const struct {
+    double **place;
+    size_t count;
+  } parts[] = {
+      /* These begin with 0. */
+      {&settlement->largest, values},
+      {&settlement->flips, indicators},
+      {&settlement->rate, switches->branch_count},
+      {&settlement->was_opened, switches->contact_count},
+      {&settlement->value, values},
+      {&settlement->noise, values},
+      {&settlement->other_noise, values},
+      {&settlement->condition, switches->event_count},
+      {&settlement->takes_part, switches->contact_count + switches->friction_count},
+      {&settlement->energy, switches->energy_count},
+      {&settlement->acceleration, rows_of_matrix()},
+      {&settlement->kept_modes, switches->mode_count},
+      {&settlement->rounded, lagrangian.state_count},
+      {&settlement->derivative, lagrangian.state_count},
+      {&settlement->rounding, indicators},
+      {&settlement->correction, lagrangian.coordinate_count + 3 * lagrangian.constraints.count},
+  };
+  size_t used = switching_search_count();
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    if (work != NULL) *parts[i].place = work + used;
+    used += parts[i].count;
+  }
   return used;
 }
 
@@ -54,12 +57,9 @@ size_t settlement_work_count(void) {
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  struct Settlement settlement = {.instance = instance, .switches = switches};
+  struct Settlement settlement = {.instance = instance, .switches = lagrangian.switches};
   lay_out_settlement(&settlement, instance->switching_work);
-  memset(settlement.largest, 0, settlement_value_count(switches) * sizeof(double));
-  memset(settlement.flips, 0, indicator_count(switches) * sizeof(double));
-  memset(settlement.was_opened, 0, switches->contact_count * sizeof(double));
+  memset(settlement.largest, 0, (size_t)(settlement.value - settlement.largest) * sizeof(double));
   return settlement;
 }
 
