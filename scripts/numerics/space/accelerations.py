@@ -88,8 +88,7 @@ def pinocchio_program(quick):
     if quick:
         raise Missing("Pinocchio's times are not here: its program takes minutes to compile, which a report without --quick does once.")
     FOLDER.mkdir(parents=True, exist_ok=True)
-    includes = [f"-I{path}" for path in (eigen, folder / "include", folder / "include" / "urdfdom")]
-    includes += [f"-I{robots}"] if robots != SYSTEM else []  # it is searched last anyway
+    includes = [f"-I{path}" for path in (eigen, folder / "include", folder / "include" / "urdfdom", robots)]
     run("g++", *FLAGS, *includes, source, "-o", program, f"-L{folder}/lib", *LIBRARIES, f"-Wl,-rpath,{folder}/lib")
     return program
 
