@@ -41,24 +41,20 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
   va_end(arguments);
 }
 
-/* Among those that there is room for. */
-static bool was_told(const struct Diagnostics *diagnostics, const char *error) {
-  for (int i = 0; i < ERROR_LIMIT && diagnostics->told[i] != NULL; i++)
-    if (strcmp(diagnostics->told[i], error) == 0) return true;
-  return false;
-}
-
-static void note_told(struct Diagnostics *diagnostics, char *error) {
-  int count = 0;
-  while (count < ERROR_LIMIT && diagnostics->told[count] != NULL) count++;
-  if (count < ERROR_LIMIT) diagnostics->told[count] = error;
+/* Notes an error, where there is room; false for one that was noted before. */
+static bool note_told(struct Diagnostics *diagnostics, char *error) {
+  int i = 0;
+  while (i < ERROR_LIMIT && diagnostics->told[i] != NULL && strcmp(diagnostics->told[i], error) != 0) i++;
+  if (i == ERROR_LIMIT) return true;
+  bool is_new = diagnostics->told[i] == NULL;
+  diagnostics->told[i] = error;
+  return is_new;
 }
 
 /* What is read in several places, as the stiffness of a spring, is wrong in each. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
   char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", diagnostics->file, line, text);
-  if (diagnostics->errors < ERROR_LIMIT && !was_told(diagnostics, error)) print_message(diagnostics, line, "", text);
-  note_told(diagnostics, error);
+  if (note_told(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", text);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
 }
