@@ -38,10 +38,10 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   struct Dimension dimension = quantity->dimension;
   struct Place place = {.line = line, .what = name, .kinds = 1u << PARAMETER};
   struct Quantity parsed = parse_expression(scope, value, place);
-  static const char message[] = "unit mismatch: the value for '%s' has another unit than the variable";
+  const char *problem = format_text("unit mismatch: the value for '%s' has another unit than the variable", name);
   if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension) &&
-      !number_may_have_unit(scope, line, parsed, dimension, message, name))
-    report_error(diagnostics, line, message, name);
+      !number_may_have_unit(scope, line, parsed, dimension, problem))
+    report_error(diagnostics, line, "%s", problem);
   model->point.values[symbol] = parsed.node;
   model->point.given[symbol] = true;
 }

@@ -113,10 +113,10 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,
                   struct Dimension expected) {
   if (quantity.literal || scope_units_agree(reader->scope, quantity.dimension, expected)) return;
-  static const char message[] = "unit mismatch: %s has the unit %s, expected %s%s";
-  const char *actual_unit = unit_text(quantity.dimension), *expected_unit = unit_text(expected);
-  if (!number_may_have_unit(reader->scope, line, quantity, expected, message, what, actual_unit, expected_unit, ""))
-    report_error(reader->diagnostics, line, message, what, actual_unit, expected_unit, unit_hint(quantity.dimension));
+  char *problem = format_text("unit mismatch: %s has the unit %s, expected %s", what, unit_text(quantity.dimension),
+                              unit_text(expected));
+  if (!number_may_have_unit(reader->scope, line, quantity, expected, problem))
+    report_error(reader->diagnostics, line, "%s%s", problem, unit_hint(quantity.dimension));
 }
 
 void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {

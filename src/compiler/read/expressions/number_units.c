@@ -1,7 +1,6 @@
 #include "read/expressions/number_units.h"
 
 #include <ctype.h>
-#include <stdarg.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -32,16 +31,13 @@ static const char *missing_unit(struct Quantity quantity, struct Dimension expec
 }
 
 bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quantity, struct Dimension expected,
-                          const char *format, ...) {
+                          const char *problem) {
   const char *number = quantity.factor.text;
   if (number == NULL) return false;
   char *place = format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
   if (definitions_are_waiting(scope->definitions) || names_find(scope->warned_numbers, place) != NULL) return true;
   names_set(scope->warned_numbers, place, place);
-  va_list arguments;
-  va_start(arguments, format);
-  const char *problem = format_arguments(format, arguments), *unit = missing_unit(quantity, expected);
-  va_end(arguments);
+  const char *unit = missing_unit(quantity, expected);
   bool is_constant = isalpha((unsigned char)*number) || *number == '_';
   if (is_constant)
     report_warning(scope->diagnostics, line, "%s; '%s' is a number without a unit: if it has one, add unit=\"%s\"",

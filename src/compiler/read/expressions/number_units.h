@@ -15,7 +15,7 @@ struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second)
 
 /*
  * Warns that a quantity has another unit than expected, and what its number must be instead: once for each number on a
- * line. The rest of the arguments says what does not fit. False, without a message, where no number could mend it.
+ * line. problem: what does not fit. False, without a message, where no number could mend it.
  */
 bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quantity, struct Dimension expected,
-                          const char *format, ...) __attribute__((format(printf, 5, 6)));
+                          const char *problem);

@@ -11,26 +11,22 @@
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
-  char *unit = unit_text(value.dimension);
-  static const char message[] = "%s: unit mismatch: %s has the unit %s, expected 1 or rad";
-  if (!number_may_have_unit(parser->scope, current_line(parser), value, dimension_one, message, parser->place.what,
-                            what, unit))
-    FAIL(parser, message, parser->place.what, what, unit);
+  char *problem = format_text("%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what,
+                              unit_text(value.dimension));
+  if (!number_may_have_unit(parser->scope, current_line(parser), value, dimension_one, problem))
+    FAIL(parser, "%s", problem);
 }
 
 /* The unit of operands that do not agree: the one of a is kept, unless only a number in a could mend it. */
 static struct Dimension mended_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
                                          const char *where) {
-  static const char message[] = "%s: unit mismatch: %s and %s in one %s; expected the same unit";
-  const char *what = parser->place.what, *first = unit_text(a.dimension), *second = unit_text(b.dimension);
+  char *problem = format_text("%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what,
+                              unit_text(a.dimension), unit_text(b.dimension), where);
   long line = current_line(parser);
-  bool mends_b = number_may_have_unit(parser->scope, line, b, a.dimension, message, what, first, second, where);
-  if (mends_b) return a.dimension;
-  if (number_may_have_unit(parser->scope, line, a, b.dimension, message, what, first, second, where))
-    return b.dimension;
+  if (number_may_have_unit(parser->scope, line, b, a.dimension, problem)) return a.dimension;
+  if (number_may_have_unit(parser->scope, line, a, b.dimension, problem)) return b.dimension;
   const char *hint = unit_hint(a.dimension);
-  FAIL(parser, "%s: unit mismatch: %s and %s in one %s; expected the same unit%s", what, first, second, where,
-       *hint != '\0' ? hint : unit_hint(b.dimension));
+  FAIL(parser, "%s%s", problem, *hint != '\0' ? hint : unit_hint(b.dimension));
   return a.dimension;
 }
 
@@ -153,13 +149,10 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
 static bool check_argument(struct Parser *parser, struct Dimension unit, const char *name, const char *which,
                            struct Quantity argument) {
   if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
-  char *actual = unit_text(argument.dimension), *expected = unit_text(unit);
-  static const char message[] = "%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s%s";
-  const char *what = parser->place.what, *hint = unit_hint(argument.dimension);
-  if (number_may_have_unit(parser->scope, current_line(parser), argument, unit, message, what, which, name, actual,
-                           expected, ""))
-    return true;
-  FAIL(parser, message, what, which, name, actual, expected, hint);
+  char *problem = format_text("%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s",
+                              parser->place.what, which, name, unit_text(argument.dimension), unit_text(unit));
+  if (number_may_have_unit(parser->scope, current_line(parser), argument, unit, problem)) return true;
+  FAIL(parser, "%s%s", problem, unit_hint(argument.dimension));
   return false;
 }
 
