@@ -78,20 +78,30 @@ def tell(text):
     print(f"lagrange-fmu: {text}", file=sys.stderr, flush=True)
 
 
-def compile_libraries(folder, name, platforms, fmi, content):
-    """Into the folder content/binaries; what was compiled before is taken from the cache."""
+def take_or_compile(key, folder, what, compile_library):
+    """What was compiled before is taken from the cache, else compiled into the folder and kept; what: how its message begins."""
+    if caching.take(key, folder):
+        return
     os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(caching.folder() / "zig"))
+    try:
+        compile_library()
+    except Failure as failure:
+        raise Problem(f"{what}: {failure}") from None
+    caching.keep(key, folder)
+
+
+def compile_libraries(folder, name, platforms, fmi, content):
+    """Into the folder content/binaries."""
     system = folder / "system.c"
     for platform_name in platforms:
         libraries = folder / "libraries" / platform_name
         key = caching.key_of(runtime_key(), system.read_bytes(), name, platform_name, fmi)
-        if not caching.take(key, libraries):
-            try:
-                with caching.first_build(platform_name, tell):
-                    compile_fmu(platform_name, system, libraries, name, fmi, sundials=HERE / "sundials")
-            except Failure as failure:
-                raise Problem(f"{name} cannot be compiled for {platform_name}: {failure}") from None
-            caching.keep(key, libraries)
+
+        def compile_library():
+            with caching.first_build(platform_name, tell):
+                compile_fmu(platform_name, system, libraries, name, fmi, sundials=HERE / "sundials")
+
+        take_or_compile(key, libraries, f"{name} cannot be compiled for {platform_name}", compile_library)
         shutil.copytree(libraries, content / "binaries", dirs_exist_ok=True)
 
 

@@ -1,13 +1,12 @@
 """Simulates a system from a grid or a random sample of start values and parameters, on all cores; leaves a Parquet file, a run in each row."""
 
-import subprocess
-import sys
 import tempfile
-from importlib.metadata import version
 from pathlib import Path
 
 from .. import caching
+from ..building import runtime_key, take_or_compile
 from ..problem import Problem
+from ..runtime.scripts.cross import zig
 from ..sweep_words import sweep_words
 from .words_of_systems import SYSTEM_OR_FMU
 
@@ -20,18 +19,16 @@ def arguments(parser):
 def runner():
     """What calls the FMU, compiled when it is needed first."""
     runtime = Path(__file__).parent.parent / "runtime"
-    source = runtime / "scripts" / "sweep_runs.c"
-    key = caching.key_of(version("ziglang"), source.read_bytes())
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place) / "library"
-        if not caching.take(key, folder):
-            folder.mkdir()
-            words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", runtime / "include", source, "-o", folder / "sweep_runs"]
-            compiled = subprocess.run([sys.executable, "-m", "ziglang", "cc", *words], capture_output=True, text=True)
-            if compiled.returncode != 0:
-                raise Problem(f"the library that runs sweeps cannot be compiled: {compiled.stderr.strip()}")
-            caching.keep(key, folder)
-        return (folder / "sweep_runs").read_bytes()
+        library = Path(place) / "library" / "sweep_runs"
+
+        def compile_library():
+            library.parent.mkdir()
+            words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", runtime / "include"]
+            zig("cc", *words, runtime / "scripts" / "sweep_runs.c", "-o", library, cache=Path(place) / "cache")
+
+        take_or_compile(caching.key_of(runtime_key(), "sweep"), library.parent, "the library that runs sweeps cannot be compiled", compile_library)
+        return library.read_bytes()
 
 
 def run(arguments):
