@@ -6,7 +6,7 @@
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
-#include "write/switching.h"
+#include "write/switch_table.h"
 #include "write/instruction_tables.h"
 
 /* The runtime's files but for those of a version of FMI, and its rooms that every FMU has, NULL at the end; the build writes them. */

@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "write/c_text.h"
-#include "write/guides.h"
+#include "write/constraint_inputs.h"
 #include "write/inertia_names.h"
 
 static void write_variables(FILE *file, const struct Interface *interface) {
@@ -108,7 +108,7 @@ static void write_constraint_names(FILE *file, const struct Program *program) {
   const struct VariableList *constraints = &program->model->constraints;
   if (constraints->count == 0) return;
   if (has_function(program, FUNCTION_START_POSITIONS)) write_fixed(file, program);
-  if (has_guides(program->model)) guides_write(file, program->model);
+  if (has_constraint_inputs(program->model)) constraint_inputs_write(file, program->model);
   fputs("static const char *const constraint_names[] = {", file);
   for (size_t i = 0; i < constraints->count; i++) {
     if (i > 0) fputs(", ", file);
@@ -134,7 +134,7 @@ static void write_constraints(FILE *file, const struct Program *program) {
           "    .constraints.count = %zu,\n    .constraints.names = constraint_names,\n"
           "    .constraints.projection = &projection,\n",
           program->model->constraints.count);
-  if (has_guides(program->model))
+  if (has_constraint_inputs(program->model))
     fputs("    .constraints.inputs = constraint_inputs,\n    .constraints.guides = guides,\n"
           "    .constraints.guide_count = sizeof guides / sizeof *guides,\n",
           file);

@@ -54,7 +54,7 @@ static void complete_indicators(struct Instance *instance, double *value) {
   bool lacks = false;
   for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
   if (!lacks || !exchange_come_back(instance, &point)) return;
-  if (!switching_indicators(instance, point.time, point.state, completed)) return;
+  if (!indicators_at(instance, point.time, point.state, completed)) return;
   for (size_t i = 0; i < count; i++)
     if (isnan(value[i])) value[i] = completed[i];
 }
@@ -73,10 +73,10 @@ static void find_shifts(struct Instance *instance, const double *value, double *
   size_t count = indicator_count(lagrangian.switches);
   double *rounding = shift + count, *rounded = rounding + count;
   double time = instance->situation->time;
-  switching_roundings(instance, time, instance->state, instance->acceleration, rounding);
-  bool known = switching_noise(instance, time, instance->state, true, value, rounded, shift);
+  indicator_roundings(instance, time, instance->state, instance->acceleration, rounding);
+  bool known = indicator_noise(instance, time, instance->state, true, value, rounded, shift);
   for (size_t i = 0; i < count; i++)
-    shift[i] = known && !switching_is_force(instance, i) ? shift_of(shift[i], rounding[i]) : largest_shift;
+    shift[i] = known && !indicator_is_force(instance, i) ? shift_of(shift[i], rounding[i]) : largest_shift;
 }
 
 /*
@@ -85,13 +85,13 @@ static void find_shifts(struct Instance *instance, const double *value, double *
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  if (!switching_indicators(instance, instance->situation->time, instance->state, value)) return false;
+  if (!indicators_at(instance, instance->situation->time, instance->state, value)) return false;
   size_t count = indicator_count(lagrangian.switches);
   double *shift = instance->switching_work + count; /* the first so many may be the values */
   complete_indicators(instance, value);
   find_shifts(instance, value, shift);
   for (size_t i = 0; i < count; i++) {
-    double sign = switching_sign(instance, i);
+    double sign = indicator_sign(instance, i);
     value[i] = sign == 0.0 ? shift[i] - fabs(value[i]) : value[i] + sign * shift[i];
   }
   return true;
@@ -102,6 +102,6 @@ bool exchange_is_due(struct Instance *instance) {
   if (!exchange_indicators(instance, value)) return false;
   bool due = false;
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++)
-    due |= (switching_sign(instance, i) < 0.0 ? -value[i] : value[i]) < 0.0;
+    due |= (indicator_sign(instance, i) < 0.0 ? -value[i] : value[i]) < 0.0;
   return due;
 }

@@ -16,7 +16,7 @@ static const double further = 8.0;
 /* The relative rounding of an operation, that of the library's functions included. */
 static const double rounding_of_operation = DBL_EPSILON;
 
-bool switching_is_force(const struct Instance *instance, size_t indicator) {
+bool indicator_is_force(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t contacts = contact_indicator(switches, 0), frictions = friction_indicator(switches, 0);
   if (indicator < contacts) return false;
@@ -28,11 +28,11 @@ bool switching_is_force(const struct Instance *instance, size_t indicator) {
 static bool feels_forces(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool holds = switches->feels_forces;
-  for (size_t i = 0; i < indicator_count(switches) && !holds; i++) holds = switching_is_force(instance, i);
+  for (size_t i = 0; i < indicator_count(switches) && !holds; i++) holds = indicator_is_force(instance, i);
   return holds;
 }
 
-bool switching_indicators(struct Instance *instance, double time, const double *state, double *indicator) {
+bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator) {
   struct Point point = solver_point(instance, time, state);
   if (feels_forces(instance)) {
     instance->singular = lagrangian.constraints.accelerations(&point, instance->acceleration);
@@ -42,7 +42,7 @@ bool switching_indicators(struct Instance *instance, double time, const double *
   return true;
 }
 
-void switching_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
+void indicator_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
                          double *noise) {
   struct Point point = solver_point(instance, time, state);
   lagrangian.switches->roundings(&point, acceleration, noise);
@@ -50,12 +50,12 @@ void switching_roundings(struct Instance *instance, double time, const double *s
     noise[i] = isfinite(noise[i]) ? rounding_of_operation * noise[i] : 0.0;
 }
 
-double switching_sign(const struct Instance *instance, size_t indicator) {
+double indicator_sign(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   return indicator < switches->branch_count ? instance->parameter[switches->branches[indicator].mode] : 1.0;
 }
 
-double switching_round(const double *state, bool otherwise, double *rounded) {
+double round_state(const double *state, bool otherwise, double *rounded) {
   double distance = otherwise ? further : 1.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double size = fmax(fabs(state[i]), least_share * lagrangian.steps.nominal[i]);
@@ -65,10 +65,10 @@ double switching_round(const double *state, bool otherwise, double *rounded) {
   return noise_of_difference / distance;
 }
 
-bool switching_noise(struct Instance *instance, double time, const double *state, bool otherwise,
+bool indicator_noise(struct Instance *instance, double time, const double *state, bool otherwise,
                      const double *indicator, double *rounded, double *noise) {
-  double factor = switching_round(state, otherwise, rounded);
-  if (!switching_indicators(instance, time * (1.0 + 4.0 * DBL_EPSILON), rounded, noise)) return false;
+  double factor = round_state(state, otherwise, rounded);
+  if (!indicators_at(instance, time * (1.0 + 4.0 * DBL_EPSILON), rounded, noise)) return false;
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
     double change = factor * fabs(noise[i] - indicator[i]);
     noise[i] = isfinite(change) ? change : 0.0;

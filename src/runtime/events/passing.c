@@ -42,7 +42,7 @@ static const char *modes_at(struct Instance *instance, double time, double *stat
   return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
 }
 
-bool switching_start(struct Instance *instance) {
+bool events_start(struct Instance *instance) {
   instance->modes_stay = true;
   const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
   instance->modes_stay = false;
@@ -50,20 +50,20 @@ bool switching_start(struct Instance *instance) {
   return problem == NULL;
 }
 
-bool switching_part_contacts(struct Instance *instance, double time) {
+bool events_part_contacts(struct Instance *instance, double time) {
   const struct ContactLaws *laws = lagrangian.switches->contact_laws;
   if (laws == NULL) return true;
   struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
   return !settlement_evaluate(&settlement) || laws->part(&settlement); /* what has no values is told by others */
 }
 
-bool switching_settle_change(struct Instance *instance, double time) {
+bool events_settle_change(struct Instance *instance, double time) {
   const char *problem = modes_at(instance, time, instance->state, AT_CHANGE, 0);
   if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
   return problem == NULL;
 }
 
-const char *switching_update(struct Instance *instance, bool *changed) {
+const char *events_update(struct Instance *instance, bool *changed) {
   struct Situation *situation = instance->situation;
   enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
@@ -118,9 +118,9 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
     *time = NAN;
     const double *samples;
-    bool is_sure = switching_narrow(instance, progress->searched, &near, &samples);
+    bool is_sure = window_narrow(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (switching_find(instance, progress->searched, near, samples, lifted, time, indicator)) return true;
+    if (search_for_event(instance, progress->searched, near, samples, lifted, time, indicator)) return true;
     window = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->gathered = 0;
@@ -151,7 +151,7 @@ static bool is_of_contact(size_t indicator) {
 
 /* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
 static bool is_bounce(const struct Instance *instance, size_t indicator) {
-  return is_of_contact(indicator) && !switching_is_force(instance, indicator);
+  return is_of_contact(indicator) && !indicator_is_force(instance, indicator);
 }
 
 /* Takes an event into the progress of the step. */
@@ -168,7 +168,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
-  progress->has_lifted = is_of_contact(indicator) && switching_is_force(instance, indicator);
+  progress->has_lifted = is_of_contact(indicator) && indicator_is_force(instance, indicator);
   progress->searched = time;
 }
 
@@ -224,7 +224,7 @@ static const char *refuse_gathering(const struct Instance *instance, const struc
 }
 
 /* Search, pass, settle, go on. */
-const char *switching_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
+const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator = 0;
   bool is_found = find_next(instance, end, progress, &time, &indicator);
@@ -239,18 +239,18 @@ const char *switching_pass(struct Instance *instance, struct CommunicationStep *
   return pass_event(instance, step, time, indicator);
 }
 
-const char *switching_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
-                                   struct EventProgress *progress) {
+const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
+                                struct EventProgress *progress) {
   double time;
   size_t indicator;
   if (++progress->gathered >= EVENT_LIMIT) return problem;
-  if (!switching_jump(instance, &time, instance->event_state, &indicator)) return problem;
+  if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator);
 }
 
-const char *switching_check(struct Instance *instance, double time) {
+const char *events_check(struct Instance *instance, double time) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
   if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
   struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
@@ -261,8 +261,8 @@ const char *switching_check(struct Instance *instance, double time) {
   return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
 }
 
-void switching_explain(struct Instance *instance, const struct CommunicationStep *step,
-                       const struct EventProgress *progress) {
+void events_explain(struct Instance *instance, const struct CommunicationStep *step,
+                    const struct EventProgress *progress) {
   char name[NAME_SIZE];
   bool is_branch = progress->indicator < lagrangian.switches->branch_count;
   if (2 * progress->count < step->count) return;

@@ -27,16 +27,16 @@ struct Search {
   double floor;            /* what an event has left of an indicator below 0, by rounding */
 };
 
-size_t switching_search_count(void) {
-  size_t search = switching_sample_count() + 2 * lagrangian.state_count +
-                  (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
-  size_t window = switching_window_count();
+size_t search_work_count(void) {
+  size_t search =
+      window_sample_count() + 2 * lagrangian.state_count + (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t window = window_work_count();
   return search > window ? search : window;
 }
 
 static struct Search search_of(struct Instance *instance) {
   size_t count = indicator_count(lagrangian.switches);
-  struct Search search = {.instance = instance, .state = instance->switching_work + switching_sample_count()};
+  struct Search search = {.instance = instance, .state = instance->switching_work + window_sample_count()};
   search.rounded = search.state + lagrangian.state_count;
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
@@ -49,7 +49,7 @@ static struct Search search_of(struct Instance *instance) {
 static void sample(struct Search *search, double time, const double *state, double *values) {
   size_t count = indicator_count(lagrangian.switches);
   bool known = state != NULL || lagrangian.solver->interpolate(search->instance, time, search->state);
-  known = known && switching_indicators(search->instance, time, state != NULL ? state : search->state, values);
+  known = known && indicators_at(search->instance, time, state != NULL ? state : search->state, values);
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
@@ -62,13 +62,13 @@ static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double *exact = search->exact;
   sample(search, time, NULL, search->values);
-  switching_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
+  indicator_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
   for (size_t i = 0; i < count; i++)
-    if (switching_is_force(search->instance, i)) search->noise[i] = 0.0;
+    if (indicator_is_force(search->instance, i)) search->noise[i] = 0.0;
   memcpy(exact, search->values, count * sizeof *exact);
   for (int way = 0; way < 2; way++) {
     bool known =
-        switching_noise(search->instance, time, search->state, way == 1, exact, search->rounded, search->values);
+        indicator_noise(search->instance, time, search->state, way == 1, exact, search->rounded, search->values);
     for (size_t i = 0; i < count && known; i++) search->noise[i] = fmax(search->noise[i], search->values[i]);
   }
 }
@@ -194,12 +194,12 @@ static double tangent_to_zero(struct Search *search, double time, const double *
   for (size_t i = 0; i < lagrangian.state_count; i++)
     share = fmin(share, tangent_share * scale_of(search->state, i) / fabs(rate[i]));
   share = fmax(share, least);
-  if (!switching_indicators(search->instance, time, search->state, search->values)) return INFINITY;
+  if (!indicators_at(search->instance, time, search->state, search->values)) return INFINITY;
   memcpy(search->samples, search->values, count * sizeof *search->samples);
   for (size_t i = 0; i < lagrangian.state_count; i++) search->rounded[i] = search->state[i] + 0.5 * share * rate[i];
-  if (!switching_indicators(search->instance, time + 0.5 * share, search->rounded, search->values)) return INFINITY;
+  if (!indicators_at(search->instance, time + 0.5 * share, search->rounded, search->values)) return INFINITY;
   for (size_t i = 0; i < count; i++) {
-    double sign = switching_sign(search->instance, i), first = sign * search->samples[i];
+    double sign = indicator_sign(search->instance, i), first = sign * search->samples[i];
     double fall = (first - sign * search->values[i]) / (0.5 * share), zero = first / fall;
     if (sign == 0.0 || !(fall > 0.0) || !(zero >= 0.0 && zero <= share) || zero >= way) continue;
     way = zero;
@@ -216,11 +216,11 @@ static size_t find_passed(struct Search *search, double time) {
   size_t count = lagrangian.switches->branch_count;
   sample(search, time, NULL, search->values);
   for (size_t i = 0; i < count; i++)
-    if (switching_sign(search->instance, i) * search->values[i] < 0.0) return i;
+    if (indicator_sign(search->instance, i) * search->values[i] < 0.0) return i;
   return count;
 }
 
-bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
+bool search_for_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
   double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
@@ -244,8 +244,8 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
   return start >= -error - noise && (error == 0.0 || start <= error + noise) ? fmin(start, -error) : 0.0;
 }
 
-bool switching_find(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
-                    double *time, size_t *indicator) {
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+                      double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   bool knows_noise = false;
@@ -254,7 +254,7 @@ bool switching_find(struct Instance *instance, double from, double to, const dou
            search.samples + k * count);
   *time = INFINITY;
   for (size_t i = 0; i < count; i++) {
-    double f[CHEBYSHEV_NODES], sign = switching_sign(instance, i);
+    double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_noise) measure_noise(&search, from);

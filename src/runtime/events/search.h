@@ -9,22 +9,22 @@
 
 #include "instance/instance.h"
 
-/* Numbers of workspace that a search needs, those of switching_narrow() among them. */
-size_t switching_search_count(void);
+/* Numbers of workspace that a search needs, those of window_narrow() among them. */
+size_t search_work_count(void);
 
 /*
  * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign; samples: as
- * switching_narrow() gives them for this window; lifted: of a contact that has just opened without speed, whose gap may fall
+ * window_narrow() gives them for this window; lifted: of a contact that has just opened without speed, whose gap may fall
  * by the errors of the method, NULL for none. False where none does. The time is NAN where its zeros cannot be told from one
  * another.
  */
-bool switching_find(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
-                    double *time, size_t *indicator);
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+                      double *time, size_t *indicator);
 
 /*
  * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
  * last step along its tangent behind a zero that is nearer than the state's digits matter. False where there is none.
  */
-bool switching_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
+bool search_for_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
 
 #endif

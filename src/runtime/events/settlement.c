@@ -43,7 +43,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
       {&settlement->rounding, indicators},
       {&settlement->correction, lagrangian.coordinate_count + 3 * lagrangian.constraints.count},
   };
-  size_t used = switching_search_count();
+  size_t used = search_work_count();
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     if (work != NULL) *parts[i].place = work + used;
     used += parts[i].count;
@@ -101,7 +101,7 @@ static void measure_velocity(struct Settlement *settlement, size_t place) {
 }
 
 static bool values_rounded(struct Settlement *settlement, bool otherwise, double *value, double *factor) {
-  *factor = switching_round(settlement->state, otherwise, settlement->rounded);
+  *factor = round_state(settlement->state, otherwise, settlement->rounded);
   return settlement_values(settlement, settlement->rounded, value);
 }
 
@@ -109,7 +109,7 @@ static bool values_rounded(struct Settlement *settlement, bool otherwise, double
 static void take_roundings(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double *rounding = settlement->rounding;
-  switching_roundings(settlement->instance, settlement->time, settlement->state, accelerations_of(settlement),
+  indicator_roundings(settlement->instance, settlement->time, settlement->state, accelerations_of(settlement),
                       rounding);
   for (size_t i = 0; i < switches->branch_count; i++) add_noise(settlement, i, rounding[i]);
   for (size_t i = 0; i < switches->contact_count; i++)

@@ -19,14 +19,14 @@ struct Window {
   const char *function; /* that shortens it; NULL for none */
 };
 
-size_t switching_sample_count(void) {
+size_t window_sample_count(void) {
   return lagrangian.switches->watched_limit == NULL ? 0 : CHEBYSHEV_NODES * lagrangian.state_count;
 }
 
-size_t switching_window_count(void) {
+size_t window_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches->watched_limit == NULL) return 0;
-  return switching_sample_count() + CHEBYSHEV_NODES * switches->watched_acceleration_count +
+  return window_sample_count() + CHEBYSHEV_NODES * switches->watched_acceleration_count +
          SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
 }
 
@@ -107,7 +107,7 @@ static double sure_half(struct Window *window) {
   return limit.step;
 }
 
-bool switching_narrow(struct Instance *instance, double from, double *to, const double **samples) {
+bool window_narrow(struct Instance *instance, double from, double *to, const double **samples) {
   *samples = NULL;
   if (lagrangian.switches->watched_limit == NULL) return true;
   for (;;) {

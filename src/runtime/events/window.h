@@ -9,14 +9,14 @@
 #include "instance/instance.h"
 
 /* Numbers of workspace that this needs, and those of them that its samples are in. */
-size_t switching_window_count(void);
-size_t switching_sample_count(void);
+size_t window_work_count(void);
+size_t window_sample_count(void);
 
 /*
  * Brings the end of a window of time in the solver's last step nearer to its beginning until nothing that the indicators look at
  * can hide between samples. False where the window is as short as time can tell and may still hide something. *samples:
  * the states at the CHEBYSHEV_NODES of the window, a row each; NULL where they were not looked at, or are not all known.
  */
-bool switching_narrow(struct Instance *instance, double from, double *to, const double **samples);
+bool window_narrow(struct Instance *instance, double from, double *to, const double **samples);
 
 #endif

@@ -4,7 +4,7 @@
 #include "model/model.h"
 #include "read/context/reader_options.h"
 #include "read/expressions/parser.h"
-#include "read/names/branches.h"
+#include "read/names/pieces_of_functions.h"
 #include "read/xml/nodes.h"
 
 /* Each pass uses the names that the ones before it made known, wherever in the file they stand. */

@@ -4,8 +4,8 @@
 #include "algebra/cone.h"
 #include "base/memory.h"
 #include "read/elements/switching_reader.h"
-#include "read/expressions/conditions.h"
-#include "read/names/branches.h"
+#include "read/expressions/comparisons.h"
+#include "read/names/pieces_of_functions.h"
 
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 

@@ -7,7 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/expressions/number_units.h"
-#include "read/names/branches.h"
+#include "read/names/pieces_of_functions.h"
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;

@@ -1,7 +1,7 @@
 #include "read/tables/pieces.h"
 
 #include "algebra/simplify.h"
-#include "read/names/branches.h"
+#include "read/names/pieces_of_functions.h"
 
 static const char needed_by[] = "a table";
 

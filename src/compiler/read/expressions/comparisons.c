@@ -1,4 +1,4 @@
-#include "read/expressions/conditions.h"
+#include "read/expressions/comparisons.h"
 
 #include <ctype.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "algebra/simplify.h"
 #include "read/expressions/parser.h"
 #include "read/expressions/quantities.h"
-#include "read/names/branches.h"
+#include "read/names/pieces_of_functions.h"
 
 enum Comparison { NO_COMPARISON, MORE, MORE_OR_EQUAL, LESS_THAN_OTHER, LESS_OR_EQUAL };
 

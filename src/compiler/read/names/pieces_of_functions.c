@@ -1,4 +1,4 @@
-#include "read/names/branches.h"
+#include "read/names/pieces_of_functions.h"
 
 #include "algebra/cone.h"
 #include "algebra/functions.h"

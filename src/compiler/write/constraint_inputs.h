@@ -6,7 +6,7 @@
 #include "model/model.h"
 
 /* Whether some constraint holds an input. */
-bool has_guides(const struct Model *model);
+bool has_constraint_inputs(const struct Model *model);
 
 /* guides[] and constraint_inputs[] of include/lagrangian.h. */
-void guides_write(FILE *file, const struct Model *model);
+void constraint_inputs_write(FILE *file, const struct Model *model);

@@ -1,4 +1,4 @@
-#include "write/guides.h"
+#include "write/constraint_inputs.h"
 
 #include "algebra/cone.h"
 #include "base/memory.h"
@@ -22,14 +22,14 @@ static char *mark_inputs(const struct Model *model, Node constraint, bool *is_gu
   return names;
 }
 
-bool has_guides(const struct Model *model) {
+bool has_constraint_inputs(const struct Model *model) {
   bool has = false;
   for (size_t j = 0; j < model->constraints.count; j++)
     has |= graph_depends_on(model->graph, model->constraints.items[j].node, INPUT);
   return has;
 }
 
-void guides_write(FILE *file, const struct Model *model) {
+void constraint_inputs_write(FILE *file, const struct Model *model) {
   const struct VariableList *constraints = &model->constraints;
   bool *is_guide = allocate(model->inputs.count, sizeof *is_guide);
   fputs("static const char *const constraint_inputs[] = {", file);

@@ -1,4 +1,4 @@
-#include "write/switching.h"
+#include "write/switch_table.h"
 
 #include "write/c_text.h"
 #include "write/description.h"
