@@ -27,6 +27,8 @@ PLATFORMS = {
     "darwin64": (".dylib", ["x86_64-macos.11.0", "aarch64-macos.11.0"]),
     "aarch64-linux": (".so", ["aarch64-linux-gnu.2.17"]),
 }
+WEBASSEMBLY = "wasm32"  # a component of the draft FMI-LS-WASM, of FMI 3.0 alone; see wasm_component/
+PLATFORM_NAMES = [*PLATFORMS, WEBASSEMBLY]
 ROOT = Path(__file__).resolve().parent.parent  # of include/ and src/runtime/
 
 # The same sums and products everywhere: no a*b + c in one operation. Without unused functions.
@@ -62,17 +64,26 @@ def scratch(output):
 
 def libraries_of(platform, name, fmi=2):
     """The libraries of an FMU for the platform, as paths in binaries/, each with the targets that it is for."""
-    if platform not in PLATFORMS:
-        raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORMS)}")
-    if find_spec("ziglang") is None:
-        package = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
-        raise Failure(f"this Python has no package ziglang, which compiles for {platform}; expected one after pip install {package}")
+    if platform not in PLATFORM_NAMES:
+        raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORM_NAMES)}")
+    require_package("ziglang", f"compiles for {platform}")
+    if platform == WEBASSEMBLY:
+        require_package("wasmtime", f"makes components for {platform}")
+        if fmi == 2:
+            raise Failure(f"FMI 2.0 knows no platform {platform}; expected FMI 3")
+        return {f"wasm32-wasip2/{name}.wasm": ["wasm32-wasi"]}
     suffix, targets = PLATFORMS[platform]
     if fmi == 2:
         # Importers on Apple's own processors look into a folder by its name in FMI 3.0 first, or alone.
         further = {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets[1:]}
         return {f"{platform}/{name}{suffix}": targets, **further}
     return {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets}
+
+
+def require_package(name, purpose):
+    if find_spec(name) is None:
+        pinned = re.search(rf"^{name}==.*", (ROOT / "scripts" / "requirements-platforms.txt").read_text(), re.M)
+        raise Failure(f"this Python has no package {name}, which {purpose}; expected one after pip install {pinned[0]}")
 
 
 def folder_of(target):
@@ -94,26 +105,40 @@ def universal(slices):
     return header.ljust(start, b"\0") + content
 
 
+def words_of_fmu(target, system, fmi, source):
+    """
+    What makes one object of system.c, the parts of the runtime that it includes and the layer of the version of FMI. system.c comes first, as it
+    says how series are compiled: unrolled where that is too much, they take compilers minutes.
+    """
+    *before, last = [system, *sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c"))]
+    words = ["-target", target, *FLAGS, "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.", f"-ffile-prefix-map={system.parent}=."]
+    words += [f"-I{source / 'include'}", f"-I{source / 'src' / 'runtime'}"]
+    return [*words, *(word for file in before for word in ("-include", file)), last]
+
+
 def compile_target(target, system, library, fmi, source, sundials, folder):
-    """
-    system.c, the parts of the runtime that it includes and the layer of the version of FMI as one library in the folder. system.c comes first,
-    as it says how series are compiled: unrolled where that is too much, they take compilers minutes.
-    """
+    """The FMU as one library in the folder."""
     output = folder / target / library
     output.parent.mkdir()
-    words = [*FLAGS, "-shared", "-s", "-Wl,--gc-sections", "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.",
-             f"-ffile-prefix-map={system.parent}=."]  # fmt: skip
+    words = ["-shared", "-s", "-Wl,--gc-sections"]
     if "macos" in target:
         words.append(f"-Wl,-install_name,@rpath/{library}")
-    includes = [source / "include", source / "src" / "runtime"]
-    *before, last = [system, *sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c"))]
-    before = [word for file in before for word in ("-include", file)]
-    libraries = []
     if sundials is not None:
-        includes.append(sundials / "include")
-        libraries.append(sundials / target / "libsundials.a")
-    zig("cc", "-target", target, *words, *[f"-I{include}" for include in includes], *before, last, *libraries, "-lm", "-o", output, cache=folder / "cache")
+        words += [f"-I{sundials / 'include'}", sundials / target / "libsundials.a"]
+    zig("cc", *words_of_fmu(target, system, fmi, source), *words, "-lm", "-o", output, cache=folder / "cache")
     return output.read_bytes()
+
+
+def compile_component(target, system, source, folder):
+    """The bytes of the FMU as a WebAssembly component: the FMU and its adapter as a module, and the component around it."""
+    if __package__:
+        from .wasm_component.component import ADAPTER, LINK_WORDS, component_of
+    else:
+        from wasm_component.component import ADAPTER, LINK_WORDS, component_of
+    fmu, module = folder / "fmu.o", folder / "module.wasm"
+    zig("cc", *words_of_fmu(target, system, 3, source), "-c", "-o", fmu, cache=folder / "cache")
+    zig("cc", "-target", target, *FLAGS, f"-I{source / 'include'}", ADAPTER, fmu, *LINK_WORDS, "-o", module, cache=folder / "cache")
+    return component_of(module.read_bytes())
 
 
 def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=None):
@@ -125,6 +150,8 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
     system, source = Path(system).resolve(), Path(source).resolve()
     if '#include "methods/sundials/' not in system.read_text():
         sundials = None
+    elif platform == WEBASSEMBLY:
+        raise Failure(f"{system} needs SUNDIALS, which is not there for {platform}; expected another <solver> than erk and bdf")
     elif sundials is None or not (Path(sundials) / "include").exists():
         raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
     else:
@@ -134,7 +161,9 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
         library = Path(binaries).resolve() / path
         with scratch(library) as folder:
             for target in targets:
-                if target not in compiled:
+                if platform == WEBASSEMBLY:
+                    compiled[target] = compile_component(target, system, source, folder)
+                elif target not in compiled:
                     compiled[target] = compile_target(target, system, library.name, fmi, source, sundials, folder)
             slices = [compiled[target] for target in targets]
             (folder / library.name).write_bytes(universal(slices) if len(slices) > 1 else slices[0])

@@ -49,6 +49,7 @@ function(add_platform_libraries list name version folder platforms)
   if(EXISTS "${lagrange_sundials}")
     set(sundials --sundials ${lagrange_sundials})
   endif()
+  file(GLOB adapter ${lagrange_root}/scripts/wasm_component/*)
   foreach(platform ${platforms})
     find_platform(${platform} ${version})
     set(binaries ${folder}/platforms${version})
@@ -57,7 +58,7 @@ function(add_platform_libraries list name version folder platforms)
     add_custom_command(OUTPUT ${outputs}
                        COMMAND ${lagrange_zig} ${lagrange_root}/scripts/cross.py fmu ${platform} ${folder}/system.c ${binaries} ${name}
                                --fmi ${version} ${sundials}
-                       DEPENDS ${folder}/system.c ${lagrange_sources} ${lagrange_root}/scripts/cross.py
+                       DEPENDS ${folder}/system.c ${lagrange_sources} ${lagrange_root}/scripts/cross.py ${adapter}
                        COMMENT "Compiling ${name} of FMI ${version} for ${platform}" VERBATIM)
     list(APPEND ${list} ${outputs})
   endforeach()
@@ -118,7 +119,7 @@ endfunction()
 # lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the
 # folder that CMake builds the current one in, and fmi3/NAME.fmu where the version 3 is asked for; NAME is the one in SYSTEM.xml, as
 # pack.cmake checks.
-#   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors) and aarch64-linux, by zig; none: this machine alone, by
+#   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux and, of FMI 3, wasm32, by zig; none: this machine alone, by
 #                 the project's compiler
 #   FMI_VERSIONS  2, 3 or both; none: 2
 #   SOLVER        a method of <solver> in place of the system's own, where there is anything that moves

@@ -11,6 +11,7 @@ file(GLOB pages fmu/*.md)
 install(FILES fmu/system.xsd ${pages} DESTINATION ${package}/fmu)
 install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/licenses.cmake scripts/one_file.cmake scripts/cross.py scripts/requirements-platforms.txt
         DESTINATION ${package}/scripts)
+install(DIRECTORY scripts/wasm_component DESTINATION ${package}/scripts PATTERN __pycache__ EXCLUDE)
 install(FILES ${lagrange_global_names} DESTINATION ${package})
 install(DIRECTORY ${lagrange_licenses} DESTINATION ${package})
 # Where scripts/sundials-all has built it: erk and bdf, for all platforms.

@@ -18,7 +18,7 @@ from . import caching
 from .language import LAGC
 from .packing import pack, write_sources
 from .problem import Problem
-from .runtime.scripts.cross import PLATFORMS, Failure, compile_fmu
+from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
 
 HERE = Path(__file__).resolve().parent
 TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
@@ -70,7 +70,8 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
 def runtime_key():
     """Of what every library is built from beside its system.c."""
     files = [file for part in ("runtime", "sundials/include") for file in sorted((HERE / part).rglob("*.[ch]"))]
-    return caching.key_of(version("ziglang"), (HERE / "runtime" / "scripts" / "cross.py").read_bytes(), *(file.read_bytes() for file in files))
+    files += sorted((HERE / "runtime" / "scripts").rglob("*.py"))
+    return caching.key_of(version("ziglang"), *(file.read_bytes() for file in files))
 
 
 def tell(text):
@@ -103,6 +104,11 @@ def compile_libraries(folder, name, platforms, fmi, content):
 
         take_or_compile(key, libraries, f"{name} cannot be compiled for {platform_name}", compile_library)
         shutil.copytree(libraries, content / "binaries", dirs_exist_ok=True)
+        if platform_name == WEBASSEMBLY:
+            extra = content / "extra" / "org.modelica.fmi-ls-wasm"
+            extra.mkdir(parents=True)
+            for manifest in ("manifest.xml", "fmi-ls-manifest.xml"):  # as scripts/pack.cmake
+                shutil.copy(HERE / "runtime" / "scripts" / "wasm_component" / "manifest.xml", extra / manifest)
 
 
 def copy_licenses(file, target):
@@ -143,13 +149,13 @@ def build(
 ) -> Path:
     """
     Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
-    `output`. Platforms are one or several of PLATFORMS, this machine's where none are given; `solver` is a method in place of the system's own;
+    `output`. Platforms are one or several of PLATFORM_NAMES, this machine's where none are given; `solver` is a method in place of the system's own;
     `fmi` is the version of FMI, 2 or 3.
     """
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
-        if name not in PLATFORMS:
-            raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORMS)}")
+        if name not in PLATFORM_NAMES:
+            raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORM_NAMES)}")
     if fmi not in (2, 3):
         raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
     with tempfile.TemporaryDirectory() as scratch:

@@ -1,13 +1,13 @@
 """Builds the FMU of a system, and prints where it is."""
 
 from ..building import NATIVE, build
-from ..runtime.scripts.cross import PLATFORMS
+from ..runtime.scripts.cross import PLATFORM_NAMES
 from .words_of_systems import SYSTEM, add_fmi, add_output
 
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM)
-    parser.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORMS)}; {NATIVE} where none are given")
+    parser.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORM_NAMES)}; {NATIVE} where none are given")
     parser.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
     add_fmi(parser)
     add_output(parser, "the FMU goes")
