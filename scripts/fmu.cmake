@@ -4,6 +4,7 @@
 # lagrange_sundials, a folder of cross.py (or none).
 get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 find_program(zip zip REQUIRED)
+find_program(python python3 REQUIRED)
 
 # What no FMU needs is left out: unused functions, and tables to unwind the stack by, which C has no use for.
 set(lagrange_compact -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables)
@@ -107,10 +108,10 @@ function(add_archive name version folder system platforms)
   set(scripts ${lagrange_root}/scripts)
   add_custom_command(OUTPUT ${fmu}
                      COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
-                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D NAMES=${lagrange_global_names}
+                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D PYTHON=${python} -D NAMES=${lagrange_global_names}
                              -D LICENSES=${lagrange_licenses} -P ${scripts}/pack.cmake
                      DEPENDS ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
-                             ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.cmake ${lagrange_root}/LICENSE
+                             ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.py ${lagrange_root}/LICENSE
                      COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${fmu})
   add_dependencies(${target} derive_${name}) # else each FMU would derive it

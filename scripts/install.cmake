@@ -9,7 +9,7 @@ install(DIRECTORY include DESTINATION ${package} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY src/runtime DESTINATION ${package}/src FILES_MATCHING PATTERN "*.[ch]" PATTERN "*.map")
 file(GLOB pages fmu/*.md)
 install(FILES fmu/system.xsd ${pages} DESTINATION ${package}/fmu)
-install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/licenses.cmake scripts/one_file.cmake scripts/cross.py scripts/requirements-platforms.txt
+install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts/licenses.cmake scripts/one_file.py scripts/cross.py scripts/requirements-platforms.txt
         DESTINATION ${package}/scripts)
 install(DIRECTORY scripts/wasm_component DESTINATION ${package}/scripts PATTERN __pycache__ EXCLUDE)
 install(FILES ${lagrange_global_names} DESTINATION ${package})

@@ -1,4 +1,4 @@
-# Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D NAMES=...
+# Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D PYTHON=... -D NAMES=...
 #                     -P pack.cmake
 # FOLDER holds what lagc wrote; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
 # FMI, 2 or 3; NAMES lists the global names of the compiled runtime; LICENSES is the folder of collect_licenses().
@@ -43,8 +43,11 @@ copy_licenses(${FOLDER}/documentation/licenses/license.txt ${content}/documentat
 
 # An FMU that is complete in C has its source as one file: all that system.c includes, once each.
 if(EXISTS ${FOLDER}/fmi3/buildDescription.xml)
-  include(${CMAKE_CURRENT_LIST_DIR}/one_file.cmake)
-  one_file(${FOLDER}/system.c ${name} ${content}/sources/${name}.c)
+  execute_process(COMMAND ${PYTHON} ${CMAKE_CURRENT_LIST_DIR}/one_file.py ${SOURCE} ${NAMES} ${VERSION} ${FOLDER}/system.c ${name}
+                          ${content}/sources/${name}.c RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${name}.c cannot be written")
+  endif()
   if(VERSION EQUAL 3)
     file(COPY ${FOLDER}/fmi3/buildDescription.xml DESTINATION ${content}/sources)
   endif()

@@ -10,6 +10,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
@@ -79,7 +80,7 @@ def library_words(source, library, version, compiler="gcc", speed=SPEED):
 
 def pack_words(folder, library, archive, version):
     settings = {"FOLDER": folder, "LIBRARIES": library, "FMU": archive, "VERSION": version, "SYSTEM": "system.xml", "SOURCE": ROOT,
-                "NAMES": BUILD / "global_names", "LICENSES": BUILD / "licenses", "ZIP": shutil.which("zip")}  # fmt: skip
+                "NAMES": BUILD / "global_names", "LICENSES": BUILD / "licenses", "ZIP": shutil.which("zip"), "PYTHON": sys.executable}  # fmt: skip
     return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
 
 

@@ -16,9 +16,10 @@ from xml.etree import ElementTree
 
 from . import caching
 from .language import LAGC
-from .packing import pack, write_sources
+from .packing import pack
 from .problem import Problem
 from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
+from .runtime.scripts.one_file import one_file
 
 HERE = Path(__file__).resolve().parent
 TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
@@ -132,7 +133,9 @@ def write_descriptions(folder, name, fmi, content):
     copy_licenses(folder / licenses / "license.txt", content / licenses)
     build_description = folder / "fmi3" / "buildDescription.xml"
     if build_description.exists():  # then it is complete in C
-        write_sources(folder / "system.c", name, content / "sources" / f"{name}.c", fmi)
+        runtime, sources = HERE / "runtime", content / "sources"
+        sources.mkdir(parents=True)
+        (sources / f"{name}.c").write_bytes(one_file(runtime, runtime / "global_names", fmi, folder / "system.c", name).encode())
         if fmi == 3:
             files["sources/buildDescription.xml"] = "fmi3/buildDescription.xml"
     for member, file in files.items():

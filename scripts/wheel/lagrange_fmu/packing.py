@@ -1,20 +1,8 @@
 """The archive of an FMU: the same content gives the same bytes."""
 
-import subprocess
 import zipfile
-from pathlib import Path
 
-import cmake
-
-RUNTIME = Path(__file__).resolve().parent / "runtime"
 TIME = (2000, 1, 1, 0, 0, 0)  # of all files
-
-
-def write_sources(system, name, file, fmi):
-    """The sources of an FMU as one file, from its system.c and the runtime; by the script that does so wherever FMUs are built."""
-    words = [Path(cmake.CMAKE_BIN_DIR) / "cmake", "-D", f"SOURCE={RUNTIME}", "-D", f"NAMES={RUNTIME / 'global_names'}"]
-    words += ["-D", f"SYSTEM={system}", "-D", f"NAME={name}", "-D", f"FILE={file}", "-D", f"VERSION={fmi}", "-P", RUNTIME / "scripts" / "write_sources.cmake"]
-    subprocess.run(words, check=True)
 
 
 def pack(content, archive):

@@ -1,0 +1,75 @@
+"""
+The C source of an FMU as one file, from the system's and the runtime's: one_file.py ROOT GLOBAL_NAMES VERSION SYSTEM.c NAME FILE. GLOBAL_NAMES lists
+what the linker sees of the compiled runtime, as nm does: such names get the FMU's before them, so that several FMUs can be linked into one program.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'#include "([a-z0-9_/]+\.[ch])"\n')
+HEAD = """/*
+ * {license}
+ */
+
+/*
+ * {name} in C11, without any library but libm. Several FMUs can be linked into one program: compile each with
+ * {fmi}_FUNCTION_PREFIX defined as the FMU's name and _, here {name}_, which the functions of FMI then begin with.
+ * For a shared library, leave it undefined.
+ */
+#define FMU_IN_ONE_FILE
+#ifdef __GNUC__ /* a system needs few of the functions and arguments */
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+{names}
+#if defined({fmi}_FUNCTION_PREFIX) && !defined({fmi}_OVERRIDE_FUNCTION_PREFIX)
+#define {fmi}_PASTE(prefix, name) prefix##name
+#define {fmi}_FULL_NAME(prefix, name) {fmi}_PASTE(prefix, name)
+{functions}#endif
+
+{text}"""
+
+
+def included_once(text, root, included):
+    """The text with each file of the project in the place where it is first included."""
+
+    def content(found):
+        if found[1] in included:
+            return ""
+        included.add(found[1])
+        file = next(path for path in (root / "include" / found[1], root / "src" / "runtime" / found[1]) if path.exists())
+        return included_once(file.read_text(encoding="utf-8"), root, included)
+
+    return INCLUDE.sub(content, text)
+
+
+def one_file(root, global_names, version, system, name):
+    """The text."""
+    fmi, runtime = f"FMI{version}", root / "src" / "runtime"
+    # The layer of the version of FMI stands beside the core.
+    layer = "".join(f'#include "{path.relative_to(runtime).as_posix()}"\n' for path in sorted((runtime / f"fmi{version}").glob("*.c")))
+    text = system.read_text(encoding="utf-8").replace("#ifdef FMU_IN_ONE_FILE\n", f"#ifdef FMU_IN_ONE_FILE\n{layer}")
+    text = included_once(text, root, set())
+    symbols = sorted({*re.findall(r"([A-Za-z0-9_]+) [A-Z] ", global_names.read_text()), "lagrangian"})
+    functions = [symbol for symbol in symbols if symbol.startswith(f"fmi{version}")]
+    names = [symbol for symbol in symbols if not re.match("fmi[0-9]", symbol) and symbol in text]
+    return HEAD.format(
+        license=re.sub(r" \* $", " *", (root / "LICENSE").read_text().strip().replace("\n", "\n * "), flags=re.M),
+        name=name,
+        fmi=fmi,
+        names="".join(f"#define {symbol} {name}_{symbol}\n" for symbol in names),
+        functions="".join(f"#define {symbol} {fmi}_FULL_NAME({fmi}_FUNCTION_PREFIX, {symbol})\n" for symbol in functions),
+        text=text,
+    )
+
+
+def main():
+    root, global_names, version, system, name, file = sys.argv[1:]
+    Path(file).parent.mkdir(parents=True, exist_ok=True)
+    text = one_file(Path(root), Path(global_names), int(version), Path(system), name)
+    Path(file).write_bytes(text.encode())
+
+
+if __name__ == "__main__":
+    main()
