@@ -12,13 +12,14 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
 from numpy.lib.recfunctions import repack_fields
 
-from .animation.page import write_animation
-from .animation.scene import read_scene, variables_of
+from .live_page.description import read_scene, variables_of_scene
+from .live_page.page import page_of_motion
 from .problem import Problem
 from .variables import settable, start_values, why_not
 
 
 EVENTS = "events"  # the FMU's variable that counts them
+ENERGIES = ("kineticEnergy", "potentialEnergy", "totalEnergy")
 FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at most
 MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
 
@@ -30,7 +31,7 @@ class Motion:
     scene: list  # the elements to be seen
     start: dict  # the start values of all that have one
     outputs: np.ndarray  # structured: time and the outputs
-    values: np.ndarray  # likewise, with where the elements are, and the number of events where there may be some
+    values: np.ndarray  # likewise, with where the elements are, energies, and the number of events where there may be some
 
 
 def start_value(text):
@@ -92,7 +93,7 @@ def simulate(fmu, start, output=None, input=None, **options):
     scene = read_scene(fmu)
     settings = {"fmi_type": "CoSimulation", "logger": print_problem, "debug_logging": True} | options
     try:
-        recorded = dict.fromkeys([*outputs, *variables_of(scene, names), *(name for name in (EVENTS,) if name in names)])
+        recorded = dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene), *ENERGIES, EVENTS) if name in names)])
         values = simulate_fmu(fmu, start_values=start, input=input, output=list(recorded), **settings)
     except FMICallException as problem:
         raise Problem(f"{fmu}: {problem}") from None
@@ -160,7 +161,7 @@ def write_results(motion, folder):
         plot.unlink(missing_ok=True)
         written["plot"] = "none, since matplotlib is not installed: pip install matplotlib"
     if motion.scene:
-        write_animation(animation, motion.description, motion.scene, motion.values, motion.start)
+        animation.write_text(page_of_motion(motion.fmu, motion.values, motion.start), encoding="utf-8")
     else:
         animation.unlink(missing_ok=True)
         written["animation"] = "none, since the system has no particles, bodies, frames or points"

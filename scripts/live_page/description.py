@@ -3,7 +3,8 @@
 import zipfile
 from xml.etree import ElementTree
 
-TYPES = ("Real", "Integer", "Boolean")
+# The types of FMI 2.0, and what those of FMI 3.0 are called there.
+TYPES = {"Real": "Real", "Integer": "Integer", "Boolean": "Boolean", "Float64": "Real", "Int32": "Integer", "Int64": "Integer"}
 MANY = 400  # of more continuous variables than that, only what tells of the motion is shown
 POSITIONS = ("x", "y", "z", "angle", *(f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))
 
@@ -13,40 +14,45 @@ def read_tree(fmu):
         return ElementTree.fromstring(archive.read("modelDescription.xml"))
 
 
+def variables_in(tree):
+    """The attributes of each variable, with its type; FMI 2.0 has them on two elements, FMI 3.0 on one."""
+    for variable in tree.find("ModelVariables"):
+        for part in (variable, *variable):
+            if part.tag in TYPES:
+                yield {**variable.attrib, **part.attrib, "type": TYPES[part.tag]}
+
+
 def _number(text):
     return {"true": 1.0, "false": 0.0}.get(text) if text in ("true", "false") else float(text)
 
 
-def _role(variable, type_name):
+def _role(variable):
     """How the page lets it be set: as an input, a parameter, a start value; None where it is only seen."""
-    causality, variability, initial = (variable.get(name) for name in ("causality", "variability", "initial"))
-    if causality in ("input", "parameter"):
-        return causality
-    is_state = causality in ("output", "local") and variability == "continuous" and initial in ("exact", "approx")
-    return "start" if is_state and type_name == "Real" else None
+    if variable["causality"] in ("input", "parameter"):
+        return variable["causality"]
+    is_state = variable["causality"] in ("output", "local") and variable.get("variability") == "continuous" and variable.get("initial") in ("exact", "approx")
+    return "start" if is_state and variable["type"] == "Real" else None
 
 
 def _variable(variable):
-    content = next(child for child in variable if child.tag in TYPES)
-    known = {"name": variable.get("name"), "reference": int(variable.get("valueReference")), "type": content.tag}
-    role = _role(variable, content.tag)
+    known = {"name": variable["name"], "reference": int(variable["valueReference"]), "type": variable["type"]}
+    role = _role(variable)
     if role:
-        known |= {"role": role, "start": _number(content.get("start", "0"))}
+        known |= {"role": role, "start": _number(variable.get("start", "0"))}
     if variable.get("variability") == "fixed":
         known["isFixed"] = True
     for name in ("min", "max"):
-        if content.get(name) is not None:
-            known[name] = float(content.get(name))
-    for name, text in (("unit", content.get("unit")), ("description", variable.get("description"))):
-        if text:
-            known[name] = text
+        if name in variable:
+            known[name] = float(variable[name])
+    for name in ("unit", "description"):
+        if variable.get(name):
+            known[name] = variable[name]
     return known
 
 
 def description_of(tree):
     """Plain data: names, the experiment, and the variables, each with how it may be set."""
     experiment = tree.find("DefaultExperiment").attrib
-    variables = [v for v in tree.iterfind("ModelVariables/ScalarVariable") if any(child.tag in TYPES for child in v)]
     start, stop = float(experiment.get("startTime", "0")), float(experiment.get("stopTime", "10"))
     return {
         "name": tree.get("modelName"),
@@ -55,23 +61,34 @@ def description_of(tree):
         "startTime": start,
         "duration": stop - start,
         "stepSize": float(experiment.get("stepSize", (stop - start) / 1000)),
-        "variables": [_variable(variable) for variable in variables],
+        "variables": [_variable(variable) for variable in variables_in(tree)],
     }
 
 
 def scene_of(tree):
     """The elements of <scene>, see modelDescription/scene.h: their attributes, with the tag."""
-    return [{"tag": element.tag, **element.attrib} for element in tree.iterfind("VendorAnnotations/Tool[@name='lagrange-fmu']/scene/*")]
+    places = ("VendorAnnotations/Tool[@name='lagrange-fmu']", "Annotations/Annotation[@type='lagrange-fmu']")
+    return [{"tag": element.tag, **element.attrib} for place in places for element in tree.iterfind(f"{place}/scene/*")]
+
+
+def read_scene(fmu):
+    return scene_of(read_tree(fmu))
+
+
+def variables_of_scene(scene):
+    """The names of those that may tell where things are, and by what forces they are held; an FMU has some of them."""
+    positions = (f"{thing['name']}.{component}" for thing in scene if "name" in thing for component in POSITIONS)
+    forces = (thing[name] for thing in scene for name in ("force", "force1", "force2") if name in thing)
+    return list(dict.fromkeys([*positions, *forces]))
 
 
 def shown_variables(tree, description, scene):
     """The places of those that can be plotted, and of those that tell where things are."""
-    of_scene = {f"{thing.get('name')}.{component}" for thing in scene for component in POSITIONS}
-    forces = {thing.get(name) for thing in scene for name in ("force", "force1", "force2")}
-    continuous = {v.get("name"): v for v in tree.iterfind("ModelVariables/ScalarVariable") if v.get("variability") == "continuous"}
-    continuous = {name: variable for name, variable in continuous.items() if variable.get("causality") not in ("independent", "parameter")}
+    continuous = {v["name"]: v for v in variables_in(tree) if v.get("variability") == "continuous"}
+    continuous = {name: variable for name, variable in continuous.items() if variable["causality"] not in ("independent", "parameter")}
     if len(continuous) > MANY:
-        continuous = {n: v for n, v in continuous.items() if v.get("causality") == "output" or n in of_scene | forces or "Energy" in n or "Work" in n}
+        of_scene = set(variables_of_scene(scene))
+        continuous = {n: v for n, v in continuous.items() if v["causality"] == "output" or n in of_scene or "Energy" in n or "Work" in n}
     return [place for place, one in enumerate(description["variables"]) if one["name"] in continuous and one["type"] == "Real"]
 
 

@@ -1,7 +1,9 @@
-// The page: what runs in the worker is shown, what is set goes to it.
+// The page: what runs in the worker is shown, what is set goes to it. Where there is no FMU but a recording, that is played.
 "use strict";
 
 const GHOST = 1e-9; // by which its start differs
+// Of formulas, as JavaScript has them too.
+const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max"];
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const { description } = data;
@@ -10,8 +12,10 @@ const columnOf = new Map(shownVariables.map((variable, column) => [variable.name
 const history = new History(shownVariables.length);
 const controls = new Map(); // by the place of the variable
 const plots = [];
-const live = (window.live = { history, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null }); // for tests, and the curious
+const live = (window.live = { history, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf }); // for tests, and the curious
 let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
+const { recording } = data;
+const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? data.window : description.duration))));
 
 async function unpacked(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -31,6 +35,7 @@ let resetDue = null; // the timer of a reset that waits for more to be set
 
 // All but what is set finds a reset done that was due.
 function order(name, content = {}) {
+  if (recording) return;
   if (resetDue !== null && name !== "set") {
     clearTimeout(resetDue);
     resetDue = null;
@@ -46,8 +51,10 @@ function valueOf(formula) {
     if (place < 0) return name === "pi" ? "Math.PI" : /^e\d*$/i.test(name) ? name : "NaN";
     return `(${controls.get(place)?.value ?? description.variables[place].start})`;
   });
+  // A sign before a power is an error there.
+  const inJavaScript = text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**");
   try {
-    return Number(new Function(...["sin", "cos", "tan", "sqrt", "exp", "log", "abs", "min", "max"], `return ${text.replace(/\^/g, "**")}`)(Math.sin, Math.cos, Math.tan, Math.sqrt, Math.exp, Math.log, Math.abs, Math.min, Math.max));
+    return Number(new Function(...FUNCTIONS, `return ${inJavaScript}`)(...FUNCTIONS.map((name) => Math[name])));
   } catch {
     return NaN;
   }
@@ -63,10 +70,7 @@ const answers = {
     live.ready();
   },
   preview({ rows }) {
-    if (!data.hasScene) return;
-    scene.build(rows.length ? rows : history.samples.map((runs) => runs[0]));
-    $("turning").parentElement.hidden = !scene.plane;
-    $("forcesChoice").hidden = scene.forces.length === 0;
+    buildScene(rows.length ? rows : history.samples.map((runs) => runs[0]));
   },
   samples({ times, rows, isFresh }) {
     if (isFresh) history.cut(times[0]);
@@ -95,9 +99,23 @@ const answers = {
   },
 };
 
+// For a view of all of these samples.
+function buildScene(samples) {
+  if (!data.hasScene) return;
+  scene.build(samples);
+  $("turning").parentElement.hidden = !scene.plane;
+  $("forcesChoice").hidden = scene.forces.length === 0;
+}
+
 function setPlaying(isPlaying) {
   playing = isPlaying;
   $("play").textContent = isPlaying ? "Pause" : "Play";
+}
+
+// The FMU, or in a recording what is seen.
+function move(name) {
+  order(name);
+  if (recording) viewFrom({ step: viewed + 1, back: viewed - 1, reset: 0 }[name]);
 }
 
 function play() {
@@ -106,10 +124,11 @@ function play() {
   setPlaying(!playing);
 }
 
+const speedOf = () => Number((10 ** Number($("speed").value)).toPrecision(2)) * (recording ? recording.speed : 1);
+
 function setSpeed() {
-  const speed = Number((10 ** Number($("speed").value)).toPrecision(2));
-  $("speedShown").textContent = `× ${speed}`;
-  order("speed", { value: speed });
+  $("speedShown").textContent = `× ${shown(speedOf(), 2)}`;
+  order("speed", { value: speedOf() });
 }
 
 function addControls() {
@@ -152,7 +171,7 @@ function keys() {
   };
   document.addEventListener("keydown", (event) => push(event, 0.5));
   document.addEventListener("keyup", (event) => push(event, 0));
-  const actions = { " ": play, ".": () => order("step"), ",": () => order("back"), r: () => order("reset") };
+  const actions = { " ": play, ".": () => move("step"), ",": () => move("back"), r: () => move("reset") };
   document.addEventListener("keydown", (event) => {
     if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName) || !actions[event.key]) return;
     event.preventDefault();
@@ -168,10 +187,36 @@ function addPlots() {
   }
 }
 
-function frame() {
+// The time of the recording that is seen, and of the clock when it was.
+const player = { time: 0, before: null };
+
+function playOn(now) {
+  const [first, last] = [history.time(0), history.time(history.length - 1)];
+  if (playing && player.before !== null) {
+    player.time += ((now - player.before) / 1000) * speedOf();
+    if (player.time > last) player.time = first;
+    view(history.placeOf(player.time));
+  }
+  player.before = now;
+}
+
+// A sample that was seen before, or of the recording.
+function view(place) {
+  viewed = Math.max(0, Math.min(history.length - 1, place));
+  $("past").value = viewed;
+}
+
+// By a button or the bar: from there the recording goes on.
+function viewFrom(place) {
+  view(place);
+  player.time = history.time(viewed);
+}
+
+function frame(now) {
+  if (recording) playOn(now);
   if (history.length > 0) {
     const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
-    $("clock").textContent = `${history.time(at).toFixed(2)} s`;
+    $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
     $("pace").textContent = playing && pace[0] > 0.5 ? "slower than wished" : "";
     if (scene && scene.objects) scene.draw(history, at);
     const first = history.placeOf(history.time(history.length - 1) - data.window);
@@ -200,9 +245,9 @@ function addActions() {
   $("ghost").addEventListener("click", toggleGhost);
   $("ghost").hidden = ![...controls].some(([place]) => description.variables[place].role === "start");
   $("play").addEventListener("click", play);
-  for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => order(name));
+  for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
-  $("past").addEventListener("input", () => (viewed = Number($("past").value)));
+  $("past").addEventListener("input", () => viewFrom(Number($("past").value)));
   $("fit").addEventListener("click", () => scene && scene.fit());
   $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
   for (const name of ["names", "trails", "forces"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
@@ -239,8 +284,30 @@ live.run = (until) =>
     order("run", { until });
   });
 
+async function playRecording() {
+  const numbers = new Float64Array(await unpacked(recording.rows)), { width } = recording;
+  history.most = numbers.length / width;
+  for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [numbers.subarray(i + 1, i + width)]);
+  buildScene(history.samples.map((runs) => runs[0]));
+  $("past").max = history.length - 1;
+  viewFrom(0);
+  $("pastName").textContent = "time";
+  setSpeed();
+  setPlaying(true);
+}
+
+async function runFmu() {
+  const started = new Promise((done) => (live.ready = done));
+  worker = new Worker(URL.createObjectURL(new Blob([data.worker], { type: "text/javascript" })));
+  worker.onmessage = (event) => answers[event.data.name](event.data);
+  setSpeed();
+  const wasm = await unpacked(data.wasm), references = data.shown.map((place) => description.variables[place].reference);
+  worker.postMessage({ name: "begin", wasm, description, references, set: settingsOfAddress() }, [wasm]);
+  await started;
+}
+
 async function begin() {
-  addControls();
+  if (!recording) addControls();
   addPlots();
   addActions();
   keys();
@@ -250,13 +317,9 @@ async function begin() {
     scene.wished = { trails: true, names: false, turning: false, forces: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", !data.hasScene);
-  const started = new Promise((done) => (live.ready = done));
-  worker = new Worker(URL.createObjectURL(new Blob([data.worker], { type: "text/javascript" })));
-  worker.onmessage = (event) => answers[event.data.name](event.data);
-  setSpeed();
-  const wasm = await unpacked(data.wasm), references = data.shown.map((place) => description.variables[place].reference);
-  worker.postMessage({ name: "begin", wasm, description, references, set: settingsOfAddress() }, [wasm]);
-  await started;
+  document.body.classList.toggle("recorded", Boolean(recording));
+  for (const name of ["link", "ghost"]) $(name).hidden ||= Boolean(recording);
+  await (recording ? playRecording() : runFmu());
   requestAnimationFrame(frame);
   document.body.dataset.ready = "true";
 }

@@ -1,4 +1,4 @@
-"""A page in which an FMU runs: one HTML file, which needs no server and no network."""
+"""A page in which an FMU runs, or a simulation of it is played: one HTML file, which needs no server and no network."""
 
 import base64
 import gzip
@@ -9,18 +9,23 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
+
 from ..problem import Problem
 from .description import description_of, first_plots, read_tree, scene_of, shown_variables
 from .wasm import compile_to_wasm
 
 HERE = Path(__file__).resolve().parent
-# Debian's package libjs-three.
-THREE = Path("/usr/share/javascript/three")
+# Of Debian's package libjs-three, or beside this folder, where the wheel has them.
 THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
-THREE_LICENSE = Path("/usr/share/doc/libjs-three/copyright")
+THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
+THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
 SCRIPTS = ("history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "main.js")
 WORKER = ("fmu.js", "worker.js")
 WINDOW = 20.0  # s that plots show, or the experiment where that is shorter
+MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a simulation that is played
+SHORTEST, LONGEST = 2.0, 60.0  # s that are played as they are; others take
+PLAYED = 10.0  # s
 
 
 def _packed(content):
@@ -33,17 +38,16 @@ def _script(names):
 
 def renderer():
     """three.js, packed."""
-    missing = [name for name in THREE_FILES if not (THREE / name).exists()]
-    if missing:
-        raise Problem(f"there is no {THREE / missing[0]}, which draws the page; install Debian's package libjs-three")
+    if THREE is None:
+        raise Problem("there is no three.js, which draws the page; install Debian's package libjs-three")
     return _packed("\n".join((THREE / name).read_text(encoding="utf-8") for name in THREE_FILES).encode())
 
 
-def licenses(has_scene):
+def licenses(has_scene, has_fmu):
     """What is in the page, and on what terms."""
-    texts = ["The C library in the FMU's WebAssembly is musl, under the MIT license: https://musl.libc.org"]
+    texts = ["The C library in the FMU's WebAssembly is musl, under the MIT license: https://musl.libc.org"] if has_fmu else []
     if has_scene:
-        texts.append("three.js, Copyright 2010-2019 three.js authors, under the MIT license:\n\n" + _mit(THREE_LICENSE.read_text(encoding="utf-8")))
+        texts.append("three.js, Copyright 2010-2019 three.js authors, under the MIT license:\n\n" + _mit(next(path for path in THREE_LICENSES if path.exists()).read_text(encoding="utf-8")))
     return "\n\n".join(texts)
 
 
@@ -51,7 +55,7 @@ def _mit(copyright_file):
     """The text of the license in a Debian copyright file."""
     found = re.search(r"^License: (?:Expat|MIT)\n((?: .*\n?)+)", copyright_file, re.M)
     if not found:
-        raise Problem(f"{THREE_LICENSE} has no text of the MIT license; expected that of Debian's package libjs-three")
+        raise Problem("three.js comes without the text of the MIT license; expected that of Debian's package libjs-three")
     return re.sub(r"^ \.?", "", found[1], flags=re.M)
 
 
@@ -64,26 +68,18 @@ def one_source(fmu, folder):
         return archive.extract(names[0], folder)
 
 
-def page_of(fmu):
-    """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text."""
-    tree = read_tree(fmu)
-    if tree.get("fmiVersion") != "2.0":
-        raise Problem(f"{Path(fmu).name} is of FMI {tree.get('fmiVersion')}; expected the one of FMI 2.0")
-    description, scene = description_of(tree), scene_of(tree)
-    shown = shown_variables(tree, description, scene)
-    with tempfile.TemporaryDirectory() as folder:
-        wasm = compile_to_wasm(one_source(fmu, folder))
+def _page(description, scene, shown, window, content):
+    """The page as text; content: what it runs or plays."""
     data = {
         "description": description,
         "scene": scene,
         "hasScene": bool(scene),
         "shown": shown,
         "plots": first_plots(description, shown),
-        "window": min(WINDOW, description["duration"]),
-        "worker": _script(WORKER),
-        "wasm": _packed(wasm),
+        "window": window,
         "renderer": renderer() if scene else "",
-        "licenses": licenses(bool(scene)),
+        "licenses": licenses(bool(scene), "wasm" in content),
+        **content,
     }
     parts = {
         "TITLE": html.escape(description["title"]),
@@ -92,6 +88,40 @@ def page_of(fmu):
         "SCRIPT": f"(() => {{\n{_script(SCRIPTS)}\n}})();\n",
     }
     return re.sub("@(TITLE|STYLE|DATA|SCRIPT)@", lambda part: parts[part[1]], (HERE / "page.html").read_text(encoding="utf-8"))
+
+
+def page_of(fmu):
+    """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text."""
+    tree = read_tree(fmu)
+    if tree.get("fmiVersion") != "2.0":
+        raise Problem(f"{Path(fmu).name} is of FMI {tree.get('fmiVersion')}; expected the one of FMI 2.0")
+    description, scene = description_of(tree), scene_of(tree)
+    with tempfile.TemporaryDirectory() as folder:
+        wasm = compile_to_wasm(one_source(fmu, folder))
+    content = {"worker": _script(WORKER), "wasm": _packed(wasm)}
+    return _page(description, scene, shown_variables(tree, description, scene), min(WINDOW, description["duration"]), content)
+
+
+def recording_of(result, names):
+    """Rows of a simulation's result, a structured array, as the page reads them: the time and these variables, as many as it can show."""
+    count = max(2, min(MOST_ROWS, len(result), MOST_NUMBERS // (len(names) + 1)))
+    rows = np.unique(np.linspace(0, len(result) - 1, count).round().astype(int))
+    numbers = np.stack([result[name][rows] for name in ("time", *names)], axis=1)
+    duration = float(result["time"][-1] - result["time"][0])
+    speed = 1.0 if SHORTEST <= duration <= LONGEST or duration == 0.0 else duration / PLAYED
+    return {"rows": _packed(numbers.astype("<f8").tobytes()), "width": len(names) + 1, "speed": speed}
+
+
+def page_of_motion(fmu, result, start):
+    """The page that plays a simulation's result, from these start values of all variables that have one, as text."""
+    tree = read_tree(fmu)
+    description, scene = description_of(tree), scene_of(tree)
+    for variable in description["variables"]:
+        if variable["name"] in start:
+            variable["start"] = float(start[variable["name"]])
+    shown = [place for place in shown_variables(tree, description, scene) if description["variables"][place]["name"] in result.dtype.names]
+    recording = recording_of(result, [description["variables"][place]["name"] for place in shown])
+    return _page(description, scene, shown, float(result["time"][-1] - result["time"][0]), {"recording": recording})
 
 
 def write_page(fmu, path):

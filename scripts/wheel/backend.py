@@ -61,7 +61,8 @@ def settings_for_platform(settings):
     tag, target, system = PLATFORMS[name]
     defined = {"TARGET": target}
     if LIBRARIES.exists():
-        defined |= {"SUNDIALS": str(LIBRARIES / "sundials"), "LIBXML2_SOURCE": str(LIBRARIES / "libxml2"), "LICENSES": str(LIBRARIES / "licenses")}
+        defined |= {"SUNDIALS": str(LIBRARIES / "sundials"), "LIBXML2_SOURCE": str(LIBRARIES / "libxml2"), "LICENSES": str(LIBRARIES / "licenses"),
+                    "THREE": str(LIBRARIES / "three"), "THREE_COPYRIGHT": str(LIBRARIES / "three" / "copyright")}  # fmt: skip
     if name != this_machine():
         defined |= {"CMAKE_SYSTEM_NAME": system, "CMAKE_SYSTEM_PROCESSOR": target.split("-")[0]}
     with mock.patch.dict("os.environ", _PYTHON_HOST_PLATFORM=tag):
@@ -101,6 +102,9 @@ def _contents():
     licenses["LGPL-2.1.txt"] = Path("/usr/share/common-licenses/LGPL-2.1")
     for name, path in licenses.items():
         yield f"libraries/licenses/{name}", LIBRARIES / "licenses" / name if LIBRARIES.exists() else path
+    three = {name: Path("/usr/share/javascript/three") / name for name in ("three.min.js", "examples/js/controls/OrbitControls.js")}
+    for name, path in (three | {"copyright": Path("/usr/share/doc/libjs-three/copyright")}).items():
+        yield f"libraries/three/{name}", LIBRARIES / "three" / name if LIBRARIES.exists() else path
     for name, tree in (("libxml2", "libxml2"), ("sundials", "sundials-all")):
         folder = LIBRARIES / name if LIBRARIES.exists() else ROOT / "build" / tree
         for path in sorted(folder.rglob("*")):

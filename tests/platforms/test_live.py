@@ -7,31 +7,18 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from playwright.sync_api import sync_playwright
 
 import fmu
+from driven_chromium import COLORS_SEEN, chromium, opened
 from scripts.live_page.page import page_of
 
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
-ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-
-
-# How many different colours are in the picture.
-COLORS_SEEN = """() => {
-  const canvas = document.querySelector("#scene canvas"), copy = document.createElement("canvas");
-  [copy.width, copy.height] = [canvas.width, canvas.height];
-  const pen = copy.getContext("2d");
-  pen.drawImage(canvas, 0, 0);
-  return new Set(new Uint32Array(pen.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
-}"""
 
 
 @pytest.fixture(scope="module")
 def browser():
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
+    with chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")
@@ -46,19 +33,6 @@ def page_file(tmp_path_factory):
         return written[name]
 
     return write
-
-
-@contextlib.contextmanager
-def opened(browser, file, settings=""):
-    """The page when it is ready; at its end it must not have complained."""
-    page, complaints = browser.new_page(viewport={"width": 1200, "height": 700}), []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") and "GL Driver" not in message.text else None)
-    page.goto(file.as_uri() + settings)
-    page.wait_for_selector("body[data-ready]", timeout=60000)
-    yield page
-    page.close()
-    assert complaints == []
 
 
 def run_natively(name, until, factor=1.0):

@@ -14,11 +14,12 @@ def assemble(folder):
     """In the folder what the wheel would hold; as copies, since modules look for others beside themselves."""
     package = folder / "lagrange_fmu"
     shutil.copytree(SCRIPTS / "wheel" / "lagrange_fmu", package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(SCRIPTS / "animation", package / "animation", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(SCRIPTS / "live_page", package / "live_page", ignore=shutil.ignore_patterns("__pycache__"))
     (package / "bin").mkdir()
     (package / "runtime" / "scripts").mkdir(parents=True)
     files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("problem", "progress", "simulation", "sweep_words", "sweep_worker", "sweeping", "variables")}
     files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
+    files |= {"runtime/scripts/one_file.py": SCRIPTS / "one_file.py"}
     files |= {"runtime/scripts/sweep_runs.c": SCRIPTS / "sweep_runs.c", "runtime/include/fmi2.h": ROOT / "include" / "fmi2.h"}
     (package / "runtime" / "include").mkdir()
     for name, source in files.items():

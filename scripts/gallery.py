@@ -1,0 +1,119 @@
+"""The site that scripts/gallery makes: build/gallery, of the FMUs in build/fmu and build/fmi3 and the pages of the tree, by MkDocs."""
+
+import html
+import json
+import shutil
+import sys
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from markdown.extensions import toc
+from mkdocs.commands.build import build
+from mkdocs.config import load_config
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+from scripts.live_page.description import read_tree
+from scripts.live_page.page import write_page
+from scripts.problem import Problem
+
+BUILD = ROOT / "build"
+PAGES, SITE = BUILD / "gallery-pages", BUILD / "gallery"
+# What there is to read, by the places in the tree, which their links to one another rest on.
+READ = {
+    "Start": "README.md",
+    "Gallery": "gallery.md",
+    "Tutorial": "fmu/TUTORIAL.md",
+    "Reference": "fmu/README.md",
+    "More": {
+        "Systems, and what they were checked against": "fmu/SYSTEMS.md",
+        "What the solvers guarantee": "fmu/SOLVERS.md",
+        "Importing FMUs": "fmu/IMPORTING.md",
+        "Other tools": "fmu/COMPARISON.md",
+        "The Python package": "scripts/wheel/README.md",
+        "Scripts": "scripts/README.md",
+        "The code": "src/README.md",
+        "Changes": "CHANGELOG.md",
+    },
+}
+BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "fmu/StateFeedback/system.xml")  # that pages refer to
+STYLE = """
+.systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
+.systems div { border: 1px solid #8884; border-radius: 8px; padding: .8rem; display: flex; flex-direction: column; gap: .4rem; }
+.systems img { width: 100%; height: 170px; object-fit: contain; margin: 0; background: #fff; border-radius: 4px; }
+.systems h3 { margin: 0; font-size: 1.05rem; overflow-wrap: anywhere; }
+.systems p { margin: 0; font-size: .9rem; flex: 1; }
+"""
+
+
+def places(pages):
+    for page in pages.values():
+        yield from places(page) if isinstance(page, dict) else [page]
+
+
+def write_system(archive):
+    """The files of a system's FMU, in a folder of its name; its card, as HTML."""
+    name, folder = archive.stem, PAGES / "systems" / archive.stem
+    folder.mkdir(parents=True)
+    with zipfile.ZipFile(archive) as content:
+        (folder / "picture.png").write_bytes(content.read("model.png"))
+        (folder / "equations.html").write_bytes(content.read("documentation/index.html"))
+    shutil.copy(archive, folder / f"{name}.fmu")
+    links = {"equations": "equations.html", "FMU": f"{name}.fmu"}
+    if (BUILD / "fmi3" / archive.name).exists():
+        shutil.copy(BUILD / "fmi3" / archive.name, folder / f"{name}-FMI3.fmu")
+        links["FMU of FMI 3"] = f"{name}-FMI3.fmu"
+    source = ROOT / "fmu" / name / "system.xml"
+    if source.exists():
+        shutil.copy(source, folder / "system.xml")
+        links["system.xml"] = "system.xml"
+    try:
+        write_page(archive, folder / "live.html")
+        links = {"<b>live</b>": "live.html"} | links
+    except Problem as problem:  # of a method that carries no sources
+        print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)
+    first = next(iter(links.values()))
+    sentence = html.escape(read_tree(archive).get("description") or "")
+    words = " · ".join(f'<a href="systems/{name}/{place}">{text}</a>' for text, place in links.items())
+    return f'<div><a href="systems/{name}/{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+
+
+def slug(text, separator):
+    """A heading's anchor, which the theme does not find where it begins with a digit."""
+    word = toc.slugify(text, separator)
+    return f"part{separator}{word}" if word[:1].isdigit() else word
+
+
+def build_site(navigation):
+    shutil.copy(ROOT / "scripts" / "gallery_search.js", PAGES / "search.js")
+    settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
+                "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search"],
+                "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
+    file = BUILD / "mkdocs.json"  # which is YAML too
+    file.write_text(json.dumps(settings))
+    build(load_config(str(file), markdown_extensions=[{"toc": {"slugify": slug}}]))
+    index = (SITE / "search" / "search_index.json").read_text()
+    (SITE / "search" / "search_index.js").write_text(f"window.searchIndex = {index};")
+
+
+def main():
+    archives = sorted((BUILD / "fmu").glob("*.fmu"))
+    if not archives:
+        sys.exit("scripts/gallery: there are no FMUs in build/fmu")
+    shutil.rmtree(PAGES, ignore_errors=True)
+    for place in {*places(READ), *BESIDE} - {"gallery.md"}:
+        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / place, PAGES / place)
+    with ThreadPoolExecutor() as pool:
+        cards = list(pool.map(write_system, archives))
+    words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page.\n"
+    (PAGES / "gallery.md").write_text(f'# Gallery\n\n{words}\n<div class="systems">\n{"".join(cards)}\n</div>\n', encoding="utf-8")
+    (PAGES / "style.css").write_text(STYLE)
+    navigation = [{title: [{t: p} for t, p in page.items()] if isinstance(page, dict) else page} for title, page in READ.items()]
+    build_site(navigation)
+    print(f"gallery    {SITE / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()

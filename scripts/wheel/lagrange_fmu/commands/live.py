@@ -1,0 +1,18 @@
+"""Writes a page in which the FMU of a system runs, in any browser and without a network, with its parameters and inputs at hand."""
+
+from pathlib import Path
+
+from .words_of_systems import SYSTEM_OR_FMU
+
+
+def arguments(parser):
+    parser.add_argument("system", **SYSTEM_OR_FMU)
+    parser.add_argument("-o", "--output", metavar="PAGE.html", help="the page; else NAME.html in the current folder")
+
+
+def run(arguments):
+    from ..live_page.page import write_page
+    from ..running import fmu_of
+
+    with fmu_of(arguments.system) as fmu:
+        print(write_page(fmu, arguments.output or Path(f"{fmu.stem}.html")).resolve())

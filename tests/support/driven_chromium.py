@@ -1,0 +1,37 @@
+"""Live pages in headless Chromium, which a test drives."""
+
+import contextlib
+
+from playwright.sync_api import sync_playwright
+
+ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+# How many different colours are in the picture.
+COLORS_SEEN = """() => {
+  const canvas = document.querySelector("#scene canvas"), copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const pen = copy.getContext("2d");
+  pen.drawImage(canvas, 0, 0);
+  return new Set(new Uint32Array(pen.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
+}"""
+
+
+@contextlib.contextmanager
+def chromium():
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@contextlib.contextmanager
+def opened(browser, file, settings=""):
+    """The page when it is ready; at its end it must not have complained."""
+    page, complaints = browser.new_page(viewport={"width": 1200, "height": 700}), []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") and "GL Driver" not in message.text else None)
+    page.goto(file.as_uri() + settings)
+    page.wait_for_selector("body[data-ready]", timeout=60000)
+    yield page
+    page.close()
+    assert complaints == []
