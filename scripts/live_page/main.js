@@ -10,9 +10,10 @@ const { description } = data;
 const shownVariables = data.shown.map((place) => description.variables[place]);
 const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
 const history = new History(shownVariables.length);
+const sections = new History(shownVariables.length); // a sample at the end of each period
 const controls = new Map(); // by the place of the variable
 const plots = [];
-const live = (window.live = { history, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf }); // for tests, and the curious
+const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests, and the curious
 let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
 const { recording } = data;
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? data.window : description.duration))));
@@ -60,6 +61,9 @@ function valueOf(formula) {
   }
 }
 
+// By names of what can be set: the ends of its slider.
+const ranges = () => new Map([...controls.values()].map(({ variable, low, high }) => [variable.name, [low, high]]));
+
 function say(words) {
   $("words").hidden = !words;
   $("words").textContent = words;
@@ -73,12 +77,15 @@ const answers = {
     buildScene(rows.length ? rows : history.samples.map((runs) => runs[0]));
   },
   samples({ times, rows, isFresh }) {
-    if (isFresh) history.cut(times[0]);
+    if (isFresh) for (const one of [history, sections]) one.cut(times[0]);
     if (history.length > 0 && history.runs !== rows[0].length) history.clear();
     times.forEach((time, i) => history.add(time, rows[i]));
     viewed = null;
     $("past").max = Math.max(0, history.length - 1);
     $("past").value = $("past").max;
+  },
+  section({ times, rows }) {
+    times.forEach((time, i) => sections.add(time, rows[i]));
   },
   pace({ reached, isBehind }) {
     pace = [0.95 * pace[0] + 0.05 * Number(isBehind), 0.95 * pace[1] + reached];
@@ -153,35 +160,9 @@ function set(place, value) {
   if (history.length <= 1) resetDue = setTimeout(() => order("reset"), 50);
 }
 
-// The arrow keys push the first two inputs as long as they are held.
-function keys() {
-  const inputs = [...controls].filter(([place]) => description.variables[place].role === "input").slice(0, 2);
-  const pushes = new Map();
-  inputs.forEach(([place, control], i) => {
-    pushes.set(i === 0 ? "ArrowLeft" : "ArrowDown", [place, control, -1]);
-    pushes.set(i === 0 ? "ArrowRight" : "ArrowUp", [place, control, 1]);
-    control.element.querySelector(".name").append(Object.assign(document.createElement("small"), { textContent: i === 0 ? " keys ← →" : " keys ↓ ↑" }));
-  });
-  const push = (event, share) => {
-    if (["INPUT", "SELECT"].includes(event.target.tagName) || !pushes.has(event.key) || event.repeat) return;
-    event.preventDefault();
-    const [place, control, sign] = pushes.get(event.key), { variable } = control;
-    const value = share === 0 ? variable.start : variable.start + share * (sign > 0 ? control.high - variable.start : control.low - variable.start);
-    control.choose(value, (chosen) => set(place, chosen));
-  };
-  document.addEventListener("keydown", (event) => push(event, 0.5));
-  document.addEventListener("keyup", (event) => push(event, 0));
-  const actions = { " ": play, ".": () => move("step"), ",": () => move("back"), r: () => move("reset") };
-  document.addEventListener("keydown", (event) => {
-    if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName) || !actions[event.key]) return;
-    event.preventDefault();
-    actions[event.key]();
-  });
-}
-
 function addPlots() {
   for (const { places, across } of data.plots) {
-    const plot = new Plot(history, shownVariables, places, across);
+    const plot = new Plot(history, sections, shownVariables, places, across);
     plots.push(plot);
     $("plots").append(plot.element);
   }
@@ -214,6 +195,7 @@ function viewFrom(place) {
 
 function frame(now) {
   if (recording) playOn(now);
+  else readGamePads();
   if (history.length > 0) {
     const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
     $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
@@ -247,6 +229,10 @@ function addActions() {
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
+  $("period").addEventListener("change", () => {
+    sections.clear();
+    order("period", { value: Math.max(0, $("period").valueAsNumber || 0) });
+  });
   $("past").addEventListener("input", () => viewFrom(Number($("past").value)));
   $("fit").addEventListener("click", () => scene && scene.fit());
   $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
@@ -310,7 +296,8 @@ async function begin() {
   if (!recording) addControls();
   addPlots();
   addActions();
-  keys();
+  addKeys();
+  addVideo();
   if (data.hasScene) {
     await load(data.renderer);
     scene = live.scene = new Scene($("scene"), data.scene, (name) => columnOf.get(name) ?? -1, valueOf);
@@ -318,7 +305,7 @@ async function begin() {
   } else $("view").remove();
   document.body.classList.toggle("plain", !data.hasScene);
   document.body.classList.toggle("recorded", Boolean(recording));
-  for (const name of ["link", "ghost"]) $(name).hidden ||= Boolean(recording);
+  for (const name of ["link", "ghost", "periodChoice"]) $(name).hidden ||= Boolean(recording);
   await (recording ? playRecording() : runFmu());
   requestAnimationFrame(frame);
   document.body.dataset.ready = "true";

@@ -17,9 +17,9 @@ function shown(value, digits = 4) {
 }
 
 class Plot {
-  // history: see history.js; choices: names and units of what can be drawn; across: the place of a variable, or -1 for the time.
-  constructor(history, choices, places, across = -1) {
-    Object.assign(this, { history, choices, places, across, cursor: null });
+  // history: see history.js; section: the same, of what is drawn as points in place of curves; choices: names and units of what can be drawn; across: the place of a variable, or -1 for the time.
+  constructor(history, section, choices, places, across = -1) {
+    Object.assign(this, { history, section, choices, places, across, cursor: null });
     this.element = document.createElement("div");
     this.element.className = "plot";
     this.canvas = document.createElement("canvas");
@@ -73,8 +73,14 @@ class Plot {
     return [low - room, high + room];
   }
 
-  // The samples from first to last, with a mark at one of them.
+  // The samples from first to last, with a mark at one of them; or all points of the section.
   draw(first, last, marked) {
+    const isSection = this.across >= 0 && this.section.length > 0;
+    if (isSection) this.drawSamples(this.section, 0, this.section.length, null);
+    else this.drawSamples(this.history, first, last, marked);
+  }
+
+  drawSamples(history, first, last, marked) {
     const ratio = window.devicePixelRatio || 1, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {
       this.canvas.width = Math.round(width * ratio);
@@ -85,7 +91,7 @@ class Plot {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";
-    const { history, across } = this, column = (place, run) => (i) => history.value(i, place, run);
+    const { across } = this, draw = history === this.section ? this.drawPoints : this.drawLine, column = (place, run) => (i) => history.value(i, place, run);
     const horizontal = across < 0 ? (i) => history.time(i) : column(across, 0);
     const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + 1e-9)] : this.rangeOf(first, last, horizontal);
     const ranges = this.places.map((place) => this.rangeOf(first, last, column(place, 0)));
@@ -102,7 +108,7 @@ class Plot {
     for (let run = history.runs - 1; run >= 0; run--)
       this.places.forEach((place, i) => {
         const along = across < 0 ? horizontal : column(across, run);
-        this.drawLine(pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(place, run)), COLORS[i % COLORS.length], run);
+        draw.call(this, pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(place, run)), COLORS[i % COLORS.length], run);
       });
     pen.restore();
     const at = this.cursor && across < 0 ? history.placeOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
@@ -134,6 +140,11 @@ class Plot {
     pen.lineWidth = run === 0 ? 1.6 : 3;
     pen.stroke();
     pen.globalAlpha = 1;
+  }
+
+  drawPoints(pen, first, last, x, y, color) {
+    pen.fillStyle = color;
+    for (let i = first; i < last; i++) pen.fillRect(x(i) - 1, y(i) - 1, 2, 2);
   }
 
   drawMarks(pen, at, x, y, bottom, ink) {

@@ -11,6 +11,7 @@ let fmus = []; // one, or with its ghost beside it
 let wasm, description, references;
 let values = [new Map(), new Map()]; // what was set, by the place of the variable; of each FMU
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
+let period = 0; // s, after each of which the section has a point; 0 for none
 let ghost = null; // the second one, while it is not run
 let kept = []; // a state for each FMU, of before something was set
 let saved = [], free = []; // [time, a state for each FMU]; states whose places can be used again
@@ -22,10 +23,15 @@ function refuse(problem, content = {}) {
   tell("refused", { words: problem.message, ...content });
 }
 
-// No longer than the step that the author gave, and 30 of them a second to see.
+// No longer than the step that the author gave, and 30 of them a second to see; to the end of a period where there is one.
 function stepLength() {
-  return description.stepSize / Math.max(1, Math.ceil((description.stepSize * 30) / speed - 1e-9));
+  const length = description.stepSize / Math.max(1, Math.ceil((description.stepSize * 30) / speed - 1e-9));
+  if (!(period > 0)) return length;
+  const end = (Math.floor(time / period + 1e-9) + 1) * period;
+  return time + 1.000001 * length > end ? end - time : length;
 }
+
+const isAtPeriod = () => period > 0 && Math.abs(time / period - Math.round(time / period)) < 1e-9;
 
 function save() {
   if (saved.length === SAVED) free.push(saved.shift()[1]);
@@ -53,8 +59,8 @@ function advance(length) {
 
 const sample = () => fmus.map((fmu) => fmu.read(references));
 
-function tellOf(rows, isFresh) {
-  tell("samples", { times: rows.map((row) => row[0]), rows: rows.map((row) => row[1]), isFresh });
+function tellOf(rows, isFresh, name = "samples") {
+  tell(name, { times: rows.map((row) => row[0]), rows: rows.map((row) => row[1]), isFresh });
 }
 
 function tellNow(isFresh = false) {
@@ -68,7 +74,8 @@ function pause() {
 
 function tick() {
   if (!playing) return;
-  const start = performance.now(), length = stepLength(), rows = [];
+  const start = performance.now(), rows = [], section = [];
+  let length = stepLength();
   debt += (Math.min(start - before, 100) / 1000) * speed;
   before = start;
   const every = Math.ceil(debt / length / SAMPLES), from = time;
@@ -77,6 +84,8 @@ function tick() {
     for (let steps = 1; debt >= length && performance.now() < start + BUSY; steps++) {
       advance(length);
       debt -= length;
+      length = stepLength();
+      if (isAtPeriod()) section.push([time, sample()]);
       if (steps % every === 0 || debt < length) rows.push([time, sample()]);
     }
   } catch (problem) {
@@ -87,6 +96,7 @@ function tick() {
     return;
   }
   if (rows.length > 0) tellOf(rows);
+  if (section.length > 0) tellOf(section, false, "section");
   tell("pace", { reached: time - from, isBehind: debt >= length });
   debt = Math.min(debt, length);
   setTimeout(tick, Math.max(0, TICK - (performance.now() - start)));
@@ -134,6 +144,9 @@ const orders = {
   pause,
   speed(message) {
     speed = message.value;
+  },
+  period(message) {
+    period = message.value;
   },
   step() {
     save();

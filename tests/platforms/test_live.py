@@ -2,10 +2,12 @@
 
 import contextlib
 import json
+import math
 import re
 import time
 from types import SimpleNamespace
 
+import mpmath
 import pytest
 
 import fmu
@@ -136,6 +138,54 @@ def run_start(name, values, variable):
     instance = fmu.Instance(name, logging=False)
     with contextlib.closing(SimpleNamespace(close=instance.free)):
         return instance.initialize(values).get(variable)
+
+
+def test_a_section(browser, page_file):
+    """A point at the end of each period, to the step; where an undamped pendulum's own period is given, all are one point."""
+    with opened(browser, page_file("SimplePendulum"), "#b=0&theta=1") as page:
+        # T = 4 K(sin(theta/2)) sqrt(l/g), by the arithmetic-geometric mean: 2 pi sqrt(l/g)/agm(1, cos(theta/2))
+        period = 2 * math.pi * math.sqrt(page.evaluate("live.valueOf('l/g')")) / float(mpmath.agm(1, math.cos(0.5)))
+        page.fill("#period", str(period))
+        page.press("#period", "Enter")
+        page.fill("#speed", "1.3")
+        page.click("#play")
+        page.wait_for_function("live.sections.length >= 5")
+        page.click("#play")
+        places = [page.evaluate("live.names").index(name) for name in ("theta", "omega")]
+        times, points = page.evaluate("[live.sections.times, live.sections.samples.map(runs => [...runs[0]])]")
+        assert times == pytest.approx([period * (k + 1) for k in range(len(times))], rel=1e-12)
+        for point in points:
+            assert [point[place] for place in places] == pytest.approx([1, 0], abs=1e-7)
+
+
+def test_a_game_pad(browser, page_file):
+    """The stick gives the first input the share of its range by which it leans, and its start value when it is let go."""
+    with opened(browser, page_file("InvertedPendulumCart")) as page:
+        lean = "lean => (navigator.getGamepads = () => [null, { axes: [lean, 0.05] }])"
+        force = page.get_by_role("spinbutton", name="F", exact=True)
+        largest = page.evaluate("() => live.rangeOf('F')")[1]
+        page.evaluate(lean, 0.5)
+        page.wait_for_function("live.valueOf('F') > 0")
+        assert float(force.input_value()) == pytest.approx(0.5 * largest)
+        page.evaluate(lean, -1)
+        page.wait_for_function("live.valueOf('F') < 0")
+        page.evaluate(lean, 0.01)
+        page.wait_for_function("live.valueOf('F') === 0")
+
+
+def test_a_video(browser, page_file, tmp_path):
+    """What is moving between two clicks comes as a file that is WebM."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.click("#play")
+        page.click("#video")
+        page.wait_for_timeout(1500)
+        with page.expect_download() as download:
+            page.click("#video")
+        download.value.save_as(tmp_path / "video.webm")
+        content = (tmp_path / "video.webm").read_bytes()
+        assert download.value.suggested_filename == "DoublePendulum.webm"
+        assert content[:4] == b"\x1a\x45\xdf\xa3" and b"webm" in content[:64] and len(content) > 5000
+        assert page.inner_text("#video") == "Video"
 
 
 def test_a_ghost(browser, page_file):

@@ -1,0 +1,23 @@
+// The picture as it moves, as a file of WebM.
+"use strict";
+
+const FRAMES_A_SECOND = 30;
+
+function addVideo() {
+  const button = $("video");
+  button.hidden = !data.hasScene || !window.MediaRecorder;
+  let recorder = null;
+  button.addEventListener("click", () => {
+    if (recorder) return recorder.stop();
+    const parts = [];
+    recorder = new MediaRecorder(scene.renderer.domElement.captureStream(FRAMES_A_SECOND), { mimeType: "video/webm" });
+    recorder.ondataavailable = (event) => parts.push(event.data);
+    recorder.onstop = () => {
+      save(`${description.name}.webm`, new Blob(parts), "video/webm");
+      recorder = null;
+      button.textContent = "Video";
+    };
+    recorder.start();
+    button.textContent = "Stop video";
+  });
+}
