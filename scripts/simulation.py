@@ -4,6 +4,7 @@ import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 from zipfile import BadZipFile
 
 import numpy as np
@@ -12,7 +13,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
 from numpy.lib.recfunctions import repack_fields
 
-from .live_page.description import read_scene, variables_of_scene
+from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem
 from .variables import settable, start_values, why_not
@@ -28,7 +29,7 @@ MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
 class Motion:
     fmu: Path
     description: ModelDescription
-    scene: list  # the elements to be seen
+    tree: ElementTree.Element  # of modelDescription.xml
     start: dict  # the start values of all that have one
     outputs: np.ndarray  # structured: time and the outputs
     values: np.ndarray  # likewise, with where the elements are, energies, and the number of events where there may be some
@@ -90,14 +91,14 @@ def simulate(fmu, start, output=None, input=None, **options):
     outputs = outputs if output is None else [name for name in known(output, ["time", *names], description) if name != "time"]
     if input is not None:
         known(input.dtype.names[1:], [v.name for v in description.modelVariables if v.causality == "input"], description, "is not an input")
-    scene = read_scene(fmu)
+    tree = read_tree(fmu)
     settings = {"fmi_type": "CoSimulation", "logger": print_problem, "debug_logging": True} | options
     try:
-        recorded = dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene), *ENERGIES, EVENTS) if name in names)])
+        recorded = dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)])
         values = simulate_fmu(fmu, start_values=start, input=input, output=list(recorded), **settings)
     except FMICallException as problem:
         raise Problem(f"{fmu}: {problem}") from None
-    return Motion(fmu, description, scene, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
+    return Motion(fmu, description, tree, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
 
 
 def panels_of(description, result):
@@ -160,8 +161,8 @@ def write_results(motion, folder):
     except ModuleNotFoundError:
         plot.unlink(missing_ok=True)
         written["plot"] = "none, since matplotlib is not installed: pip install matplotlib"
-    if motion.scene:
-        animation.write_text(page_of_motion(motion.fmu, motion.values, motion.start), encoding="utf-8")
+    if scene_of(motion.tree):
+        animation.write_text(page_of_motion(motion.tree, motion.values, motion.start), encoding="utf-8")
     else:
         animation.unlink(missing_ok=True)
         written["animation"] = "none, since the system has no particles, bodies, frames or points"

@@ -71,10 +71,6 @@ def scene_of(tree):
     return [{"tag": element.tag, **element.attrib} for place in places for element in tree.iterfind(f"{place}/scene/*")]
 
 
-def read_scene(fmu):
-    return scene_of(read_tree(fmu))
-
-
 def variables_of_scene(scene):
     """The names of those that may tell where things are, and by what forces they are held; an FMU has some of them."""
     positions = (f"{thing['name']}.{component}" for thing in scene if "name" in thing for component in POSITIONS)

@@ -112,9 +112,8 @@ def recording_of(result, names):
     return {"rows": _packed(numbers.astype("<f8").tobytes()), "width": len(names) + 1, "speed": speed}
 
 
-def page_of_motion(fmu, result, start):
-    """The page that plays a simulation's result, from these start values of all variables that have one, as text."""
-    tree = read_tree(fmu)
+def page_of_motion(tree, result, start):
+    """The page that plays the result of simulating an FMU, whose modelDescription.xml is the tree, from these start values of all that have one, as text."""
     description, scene = description_of(tree), scene_of(tree)
     for variable in description["variables"]:
         if variable["name"] in start:

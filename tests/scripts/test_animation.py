@@ -120,7 +120,7 @@ def test_formulas(browser, arm, tmp_path):
     functions = [line.split()[1] for line in fmu.lagc("--words").stdout.splitlines() if line.startswith("function")]
     file = tmp_path / "page.html"
     motion = simulate(fmu.archive("SceneArm"), {}, stop_time=0.1)
-    file.write_text(page_of_motion(motion.fmu, motion.values, motion.start))
+    file.write_text(page_of_motion(motion.tree, motion.values, motion.start))
     with opened(browser, file) as page:
         value = lambda formula: page.evaluate("formula => live.valueOf(formula)", formula)  # noqa: E731
         known = {name: value(f"{name}({'1, 2' if name in ('pow', 'atan2', 'min', 'max') else '1'})") for name in functions}
@@ -138,7 +138,7 @@ def test_size(tmp_path):
     values = np.zeros(len(times), dtype=motion.values.dtype)
     for name in values.dtype.names:
         values[name] = np.sin(times + len(name)) if name != "time" else times
-    text = page_of_motion(motion.fmu, values, motion.start)
+    text = page_of_motion(motion.tree, values, motion.start)
     assert len(text) < 900_000
     assert '"speed":30.0' in text
 

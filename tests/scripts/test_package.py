@@ -154,3 +154,27 @@ def test_pieces_and_kane_of_sympy(tmp_path):
     potential = re.sub(r"\bif\(", "pick(", html.unescape(potential).replace("^", "**"))
     for x, energy in ((3, 9), (1, 0), (-1, 0), (-4, 36)):
         assert eval(potential, {"pick": lambda condition, value, other: value if condition else other}, {"x": x, "k": 9, "d": 2}) == energy
+
+
+def test_what_a_result_can_show(tmp_path):
+    """Figure, page and table of a motion in Python, from an FMU that is gone by then; a picture and a page in Jupyter."""
+    folder = package.assemble(tmp_path / "package")
+    (tmp_path / "Swing.fmu").write_bytes(fmu.archive("SimplePendulum").read_bytes())
+    script = """
+import os, lagrange_fmu
+motion = lagrange_fmu.simulate("Swing.fmu", {"theta": 1}, stop_time=0.5)
+motor = lagrange_fmu.simulate(MOTOR, stop_time=0.5)
+os.remove("Swing.fmu")
+print(motion.animate().save("swing.html").name, len(motion.plot().axes), motion[10:20].shape, motion["theta"][0])
+assert motion._repr_png_().startswith(b"\\x89PNG")
+assert motion.animate()._repr_html_().startswith("<iframe srcdoc=\\"&lt;!doctype html&gt;")
+try:
+    motor.animate()
+except lagrange_fmu.Problem as problem:
+    print(problem)
+""".replace("MOTOR", repr(str(fmu.archive("Motor"))))
+    (tmp_path / "script.py").write_text(script)
+    printed = succeed(package.python(folder, "script.py", cwd=tmp_path)).splitlines()
+    assert printed == ["swing.html 2 (10,) 1.0", "Motor has no particles, bodies, frames or points to be drawn; expected some in the system"]
+    page = (tmp_path / "swing.html").read_text()
+    assert '"recording":{' in page and re.search(r'"name":"theta",[^}]*"start":1.0[,}]', page)

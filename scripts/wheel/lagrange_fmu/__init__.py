@@ -45,7 +45,7 @@ def simulate(
 ) -> Result:
     """
     The motion of an FMU, or of a system, which is built first: a structured NumPy array with a row for each communication point, which
-    has time, in s, and all outputs, in SI units, by name. It has plot() and to_pandas().
+    has time, in s, and all outputs, in SI units, by name. It has plot(), animate() and to_pandas().
 
     start_values: of coordinates, velocities, inputs and parameters by name, in SI units
     output: the names of the variables to record in place of all outputs; local ones, such as "totalEnergy", can be had so

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import html
 import io
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,19 +14,35 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+class Animation:
+    """A page that plays a motion in any browser, and in Jupyter; `page` is its text."""
+
+    def __init__(self, page: str):
+        self.page = page
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        path = Path(path)
+        path.write_text(self.page, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{html.escape(self.page)}" style="width: 100%; height: 560px; border: 1px solid #8884"></iframe>'
+
+
 class Result(np.ndarray):
     """A structured array: result["time"], in s, and result[NAME], in the units of `description`; a picture of itself in Jupyter."""
 
     description: Any  # FMPy's ModelDescription; None where it is no whole motion
+    motion: Any  # all that was simulated, likewise
 
     @classmethod
     def of(cls, motion: Any) -> Result:
         result = motion.outputs.view(cls)
-        result.description = motion.description
+        result.description, result.motion = motion.description, motion
         return result
 
     def __array_finalize__(self, source: Any) -> None:
-        self.description = getattr(source, "description", None)
+        self.description, self.motion = (getattr(source, name, None) for name in ("description", "motion"))
 
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
@@ -38,6 +57,16 @@ class Result(np.ndarray):
             return figure_of(self.description, self)
         except ModuleNotFoundError:
             raise Problem("matplotlib is not installed; it comes with pip install matplotlib") from None
+
+    def animate(self) -> Animation:
+        """The whole motion as a page, which Jupyter shows; save(PATH) writes it for any browser."""
+        from .live_page.description import scene_of
+        from .live_page.page import page_of_motion
+        from .problem import Problem
+
+        if not scene_of(self.motion.tree):
+            raise Problem(f"{self.description.modelName} has no particles, bodies, frames or points to be drawn; expected some in the system")
+        return Animation(page_of_motion(self.motion.tree, self.motion.values, self.motion.start))
 
     def to_pandas(self) -> Any:
         """A DataFrame with time, in s, as its index; needs pip install pandas."""
