@@ -3,10 +3,6 @@
 #include "base/memory.h"
 #include "saddle.h"
 
-static Place target(size_t index) {
-  return place_in(SPACE_TARGET, index);
-}
-
 /* What the masses of fixed coordinates are multiplied by, so that others move. */
 static const double weight_of_fixed = 1e12;
 
@@ -54,8 +50,8 @@ static void append_block(const struct Program *program, struct Values *values, s
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     Place pivot = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n) routine_append(values->routine, COPY, target(row), place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-    else routine_append(values->routine, COPY, target(row + constraints), pivot, 0, 0);
+    if (row < n) routine_copy(values->routine, target_place(row), place_in(SPACE_SIDE, looped->first_side + i));
+    else routine_copy(values->routine, target_place(row + constraints), pivot);
   }
 }
 
@@ -81,10 +77,10 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
   compute_blocks(program, values, side, slope, constraints);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
   for (size_t j = 0; j < constraints; j++) {
-    values_copy(values, target(n + j), side[n + j]);
-    values_copy(values, target(n + 2 * constraints + j), slope[j]);
+    values_copy(values, target_place(n + j), side[n + j]);
+    values_copy(values, target_place(n + 2 * constraints + j), slope[j]);
   }
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, side, starting);
@@ -112,8 +108,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
   const Node *push = program->expressions->corrections.push;
   size_t n = program->equations->count;
   compute_blocks(program, values, push, push, n);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(n + i), push[i]);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(n + i), push[i]);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
@@ -121,8 +117,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
     append_solved(program, values, b, push, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
-        routine_append(values->routine, COPY, target(block->coordinates[i]),
-                       place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+        routine_copy(values->routine, target_place(block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i));
   }
   return routine;
 }

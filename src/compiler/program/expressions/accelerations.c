@@ -121,8 +121,8 @@ static void append_block(struct Values *values, const struct Equations *equation
     routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
-      routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
-                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+      routine_copy(values->routine, place_in(SPACE_ACCELERATION, block->coordinates[i]),
+                   place_in(SPACE_SIDE, looped->first_side + i));
 }
 
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
