@@ -1,6 +1,5 @@
 #include "program/corrections.h"
 
-#include "base/memory.h"
 #include "saddle.h"
 
 /* What the masses of fixed coordinates are multiplied by, so that others move. */
@@ -26,18 +25,15 @@ static void leave_oblique_out(struct Values *values, const struct LoopedBlock *l
     values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
 }
 
-/* Solves a block with its right sides; starting: fixed coordinates stay. */
+/* Factors and solves a block; side: a right side for each row; starting: fixed coordinates stay. */
 static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *side,
                           bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
-  const struct InertiaBlock *block = looped->block;
-  Node *right_side = allocate(block->count, sizeof *right_side);
-  for (size_t i = 0; i < block->count; i++) right_side[i] = side[block->coordinates[i]];
   append_masses(values, looped);
   leave_oblique_out(values, looped);
   if (starting) weigh_fixed(program, values, looped);
   append_factor(values, &program->blocks, number);
-  append_solution(values, &program->blocks, number, right_side);
+  append_solution(values, &program->blocks, number, side);
 }
 
 /* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */

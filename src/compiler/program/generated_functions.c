@@ -72,12 +72,7 @@ static void append_along(const struct Program *program, struct Values *values, s
   append_needed_accelerations(program, values, along, row_total);
   values_compute(values, along, row_total, false);
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
-  for (size_t b = 0; b < program->blocks.count; b++) {
-    const struct InertiaBlock *block = program->blocks.items[b].block;
-    Node *right_side = allocate(block->count, sizeof *right_side);
-    for (size_t i = 0; i < block->count; i++) right_side[i] = along[block->coordinates[i]];
-    append_solution(values, &program->blocks, b, right_side);
-  }
+  for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)
     routine_copy(values->routine, target_place(first + i),
                  rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
