@@ -161,7 +161,7 @@ PLACES = [
      pytest("test_evaluated_code", "taylor-statements")),
     ('[CUBE] = {"$1 * $1 * $1"', '[CUBE] = {"$1 * $1"', pytest("test_evaluated_code", "taylor-statements")),
     ("right[i] = negate(graph, result[i]);", "right[i] = result[i];", pytest("test_evaluated_code", "taylor-statements")),
-    ("right_side[i] = equations->right_side[block->coordinates[i]];", "right_side[i] = equations->right_side[i];",
+    ("side[looped->block->coordinates[i]]);", "side[i]);",
      pytest("test_evaluated_code", "taylor-statements")),
     ("coordinates + (size_t)what->index;", "(size_t)what->index;", pytest("test_evaluated_code", "bdf-statements")),
     ("builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);",

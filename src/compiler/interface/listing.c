@@ -53,15 +53,22 @@ static void append_list(struct Interface *interface, const struct Model *model, 
   }
 }
 
+static struct InterfaceVariable *append_result(struct Interface *interface, const char *name, const char *unit,
+                                               Node node, const char *description) {
+  struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
+  variable->unit = unit;
+  variable->node = node;
+  return variable;
+}
+
 /* They are results, computed when they are read. */
 static void append_calculated(struct Interface *interface, const struct Model *model) {
   for (size_t i = 0; i < model->calculated.count; i++) {
     const struct Variable *source = &model->calculated.items[i];
     struct InterfaceVariable *variable =
-        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
+        append_result(interface, source->name, NULL, source->node, source->description);
     variable->entry.follows_from = names_below(model, source->node);
     set_units(variable, source);
-    variable->node = source->node;
   }
 }
 
@@ -77,13 +84,6 @@ static void append_derivative(struct Interface *interface, const struct Variable
   variable->unit = unit_of_dimension(dimension_multiply(state->dimension, unit_of("s"), -1.0));
 }
 
-static void append_result(struct Interface *interface, const char *name, const char *unit, Node node,
-                          const char *description) {
-  struct InterfaceVariable *variable = append(interface, VARIABLE_RESULT, interface->result_count++, name, description);
-  variable->unit = unit;
-  variable->node = node;
-}
-
 /* Whether two components are of one thing, and both or neither rest on accelerations, which cannot always be had. */
 static bool belong_together(const struct Graph *graph, const struct InterfaceVariable *a,
                             const struct InterfaceVariable *b) {
@@ -95,8 +95,8 @@ static bool belong_together(const struct Graph *graph, const struct InterfaceVar
 static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   for (size_t i = 0; i < model->mechanism.places.count; i++) {
     const struct Variable *source = &model->mechanism.places.items[i];
-    append_result(interface, source->name, source->unit, equations->places[i], source->description);
-    struct InterfaceVariable *variable = &interface->variables[interface->count - 1];
+    struct InterfaceVariable *variable =
+        append_result(interface, source->name, source->unit, equations->places[i], source->description);
     variable->is_continued = i > 0 && belong_together(model->graph, variable - 1, variable);
   }
 }
@@ -105,10 +105,7 @@ static void append_reactions(struct Interface *interface, const struct Model *mo
                              const struct Equations *equations) {
   for (size_t i = 0; i < model->reactions.count; i++) {
     const struct Variable *source = &model->reactions.items[i];
-    struct InterfaceVariable *variable =
-        append(interface, VARIABLE_RESULT, interface->result_count++, source->name, source->description);
-    variable->unit = variable_unit(source);
-    variable->node = equations->reactions[i];
+    append_result(interface, source->name, variable_unit(source), equations->reactions[i], source->description);
   }
 }
 
@@ -129,28 +126,30 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     bool is_of_joint = constraint->force_name != NULL; /* whose description is that of the force */
     char *text = is_of_joint ? copy_text(description) : format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
-    append_result(interface, constraint_force_name(constraint), "", whole_force(model, i, force), text);
-    interface->variables[interface->count - 1].unit =
-        is_of_joint ? copy_text(strcmp(constraint->unit, "m") == 0 ? "N" : "N.m")
-                    : unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
+    const char *unit = is_of_joint ? (strcmp(constraint->unit, "m") == 0 ? "N" : "N.m")
+                                   : unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
+    append_result(interface, constraint_force_name(constraint), unit, whole_force(model, i, force), text);
   }
 }
 
-static void append_mode(struct Interface *interface, const struct Model *model, enum VariableKind kind, Node mode,
-                        const char *name, const char *description) {
+static struct InterfaceVariable *append_mode(struct Interface *interface, const struct Model *model,
+                                             enum VariableKind kind, Node mode, const char *name,
+                                             const char *description) {
   size_t index = (size_t)graph_symbol_of(model->graph, mode)->index;
   struct InterfaceVariable *variable = append(interface, kind, index, name, description);
   variable->node = mode;
   if (kind == VARIABLE_CONTACT) variable->entry.type = TYPE_INTEGER;
+  return variable;
 }
 
 static void append_modes(struct Interface *interface, const struct Model *model) {
   const struct Switches *switches = &model->switches;
   for (size_t i = 0; i < model->modes.count; i++) {
     const struct Variable *mode = &model->modes.items[i];
-    append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
-    interface->variables[interface->count - 1].entry.start = mode->start;
-    interface->variables[interface->count - 1].unit = variable_unit(mode);
+    struct InterfaceVariable *variable =
+        append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
+    variable->entry.start = mode->start;
+    variable->unit = variable_unit(mode);
   }
   for (size_t i = 0; i < switches->contact_count; i++) {
     const char *constraint = model->constraints.items[switches->contacts[i].constraint].name;

@@ -1,11 +1,6 @@
 #include "program/corrections.h"
 
-#include "base/memory.h"
 #include "saddle.h"
-
-static Place target(size_t index) {
-  return place_in(SPACE_TARGET, index);
-}
 
 /* What the masses of fixed coordinates are multiplied by, so that others move. */
 static const double weight_of_fixed = 1e12;
@@ -30,18 +25,15 @@ static void leave_oblique_out(struct Values *values, const struct LoopedBlock *l
     values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
 }
 
-/* Solves a block with its right sides; starting: fixed coordinates stay. */
+/* Factors and solves a block; side: a right side for each row; starting: fixed coordinates stay. */
 static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *side,
                           bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
-  const struct InertiaBlock *block = looped->block;
-  Node *right_side = allocate(block->count, sizeof *right_side);
-  for (size_t i = 0; i < block->count; i++) right_side[i] = side[block->coordinates[i]];
   append_masses(values, looped);
   leave_oblique_out(values, looped);
   if (starting) weigh_fixed(program, values, looped);
   append_factor(values, &program->blocks, number);
-  append_solution(values, &program->blocks, number, right_side);
+  append_solution(values, &program->blocks, number, side);
 }
 
 /* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */
@@ -54,8 +46,8 @@ static void append_block(const struct Program *program, struct Values *values, s
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     Place pivot = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n) routine_append(values->routine, COPY, target(row), place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
-    else routine_append(values->routine, COPY, target(row + constraints), pivot, 0, 0);
+    if (row < n) routine_copy(values->routine, target_place(row), place_in(SPACE_SIDE, looped->first_side + i));
+    else routine_copy(values->routine, target_place(row + constraints), pivot);
   }
 }
 
@@ -81,10 +73,10 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
   compute_blocks(program, values, side, slope, constraints);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
   for (size_t j = 0; j < constraints; j++) {
-    values_copy(values, target(n + j), side[n + j]);
-    values_copy(values, target(n + 2 * constraints + j), slope[j]);
+    values_copy(values, target_place(n + j), side[n + j]);
+    values_copy(values, target_place(n + 2 * constraints + j), slope[j]);
   }
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, side, starting);
@@ -112,8 +104,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
   const Node *push = program->expressions->corrections.push;
   size_t n = program->equations->count;
   compute_blocks(program, values, push, push, n);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(i), ZERO);
-  for (size_t i = 0; i < n; i++) values_copy(values, target(n + i), push[i]);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(n + i), push[i]);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
@@ -121,8 +113,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
     append_solved(program, values, b, push, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
-        routine_append(values->routine, COPY, target(block->coordinates[i]),
-                       place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+        routine_copy(values->routine, target_place(block->coordinates[i]),
+                     place_in(SPACE_SIDE, looped->first_side + i));
   }
   return routine;
 }

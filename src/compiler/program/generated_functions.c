@@ -5,14 +5,6 @@
 #include "program/least_forces.h"
 #include "program/program.h"
 
-static Place target(size_t index) {
-  return place_in(SPACE_TARGET, index);
-}
-
-static void copy_place(struct Values *values, Place to, Place from) {
-  routine_append(values->routine, COPY, to, from, 0, 0);
-}
-
 static struct Routine *prepare_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
   struct NodeList targets = {0};
@@ -26,7 +18,7 @@ static struct Routine *prepare_routine(const struct Program *program, struct Val
   values_compute(values, targets.nodes, targets.count, true);
   for (size_t i = 0; i < inertia->pivot_count; i++)
     if (pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
-  for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target(i), values->prepared->nodes[i]);
+  for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target_place(i), values->prepared->nodes[i]);
   return routine;
 }
 
@@ -35,8 +27,8 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   size_t n = program->equations->count;
   append_accelerations(values, program->equations, &program->blocks, false);
   if (program->equations->has_work) values_compute(values, &program->equations->power, 1, false);
-  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_STATE, n + i));
-  if (program->equations->has_work) values_copy(values, target(2 * n), program->equations->power);
+  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_STATE, n + i));
+  if (program->equations->has_work) values_copy(values, target_place(2 * n), program->equations->power);
   return routine;
 }
 
@@ -80,14 +72,10 @@ static void append_along(const struct Program *program, struct Values *values, s
   append_needed_accelerations(program, values, along, row_total);
   values_compute(values, along, row_total, false);
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
-  for (size_t b = 0; b < program->blocks.count; b++) {
-    const struct InertiaBlock *block = program->blocks.items[b].block;
-    Node *right_side = allocate(block->count, sizeof *right_side);
-    for (size_t i = 0; i < block->count; i++) right_side[i] = along[block->coordinates[i]];
-    append_solution(values, &program->blocks, b, right_side);
-  }
+  for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)
-    copy_place(values, target(first + i), rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
+    routine_copy(values->routine, target_place(first + i),
+                 rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
 }
 
 static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
@@ -96,8 +84,8 @@ static struct Routine *directional_routine(const struct Program *program, struct
   size_t n = program->equations->count;
   append_along(program, values, n, n);
   if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
-  for (size_t i = 0; i < n; i++) copy_place(values, target(i), place_in(SPACE_SEED_STATE, n + i));
-  if (expressions->equations->has_work) values_copy(values, target(2 * n), expressions->power_along);
+  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_SEED_STATE, n + i));
+  if (expressions->equations->has_work) values_copy(values, target_place(2 * n), expressions->power_along);
   return routine;
 }
 
@@ -109,14 +97,14 @@ static void append_jacobian_column(const struct Program *program, struct Values 
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e];
     bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
-    values_copy(values, in_block ? rows->side[row - n] : target(e), jacobian->value[e]);
+    values_copy(values, in_block ? rows->side[row - n] : target_place(e), jacobian->value[e]);
   }
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
     if (number == 0) continue;
     if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
     rows->solved[number - 1] = column + 1;
-    copy_place(values, target(e), rows->side[row - n]);
+    routine_copy(values->routine, target_place(e), rows->side[row - n]);
   }
 }
 
@@ -153,10 +141,10 @@ static struct Routine *linear_routine(const struct Program *program, struct Valu
   struct Routine *routine = values_begin(values);
   size_t states = linear->states, inputs = linear->inputs, columns = states + inputs + 1;
   for (size_t i = 0; i < states; i++) {
-    for (size_t j = 0; j < states; j++) values_copy(values, target(i * columns + j), linear->a[i * states + j]);
+    for (size_t j = 0; j < states; j++) values_copy(values, target_place(i * columns + j), linear->a[i * states + j]);
     for (size_t j = 0; j < inputs; j++)
-      values_copy(values, target(i * columns + states + j), linear->b[i * inputs + j]);
-    values_copy(values, target(i * columns + states + inputs), linear->c[i]);
+      values_copy(values, target_place(i * columns + states + j), linear->b[i * inputs + j]);
+    values_copy(values, target_place(i * columns + states + inputs), linear->c[i]);
   }
   return routine;
 }
@@ -169,7 +157,7 @@ static struct Routine *starts_routine(const struct Program *program, struct Valu
   values_compute(values, nodes, count, true);
   for (size_t i = 0; i < count; i++)
     if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
-      values_copy(values, target(i), nodes[i]);
+      values_copy(values, target_place(i), nodes[i]);
   return routine;
 }
 
@@ -185,7 +173,7 @@ static struct Routine *accelerations_routine(const struct Program *program, stru
   struct Routine *routine = values_begin(values);
   append_accelerations(values, program->equations, &program->blocks, true);
   for (size_t i = 0; i < row_count(program->equations); i++)
-    copy_place(values, target(i), place_in(SPACE_ACCELERATION, i));
+    routine_copy(values->routine, target_place(i), place_in(SPACE_ACCELERATION, i));
   return routine;
 }
 
@@ -199,7 +187,7 @@ static struct Routine *accelerations_along_routine(const struct Program *program
 struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count) {
   struct Routine *routine = values_begin(values);
   values_compute(values, nodes, count, false);
-  for (size_t i = 0; i < count; i++) values_copy(values, target(i), nodes[i]);
+  for (size_t i = 0; i < count; i++) values_copy(values, target_place(i), nodes[i]);
   return routine;
 }
 

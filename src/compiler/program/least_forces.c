@@ -22,7 +22,7 @@ static struct Row *rows_create(const struct Program *program) {
       size_t row = looped->block->coordinates[i];
       if (row >= n)
         rows[row - n] = (struct Row){.side = place_in(SPACE_SIDE, looped->first_side + i),
-                                     .target = place_in(SPACE_TARGET, row),
+                                     .target = target_place(row),
                                      .force = place_in(SPACE_ACCELERATION, row)};
     }
   }
@@ -38,7 +38,7 @@ static void append_origins(const struct Program *program, struct Values *values,
     size_t row = looped->block->coordinates[i];
     Place side = place_in(SPACE_SIDE, looped->first_side + i);
     if (row < n) values_copy(values, side, ZERO);
-    else routine_append(values->routine, COPY, side, rows[row - n].force, 0, 0);
+    else routine_copy(values->routine, side, rows[row - n].force);
   }
   routine_append(values->routine, SOLVE, (Place)number, 0, 0, 0);
 }
@@ -85,12 +85,12 @@ void append_least_forces_along(const struct Program *program, struct Values *val
   append_turns(program, values, rows);
   for (size_t j = 0; j < count; j++) {
     if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].side, rows[j].target, rows[j].turn, 0);
-    else routine_append(values->routine, COPY, rows[j].side, rows[j].target, 0, 0);
+    else routine_copy(values->routine, rows[j].side, rows[j].target);
   }
   for (size_t b = 0; b < blocks->count; b++)
     if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Place)b, 0, 0, 0);
   for (size_t j = 0; j < count; j++) {
     if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].side, rows[j].turn, 0);
-    else routine_append(values->routine, COPY, rows[j].target, rows[j].side, 0, 0);
+    else routine_copy(values->routine, rows[j].target, rows[j].side);
   }
 }

@@ -120,7 +120,7 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
       double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
       double s = mobility_with_friction(settlement, pushes, i, j) * resting->unit[i] * resting->unit[j];
       resting->s[i * n + j] = s;
-      if (mode_of(settlement, contact->mode) != 0.0) resting->free[i] -= s * force / resting->unit[j];
+      if (contact_is_closed(settlement, pushes->member[j])) resting->free[i] -= s * force / resting->unit[j];
     }
   }
 }
@@ -289,12 +289,12 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
   double size = 0.0;
   for (size_t i = 0; i < resting->count; i++) size = fmax(size, fabs(resting->free[i]));
   for (size_t i = 0; i < resting->count; i++) {
-    size_t mode = settlement->switches->contacts[resting->pushes.member[i]].mode;
-    bool is_closed = mode_of(settlement, mode) != 0.0;
+    size_t contact = resting->pushes.member[i];
+    bool is_closed = contact_is_closed(settlement, contact);
     bool presses = resting->found_force[i] > rounded_force * size, parts = resting->found[i] > rounded_force * size;
     if (is_closed ? !parts : !presses) continue;
-    settlement_set_mode(settlement, mode, is_closed ? 0.0 : 1.0);
-    settlement->was_opened[resting->pushes.member[i]] = is_closed ? 1.0 : 0.0;
+    set_contact(settlement, contact, !is_closed);
+    settlement->was_opened[contact] = is_closed ? 1.0 : 0.0;
     changes = true;
   }
   return changes;

@@ -239,9 +239,8 @@ static size_t find_pulling(const struct Settlement *settlement) {
   size_t found = switches->contact_count;
   double most = 0.0;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    const struct ContactFacts *contact = &switches->contacts[i];
-    if (mode_of(settlement, contact->mode) == 0.0) continue;
-    double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
+    if (!contact_is_closed(settlement, i)) continue;
+    double force = settlement->acceleration[lagrangian.coordinate_count + switches->contacts[i].constraint];
     /* An importer comes to a zero or past it, and does not tell whose. */
     bool is_reached = is_hit(settlement, contact_indicator(settlement->switches, i)) ||
                       (settlement->occasion == IN_EXCHANGE && force <= 0.0);

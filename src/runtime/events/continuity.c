@@ -14,7 +14,7 @@ const char constraints_not_kept[] = "the constraints cannot be kept at an event"
 const char *continuity_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
-  if (lagrangian.constraints.projection == NULL || !can_matter || settlement->occasion == AT_START) return NULL;
+  if (lagrangian.constraints.projection == NULL || !can_matter) return NULL;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return constraints_not_kept;
   double moved = lagrangian.constraints.projection->project(settlement->instance, settlement->time, settlement->state);
   return isfinite(moved) ? NULL : constraints_not_kept;
@@ -75,7 +75,7 @@ static const char *check_energy(const struct Settlement *settlement) {
 /* Whether the constraints hold as before in the branches that were switched to. */
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
-  bool may_turn = (settlement->switched != NULL || settlement->set_mode) && !settlement->jumped;
+  bool may_turn = may_turn_gaps(settlement) && !settlement->jumped;
   if (lagrangian.constraints.projection == NULL || !(may_turn || settlement->moved)) return NULL;
   if (evaluate_prepare(instance) != STATUS_DONE) return constraints_not_kept;
   bool starts = settlement->occasion == AT_START;

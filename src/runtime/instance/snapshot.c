@@ -35,13 +35,16 @@ bool snapshot_are_counts(const int64_t *counts, size_t count) {
   return true;
 }
 
+/* The element of numbers that stand at any address. */
+static double number_in(const char *bytes, size_t index) {
+  double number;
+  memcpy(&number, bytes + index * sizeof number, sizeof number);
+  return number;
+}
+
 bool snapshot_is_finite(const void *numbers, size_t count) {
-  const char *bytes = numbers;
-  for (size_t i = 0; i < count; i++) {
-    double number;
-    memcpy(&number, bytes + i * sizeof number, sizeof number);
-    if (!isfinite(number)) return false;
-  }
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(number_in(numbers, i))) return false;
   return true;
 }
 
@@ -67,17 +70,6 @@ static bool may_lack_state(int32_t phase) {
          (phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR);
 }
 
-/* Whether each of the numbers is 0 or 1. */
-static bool are_flags(const void *numbers, size_t count) {
-  const char *bytes = numbers;
-  for (size_t i = 0; i < count; i++) {
-    double number;
-    memcpy(&number, bytes + i * sizeof number, sizeof number);
-    if (number != 0.0 && number != 1.0) return false;
-  }
-  return true;
-}
-
 /* Whether the integers are what each of them can be. */
 static bool are_choices(const struct Situation *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
@@ -86,11 +78,19 @@ static bool are_choices(const struct Situation *fixed) {
   return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE;
 }
 
-/* Whether the element of the parameters is a whole number in this range. */
-static bool is_whole(const char *parameters, size_t index, double lowest, double highest) {
-  double value;
-  memcpy(&value, parameters + index * sizeof value, sizeof value);
-  return value == floor(value) && value >= lowest && value <= highest;
+/* Whether the element is a whole number in this range. */
+static bool is_whole(const char *numbers, size_t index, double lowest, double highest) {
+  double number = number_in(numbers, index);
+  return number == floor(number) && number >= lowest && number <= highest;
+}
+
+/* Whether each of the numbers is 0 or 1. */
+static bool are_flags(const void *numbers, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    double flag = number_in(numbers, i);
+    if (flag != 0.0 && flag != 1.0) return false;
+  }
+  return true;
 }
 
 /* Whether the parameters are of their types. */

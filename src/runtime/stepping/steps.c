@@ -264,8 +264,8 @@ static enum Status check_step(struct Instance *instance, double time, double siz
   if (!isfinite(time + size))
     return refuse_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
                        time);
-  double excess = fmax(rounding, rounding_of_sum(situation, time + size, size));
-  if (situation->stop_time_defined && time + size - situation->stop_time > excess)
+  double allowed = fmax(rounding, rounding_of_sum(situation, time + size, size));
+  if (situation->stop_time_defined && time + size - situation->stop_time > allowed)
     return refuse_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
                        situation->stop_time);
   return STATUS_DONE;

@@ -63,14 +63,11 @@ void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
   if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
 }
 
-static void append_side(struct Values *values, const struct LoopedBlock *looped, const Node *right_side) {
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *side) {
+  const struct LoopedBlock *looped = &blocks->items[number];
   for (size_t i = 0; i < looped->block->count; i++)
-    values_copy(values, place_in(SPACE_SIDE, looped->first_side + i), right_side[i]);
-}
-
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side) {
-  append_side(values, &blocks->items[block], right_side);
-  routine_append(values->routine, SOLVE, (Place)block, 0, 0, 0);
+    values_copy(values, place_in(SPACE_SIDE, looped->first_side + i), side[looped->block->coordinates[i]]);
+  routine_append(values->routine, SOLVE, (Place)number, 0, 0, 0);
 }
 
 /* Multiplications, divisions and additions of factoring a block and solving it once. */
@@ -112,17 +109,15 @@ static void append_block(struct Values *values, const struct Equations *equation
                          size_t number, bool with_forces) {
   const struct LoopedBlock *looped = &blocks->items[number];
   const struct InertiaBlock *block = looped->block;
-  Node *right_side = allocate(block->count, sizeof *right_side);
-  for (size_t i = 0; i < block->count; i++) right_side[i] = equations->right_side[block->coordinates[i]];
   append_masses(values, looped);
   append_factor(values, blocks, number);
-  append_solution(values, blocks, number, right_side);
+  append_solution(values, blocks, number, equations->right_side);
   if (with_forces && block->constraint_count > 0 && block->force_count == 0)
     routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
-      routine_append(values->routine, COPY, place_in(SPACE_ACCELERATION, block->coordinates[i]),
-                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+      routine_copy(values->routine, place_in(SPACE_ACCELERATION, block->coordinates[i]),
+                   place_in(SPACE_SIDE, looped->first_side + i));
 }
 
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,

@@ -47,5 +47,5 @@ void append_factor(struct Values *values, const struct LoopedBlocks *blocks, siz
 /* Leaves the factors of large blocks in their space, where the accelerations themselves are not needed. */
 void append_factors(struct Values *values, const struct LoopedBlocks *blocks);
 
-/* Solves a large block, whose factors are there, for computed right sides; the solution is in its right side. */
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t block, const Node *right_side);
+/* Solves a large block, whose factors are there; side: for each row of the system, computed. The solution is in its right side. */
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *side);

@@ -275,15 +275,14 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   compute_first(builder, values, &equations->power, expressions->equations->has_work);
   append_accelerations(values, equations, blocks, false);
   copy_first(&rows, values);
-  for (size_t i = 0; i < n; i++)
-    routine_append(program->start, COPY, place_in(SPACE_TARGET, i), place_in(SPACE_STATE, n + i), 0, 0);
+  for (size_t i = 0; i < n; i++) routine_copy(program->start, target_place(i), place_in(SPACE_STATE, n + i));
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
-                     place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+      routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+                   place_in(SPACE_SIDE, looped->first_side + i));
   }
-  if (expressions->equations->has_work) values_copy(values, place_in(SPACE_TARGET, 2 * n), equations->power);
+  if (expressions->equations->has_work) values_copy(values, target_place(2 * n), equations->power);
   return program;
 }
 
@@ -312,7 +311,7 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   for (size_t i = 0; with_accelerations && i < n; i++) {
     Place acceleration = place_in(SPACE_ACCELERATION, i);
     routine_append(program->start, FIRST_SLOPE, acceleration, place_in(SPACE_STATE_ROW, n + i), 0, 0);
-    routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i), acceleration, 0, 0);
+    routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
   }
   compute_first(builder, values, expressions->result, count);
   copy_first(&rows, values);
@@ -336,7 +335,6 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   compute_first(builder, values, NULL, 0);
   copy_first(&rows, values);
   for (size_t i = 0; i < forces; i++)
-    routine_append(program->start, COPY, place_in(SPACE_ROW, rows.acceleration_row + i),
-                   place_in(SPACE_ACCELERATION, i), 0, 0);
+    routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + i), place_in(SPACE_ACCELERATION, i));
   return program->limit.count > 0 ? program : NULL;
 }

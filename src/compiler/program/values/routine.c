@@ -91,6 +91,10 @@ void routine_append(struct Routine *routine, enum Opcode opcode, Place result, P
   append(routine, (struct Instruction){.opcode = opcode, .result = result, .operands = {a, b, c}});
 }
 
+void routine_copy(struct Routine *routine, Place to, Place from) {
+  routine_append(routine, COPY, to, from, 0, 0);
+}
+
 void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b) {
   enum Opcode opcode = operation_arity(function) == 2 ? CALL_OF_TWO : CALL;
   append(routine, (struct Instruction){.opcode = opcode, .function = function, .result = result, .operands = {a, b}});

@@ -30,6 +30,11 @@ static inline Place place_in(enum Space space, size_t index) {
   return (Place)space << PLACE_BITS | (Place)index;
 }
 
+/* An element of what the function fills. */
+static inline Place target_place(size_t index) {
+  return place_in(SPACE_TARGET, index);
+}
+
 static inline enum Space space_of(Place place) {
   return (enum Space)(place >> PLACE_BITS);
 }
@@ -71,6 +76,9 @@ struct Routine *routine_create(void);
 
 /* Appends an instruction; operands that the opcode does not have are ignored. */
 void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c);
+
+/* Appends a copy of what is in a place to another. */
+void routine_copy(struct Routine *routine, Place to, Place from);
 
 /* Appends a call of a function. */
 void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b);

@@ -54,7 +54,7 @@ Place values_place(const struct Values *values, Node node) {
 }
 
 void values_copy(struct Values *values, Place target, Node node) {
-  routine_append(values->routine, COPY, target, values_place(values, node), 0, 0);
+  routine_copy(values->routine, target, values_place(values, node));
 }
 
 /* The opcode of a power with a number as exponent that needs no pow(); COPY for none. */

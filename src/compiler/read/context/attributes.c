@@ -13,9 +13,13 @@ void report_at(const struct Reader *reader, xmlNodePtr node, const char *format,
   va_end(arguments);
 }
 
+struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds) {
+  return (struct Place){
+      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
+}
+
 bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
-  struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  return *text != '\0' && parse_number(reader->scope, text, place, value);
+  return *text != '\0' && parse_number(reader->scope, text, place_at(node, name, 0), value);
 }
 
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
@@ -26,8 +30,7 @@ bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, 
 static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
-  struct Place place = {.line = xmlGetLineNo(node), .what = name};
-  char *expanded = parse_name(reader->scope, text, place, parts);
+  char *expanded = parse_name(reader->scope, text, place_at(node, name, 0), parts);
   return expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
 }
 
@@ -44,9 +47,7 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
   char *text = attribute(node, name);
   if (text == NULL) return false;
   char *what = format_text("%s of <%s>", name, (const char *)node->name);
-  struct Place place = {
-      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
-  if (*text != '\0') *value = parse_expression(reader->scope, text, place);
+  if (*text != '\0') *value = parse_expression(reader->scope, text, place_at(node, what, kinds));
   return true;
 }
 
@@ -85,10 +86,7 @@ Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node t
 }
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
-  char *text = text_of(node);
-  struct Place place = {
-      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
-  return parse_expression(reader->scope, text, place);
+  return parse_expression(reader->scope, text_of(node), place_at(node, what, kinds));
 }
 
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {

@@ -78,6 +78,9 @@ enum {
   IN_OUTPUT = IN_FORCE | KIND(ACCELERATION) | KIND(REACTION) | CONTACT_STATE,
 };
 
+/* An expression in the line of an element, which may depend on these kinds of symbols. */
+struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds);
+
 /* True and *value set where the attribute is present and right; reports an error where it is not right. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
 

@@ -132,8 +132,7 @@ static void note_given(struct Reader *reader, const struct Source *source) {
   for (xmlNodePtr node = source->include->children; node != NULL; node = node->next) {
     char *text = node->type == XML_ELEMENT_NODE ? attribute(node, "name") : NULL;
     if (text == NULL) continue;
-    struct Place place = {.line = xmlGetLineNo(node), .what = "name"};
-    char *name = parse_name(reader->scope, text, place, true);
+    char *name = parse_name(reader->scope, text, place_at(node, "name", 0), true);
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
     const struct Given *other = names_find(reader->includes->given, full_name);
     if (other != NULL && other->source == source->outer)

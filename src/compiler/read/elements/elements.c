@@ -26,8 +26,7 @@ static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const st
   struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
   if (is_given(given, "value")) node = given->node;
   char *text = attribute(node, "value");
-  struct Place place = {.line = xmlGetLineNo(node), .what = "value"};
-  bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place, value);
+  bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place_at(node, "value", 0), value);
   source_enter(reader, present);
   return right;
 }

@@ -160,10 +160,8 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
 static struct Quantity look_up(struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   const struct Quantity *quantity = scope_find(parser->scope, full_name);
-  bool waits = quantity == NULL && definitions_wait_for(parser->scope->definitions, full_name);
-  if (waits) return nothing;
   if (quantity == NULL) {
-    report_unknown_name(parser, name);
+    if (!definitions_wait_for(parser->scope->definitions, full_name)) report_unknown_name(parser, name);
     return nothing;
   }
   if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
@@ -455,13 +453,9 @@ static bool read_text(struct Scope *scope, const char *text, struct Place place,
   return !parser.failed;
 }
 
-static bool read_expression(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
-  return read_text(scope, text, place, parse_sum, value);
-}
-
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
   struct Quantity value;
-  read_expression(scope, text, place, &value);
+  read_text(scope, text, place, parse_sum, &value);
   return value;
 }
 
@@ -480,7 +474,7 @@ bool parse_when(struct Scope *scope, const char *text, struct Place place, Node 
 
 bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
   place.kinds = 0;
-  return read_expression(scope, text, place, value);
+  return read_text(scope, text, place, parse_sum, value);
 }
 
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
@@ -497,6 +491,5 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place, bool
   if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
     FAIL(&parser, "%s: '%s' is not a name; expected letters, digits and _, or name[index]%s", place.what, text,
          parts ? ", also of what is included, as in motor.theta" : "");
-  if (!parser.failed) return name;
-  return NULL;
+  return parser.failed ? NULL : name;
 }

@@ -27,10 +27,7 @@ static Node read_constant(struct Reader *reader, xmlNodePtr node, const char *na
 static struct Spring spring_of(struct Reader *reader, xmlNodePtr node, unsigned kinds) {
   struct Graph *graph = reader->model->graph;
   char *text = format_text("distance(%s, %s)", attribute(node, "from"), attribute(node, "to"));
-  struct Place place = {.line = xmlGetLineNo(node),
-                        .what = "the length of <spring>",
-                        .kinds = kinds,
-                        .input_derivatives = (kinds & WITH_RATES) != 0};
+  struct Place place = place_at(node, "the length of <spring>", kinds);
   struct Spring spring = {.stiffness = read_constant(reader, node, "stiffness", "N/m"),
                           .damping = read_constant(reader, node, "damping", "N.s/m"),
                           .length = parse_expression(reader->scope, text, place).node};
