@@ -1,6 +1,7 @@
 #include "formula_tree.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,10 +135,6 @@ static struct Formula *read_sum(struct Text *text) {
   return whole;
 }
 
-static double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
 /* Of the formula and all in it. Signs, blanks around them and parentheses count as letters. */
 static void measure(struct Formula *formula) {
   double sum = 0.0, largest = 0.0;
@@ -146,7 +143,7 @@ static void measure(struct Formula *formula) {
     measure(formula->parts[i]);
     formula->is_tall |= formula->parts[i]->is_tall;
     sum += formula->parts[i]->width;
-    largest = larger(largest, formula->parts[i]->width);
+    largest = fmax(largest, formula->parts[i]->width);
   }
   double count = (double)formula->count;
   switch (formula->kind) {

@@ -259,8 +259,7 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
     expand_all(&expansion, model, equations, linear);
     linear->constraints->count = 0; /* the linear equations obey them by themselves */
   }
-  if (!singular) return linear;
-  return NULL;
+  return singular ? NULL : linear;
 }
 
 /* A row of A and B from the gradient of an acceleration; reports where it is not constant. */

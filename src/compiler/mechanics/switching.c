@@ -251,8 +251,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->values = values.nodes;
   switching->value_count = values.count;
   fill_roundings(model, &counts, switching);
-  if (switching->indicator_count > 0) return switching;
-  return NULL;
+  return switching->indicator_count > 0 ? switching : NULL;
 }
 
 Node without_branches(const struct Model *model, Node node) {

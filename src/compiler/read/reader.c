@@ -150,8 +150,7 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
     apply_point(model, *scope, options->point, options->point_count, &local);
   xmlFreeDoc(document);
   diagnostics->errors += local.errors;
-  if (local.errors == 0) return model;
-  return NULL;
+  return local.errors == 0 ? model : NULL;
 }
 
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {

@@ -32,6 +32,5 @@ struct Elimination *lu_pattern_create(const struct Graph *graph, const struct Ja
   struct Position *positions = allocate(jacobian->count + coordinates, sizeof *positions);
   struct Elimination *pattern = allocate(1, sizeof *pattern);
   *pattern = eliminate(graph, coordinates, coordinates, positions, find_positions(jacobian, coordinates, positions));
-  if (is_sparse(pattern, coordinates)) return pattern;
-  return NULL;
+  return is_sparse(pattern, coordinates) ? pattern : NULL;
 }
