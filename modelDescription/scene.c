@@ -5,6 +5,7 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
+#include "scene/formulas.h"
 #include "scene/links.h"
 #include "scene/surfaces.h"
 #include "xml_output.h"
@@ -90,14 +91,21 @@ static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, co
   xmlTextWriterEndElement(writer);
 }
 
-static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct Joint *joint) {
+/* By its formula, or as it is. */
+static void write_place(xmlTextWriterPtr writer, const char *name, double place, const char *formula) {
+  if (formula != NULL) write_attribute(writer, name, formula);
+  else write_rounded(writer, name, place);
+}
+
+static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct Joint *joint,
+                        char **formulas) {
   xmlTextWriterStartElement(writer, BAD_CAST "joint");
   write_thing(writer, "of", samples, joint->of);
-  write_rounded(writer, "x", joint->x);
-  write_rounded(writer, "y", joint->y);
+  write_place(writer, "x", joint->place[0], formulas[0]);
+  write_place(writer, "y", joint->place[1], formulas[1]);
   write_thing(writer, "with", samples, joint->with);
-  write_rounded(writer, "withX", joint->with_x);
-  write_rounded(writer, "withY", joint->with_y);
+  write_place(writer, "withX", joint->place[2], formulas[2]);
+  write_place(writer, "withY", joint->place[3], formulas[3]);
   for (size_t i = 0; i < joint->force_count; i++) {
     write_attribute(writer, format_text("force%zu", i + 1), force_name(samples, joint->constraints[i]));
     write_rounded(writer, format_text("x%zu", i + 1), joint->along[i][0]);
@@ -119,11 +127,12 @@ static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples
 }
 
 static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model) {
-  struct Samples samples = take_samples(model, false);
+  struct Samples samples = take_samples(model, false, NULL);
   struct Links links = find_links(&samples);
+  char **formulas = joint_formulas(model, &links);
   struct Surfaces surfaces = find_surfaces(&samples);
   for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);
-  for (size_t i = 0; i < links.joint_count; i++) write_joint(writer, &samples, &links.joints[i]);
+  for (size_t i = 0; i < links.joint_count; i++) write_joint(writer, &samples, &links.joints[i], formulas + PLACES * i);
   for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
   release_samples(&samples);
 }

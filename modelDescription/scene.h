@@ -1,5 +1,5 @@
 /*
- * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/animation).
+ * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/live_page).
  * It stands in what FMI leaves to the tool: VendorAnnotations of FMI 2.0, Annotations of FMI 3.0.
  *
  *   <gravity x="" y="" z="-g"/>                           where it was given
@@ -15,8 +15,8 @@
  *   <surface of="ball" x="" y="" z="" nx="" ny="" nz=""/> a plane that a thing hits, with the normal outwards; stop="true" where a
  *                                                         coordinate has a limit there
  *
- * All but names are formulas of parameters, in kg, kg.m2 and m/s2; rods, joints and surfaces are told by numbers at the start values
- * of parameters. Without in="..." a thing is in the base.
+ * All but names are formulas of parameters, in m, kg, kg.m2 and m/s2; but factors, forces and surfaces, and places of joints that are no
+ * sums of multiples of parameters, are numbers at their start values. Without in="..." a thing is in the base.
  */
 #pragma once
 

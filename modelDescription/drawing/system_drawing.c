@@ -151,7 +151,7 @@ static void append_bodies(struct Drawing *drawing, const struct Sight *sight, co
     append_line(drawing, LINK, spot_of(sight, links->rods[i].from), spot_of(sight, links->rods[i].to));
   for (size_t i = 0; i < links->joint_count; i++)
     append_line(drawing, LINK, spot_of(sight, links->joints[i].of),
-                spot_on(sight, links->joints[i].of, links->joints[i].x, links->joints[i].y));
+                spot_on(sight, links->joints[i].of, links->joints[i].place[0], links->joints[i].place[1]));
   for (size_t i = 0; i < samples->thing_count; i++)
     if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
 }
@@ -172,7 +172,7 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
   }
   for (size_t i = 0; i < sight->links.joint_count; i++) {
     const struct Joint *joint = &sight->links.joints[i];
-    append_pivot(drawing, spot_on(sight, joint->of, joint->x, joint->y));
+    append_pivot(drawing, spot_on(sight, joint->of, joint->place[0], joint->place[1]));
   }
   append_pivot(drawing, spot_of(sight, 0));
 }
@@ -224,7 +224,7 @@ static bool is_finite(const struct Rectangle *all) {
 }
 
 static struct Sight sight_of(const struct Model *model) {
-  struct Sight sight = {.samples = take_samples(model, true), .values = values_at(model, NULL)};
+  struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(model, NULL)};
   sight.links = find_links(&sight.samples);
   sight.surfaces = find_surfaces(&sight.samples);
   if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));

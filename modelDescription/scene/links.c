@@ -130,20 +130,22 @@ static void set_forces(const struct Samples *samples, const double *multiples, s
   joint->along[1][1] = a[0][0] / determinant;
 }
 
-static void try_joint(struct Links *links, const struct Samples *samples, size_t of, size_t with) {
-  struct Joint joint = {.of = of, .with = with};
+bool find_joint(const struct Samples *samples, struct Joint *joint) {
   size_t columns = 4 + 2 * samples->constraint_count;
   struct LeastSquares system = least_squares_create(2 * samples->count, columns);
   double *solution = allocate(columns, sizeof *solution);
-  fill_joint(samples, &joint, &system);
-  if (!least_squares_solve(&system, 4, solution)) return;
-  joint.x = solution[0];
-  joint.y = solution[1];
-  joint.with_x = solution[2];
-  joint.with_y = solution[3];
-  bool is_loose = with != 0 && !samples->things[with].is_planar && hypot(joint.with_x, joint.with_y) > 1e-9;
-  if (is_loose) return; /* a particle has no place but its own */
-  set_forces(samples, solution + 4, &joint);
+  fill_joint(samples, joint, &system);
+  if (!least_squares_solve(&system, PLACES, solution)) return false;
+  for (int i = 0; i < PLACES; i++) joint->place[i] = solution[i];
+  bool is_loose = joint->with != 0 && !samples->things[joint->with].is_planar && hypot(solution[2], solution[3]) > 1e-9;
+  if (is_loose) return false; /* a particle has no place but its own */
+  set_forces(samples, solution + PLACES, joint);
+  return true;
+}
+
+static void try_joint(struct Links *links, const struct Samples *samples, size_t of, size_t with) {
+  struct Joint joint = {.of = of, .with = with};
+  if (!find_joint(samples, &joint)) return;
   links->joints = make_room(links->joints, links->joint_count, sizeof *links->joints);
   links->joints[links->joint_count++] = joint;
 }

@@ -3,7 +3,7 @@
 
 #include "samples.h"
 
-enum { FORCES = 2 };
+enum { FORCES = 2, PLACES = 4 };
 
 /* Two things whose distance stays the same; one constraint's force, times the factor, presses them apart. */
 struct Rod {
@@ -17,8 +17,8 @@ struct Rod {
 /* A place of a body in the plane that it shares with another thing; forces of constraints push the body there. */
 struct Joint {
   size_t of, with;
-  double x, y;           /* m, along the body's axes */
-  double with_x, with_y; /* along those of the other, if it is a body in the plane too, or from its place */
+  double place
+      [PLACES]; /* m: x and y along the body's axes, and x and y along those of the other, if it is a body in the plane too, or from its place */
   size_t force_count;
   size_t constraints[FORCES]; /* among the model's */
   double along[FORCES][2];    /* N along x and y for each unit of the constraint's force */
@@ -30,5 +30,8 @@ struct Links {
   struct Joint *joints;
   size_t joint_count;
 };
+
+/* Finds the place that a body in the plane and another thing share, and what forces push there; false where there is none. */
+bool find_joint(const struct Samples *samples, struct Joint *joint);
 
 struct Links find_links(const struct Samples *samples);

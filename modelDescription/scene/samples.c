@@ -70,19 +70,26 @@ static double moved(size_t sample, size_t symbol) {
   return sample == 0 ? 0.0 : 0.4 * sin(1.0 + 2.7 * (double)sample * (double)(symbol + 1));
 }
 
-struct Samples take_samples(const struct Model *model, bool is_still) {
+static double *moved_symbols(const struct Model *model, size_t sample, bool is_still, const double *parameters) {
+  double *symbols = start_values(model);
+  for (size_t i = 0; i < model->graph->symbol_count; i++) {
+    enum SymbolKind kind = model->graph->symbols[i].kind;
+    bool is_moved = kind == COORDINATE || (!is_still && (kind == INPUT || kind == TIME));
+    if (is_moved) symbols[i] += moved(sample, i);
+  }
+  for (size_t i = 0; parameters != NULL && i < model->parameters.count; i++)
+    symbols[model->graph->vertices[model->parameters.items[i].node].left] += parameters[i];
+  return symbols;
+}
+
+struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters) {
   struct Samples samples = {.model = model};
   find_things(&samples);
   find_constraints(&samples);
   samples.count = FEWEST + 2 * samples.constraint_count;
   samples.values = allocate(samples.count, sizeof *samples.values);
   for (size_t k = 0; k < samples.count; k++) {
-    double *symbols = start_values(model);
-    for (size_t i = 0; i < model->graph->symbol_count; i++) {
-      enum SymbolKind kind = model->graph->symbols[i].kind;
-      bool is_moved = kind == COORDINATE || (!is_still && (kind == INPUT || kind == TIME));
-      if (is_moved) symbols[i] += moved(k, i);
-    }
+    double *symbols = moved_symbols(model, k, is_still, parameters);
     samples.values[k] = graph_evaluate(model->graph, symbols);
     release(symbols);
   }

@@ -23,8 +23,11 @@ struct Samples {
   size_t count;
 };
 
-/* is_still: time and inputs are those of the start, so that what they move stands still too. */
-struct Samples take_samples(const struct Model *model, bool is_still);
+/*
+ * is_still: time and inputs are those of the start, so that what they move stands still too. parameters: what is added to the start
+ * value of each; NULL for nothing.
+ */
+struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters);
 
 /* Large systems have many nodes. */
 void release_samples(struct Samples *samples);

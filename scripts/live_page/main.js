@@ -94,6 +94,7 @@ const answers = {
     setPlaying(false);
   },
   accepted({ about }) {
+    if (scene) scene.adapt();
     controls.get(about)?.say("");
     say("");
   },

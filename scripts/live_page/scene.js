@@ -48,8 +48,24 @@ class Scene {
   // Of a joint: where it is on the body that it holds.
   jointPosition(sample, joint, target) {
     const i = this.byName.get(joint.of);
-    target.set(Number(joint.x), Number(joint.y), 0).applyMatrix4(this.turn(sample, i));
+    target.set(joint.place[0], joint.place[1], 0).applyMatrix4(this.turn(sample, i));
     return target.add(this.position(sample, i));
+  }
+
+  // Formulas hold for the present values of parameters.
+  evaluate() {
+    for (const holder of this.holders) if (holder.tag === "joint") holder.place = [holder.x, holder.y].map((formula) => this.value(formula));
+  }
+
+  // As they are with other values of parameters: joints, and bodies' sizes.
+  adapt() {
+    if (!this.objects) return;
+    this.evaluate();
+    this.solids = this.things.map((thing) => this.solidOf(thing));
+    this.things.forEach((thing, i) => {
+      this.objects[i].remove(...this.objects[i].children);
+      this.addParts(this.objects[i], thing, i);
+    });
   }
 
   upwards() {
@@ -72,6 +88,7 @@ class Scene {
 
   // Builds what is seen, of a size for all of these samples.
   build(samples) {
+    this.evaluate();
     this.plane = this.findPlane(samples);
     this.up = this.upwards();
     this.box = new THREE.Box3();
@@ -142,7 +159,16 @@ class Scene {
   }
 
   addThing(thing, i) {
-    const group = new THREE.Group(), solid = this.solids[i];
+    const group = new THREE.Group();
+    this.addParts(group, thing, i);
+    group.matrixAutoUpdate = false;
+    this.world.add(group);
+    this.addLabel(thing.name);
+    return group;
+  }
+
+  addParts(group, thing, i) {
+    const solid = this.solids[i];
     if (solid) group.add(this.meshOf(solid, i));
     else if (this.ballRadius(i) > 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
@@ -151,10 +177,6 @@ class Scene {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
       if (!this.plane) group.add(new THREE.AxesHelper(0.12 * this.radius));
     }
-    group.matrixAutoUpdate = false;
-    this.world.add(group);
-    this.addLabel(thing.name);
-    return group;
   }
 
   meshOf(solid, i) {

@@ -16,17 +16,24 @@ def scene_of(path, folder):
 
 
 def test_joints_of_a_linkage(tmp_path):
-    """Crank, coupler and rocker of lengths 0.3, 0.8, 0.6 on pivots 0.9 apart; loopX and loopY are what closes the loop."""
+    """Crank, coupler and rocker of lengths a, b, c on pivots d apart; loopX and loopY are what closes the loop."""
     joints = scene_of(fmu.ROOT / "fmu" / "FourBar" / "system.xml", tmp_path).findall("joint")
-    numbers = {(one.get("of"), one.get("with")): [float(one.get(name)) for name in ("x", "y", "withX", "withY")] for one in joints}
-    assert numbers == {
-        ("crank", None): [-0.15, 0, 0, 0],
-        ("rocker", None): [-0.3, 0, 0.9, 0],
-        ("coupler", "crank"): [-0.4, 0, 0.15, 0],
-        ("rocker", "coupler"): [0.3, 0, 0.4, 0],
+    assert {(one.get("of"), one.get("with")): [one.get(name) for name in ("x", "y", "withX", "withY")] for one in joints} == {
+        ("crank", None): ["-0.5*a", "0", "0", "0"],
+        ("rocker", None): ["-0.5*c", "0", "d", "0"],
+        ("coupler", "crank"): ["-0.5*b", "0", "0.5*a", "0"],
+        ("rocker", "coupler"): ["0.5*c", "0", "0.5*b", "0"],
     }
     (closing,) = (one for one in joints if one.get("force1"))
     assert [closing.get(name) for name in ("force1", "x1", "y1", "force2", "x2", "y2")] == ["loopX.force", "1", "0", "loopY.force", "0", "1"]
+
+
+def test_places_of_joints(tmp_path):
+    """Sums of multiples of parameters with what remains; a number where the law is another."""
+    (tmp_path / "system.xml").write_text(f"""{HEAD}<parameter name="h" start="0.3"/><coordinate name="phi" velocity="omega"/>
+  <body name="bar" mass="1" inertia="1" angle="phi" x="h - 2*l + 0.1 + 0.5*l*cos(phi)" y="sqrt(l) + 0.5*l*sin(phi)"/></system>""")
+    (joint,) = scene_of(tmp_path / "system.xml", tmp_path).findall("joint")
+    assert [joint.get(name) for name in ("x", "y", "withX", "withY")] == ["-0.5*l", "0", "-2*l + h + 0.1", "1.414213562"]
 
 
 @pytest.mark.parametrize("constraint, factor", [("sqrt(x^2 + y^2) - l", "-1"), ("(x^2 + y^2 - l^2)/2", "-2"), ("l^2 - x^2 - y^2", "4")])

@@ -140,6 +140,29 @@ def run_start(name, values, variable):
         return instance.initialize(values).get(variable)
 
 
+def test_lengths_change(browser, page_file):
+    """Rods of a linkage that become longer or shorter still meet at their joints, and those of the base stay where it is."""
+    joints = """() => {
+      const sample = live.history.samples[live.history.length - 1][0], { scene } = live, place = (joint) => scene.jointPosition(sample, joint, new THREE.Vector3()).toArray();
+      return scene.holders.filter((joint) => joint.withX !== undefined).map((joint) => {
+        const other = [joint.withX, joint.withY].map((formula) => live.valueOf(formula));
+        return [place(joint), joint.with ? place({ of: joint.with, place: other }) : [...other, 0]];
+      });
+    }"""
+    with opened(browser, page_file("FourBar")) as page:
+        for name, value in (("a", "0.25"), ("c", "0.7"), ("b", "0.8")):
+            page.get_by_role("spinbutton", name=name, exact=True).fill(value)
+            page.get_by_role("spinbutton", name=name, exact=True).press("Enter")
+        page.click("#reset")
+        page.wait_for_function("live.scene.holders.some((joint) => joint.place && Math.abs(joint.place[0]) === 0.35)")
+        page.click("#step")
+        found = page.evaluate(joints)
+        assert len(found) == 4
+        for here, there in found:
+            assert here == pytest.approx(there, abs=1e-6)
+        assert sum(abs(here[0] - 0.9) < 1e-6 and abs(here[1]) < 1e-6 for here, _ in found) == 1
+
+
 def test_a_section(browser, page_file):
     """A point at the end of each period, to the step; where an undamped pendulum's own period is given, all are one point."""
     with opened(browser, page_file("SimplePendulum"), "#b=0&theta=1") as page:

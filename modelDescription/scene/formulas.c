@@ -1,0 +1,90 @@
+#include "formulas.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/memory.h"
+
+enum { MOST_PARAMETERS = 40, TRIALS = 2 };
+
+static const double NO_MULTIPLE = 1e-9;
+
+/* What is added to the parameters: to one of them, or to all, in each trial otherwise. */
+static double change_of(const struct Model *model, size_t parameter) {
+  double start = model->parameters.items[parameter].start;
+  return model->parameters.items[parameter].type != TYPE_REAL ? 0.0 : start != 0.0 ? 0.1 * start : 0.1;
+}
+
+/* The places of all joints with the parameters changed, PLACES a joint; NULL where a joint has none then. */
+static double *places_with(const struct Model *model, const struct Links *links, const double *changes) {
+  struct Samples samples = take_samples(model, false, changes);
+  double *places = allocate(PLACES * links->joint_count, sizeof *places);
+  for (size_t i = 0; i < links->joint_count && places != NULL; i++) {
+    struct Joint joint = {.of = links->joints[i].of, .with = links->joints[i].with};
+    if (!find_joint(&samples, &joint)) places = NULL;
+    for (int k = 0; k < PLACES && places != NULL; k++) places[PLACES * i + (size_t)k] = joint.place[k];
+  }
+  release_samples(&samples);
+  return places;
+}
+
+/* The multiples of each parameter in each place, a row a place; false where they cannot be told. */
+static bool find_multiples(const struct Model *model, const struct Links *links, double *multiples) {
+  size_t count = model->parameters.count;
+  for (size_t p = 0; p < count; p++) {
+    double *changes = allocate(count, sizeof *changes);
+    changes[p] = change_of(model, p);
+    if (changes[p] == 0.0) continue;
+    double *places = places_with(model, links, changes);
+    if (places == NULL) return false;
+    for (size_t i = 0; i < PLACES * links->joint_count; i++)
+      multiples[i * count + p] = (places[i] - links->joints[i / PLACES].place[i % PLACES]) / changes[p];
+  }
+  return true;
+}
+
+/* Whether a place is where the multiples say when all parameters change. */
+static bool is_sum(const double *multiples, const double *changes, size_t count, double start, double place) {
+  double expected = start, size = fabs(start) + fabs(place);
+  for (size_t p = 0; p < count; p++) expected += multiples[p] * changes[p];
+  return fabs(place - expected) <= 1e-7 * size;
+}
+
+static char *sum_as_text(const struct Model *model, const double *multiples, double start) {
+  struct TextStream text;
+  FILE *file = open_text(&text);
+  double rest = start;
+  bool is_first = true;
+  for (size_t p = 0; p < model->parameters.count; p++) {
+    if (fabs(multiples[p]) < NO_MULTIPLE) continue;
+    const struct Variable *parameter = &model->parameters.items[p];
+    if (fabs(multiples[p] - 1.0) < NO_MULTIPLE) fprintf(file, "%s%s", is_first ? "" : " + ", parameter->name);
+    else fprintf(file, "%s%.9g*%s", is_first ? "" : " + ", multiples[p], parameter->name);
+    rest -= multiples[p] * parameter->start;
+    is_first = false;
+  }
+  if (fabs(rest) > 1e-9 * fabs(start)) fprintf(file, " + %.9g", rest);
+  char *formula = close_text(&text);
+  return is_first ? NULL : formula;
+}
+
+char **joint_formulas(const struct Model *model, const struct Links *links) {
+  size_t count = model->parameters.count, place_count = PLACES * links->joint_count;
+  char **formulas = allocate(place_count + 1, sizeof *formulas);
+  double *multiples = allocate(place_count * count + 1, sizeof *multiples);
+  if (links->joint_count == 0 || count > MOST_PARAMETERS || !find_multiples(model, links, multiples)) return formulas;
+  bool *holds = allocate(place_count, sizeof *holds);
+  for (size_t i = 0; i < place_count; i++) holds[i] = true;
+  for (int trial = 0; trial < TRIALS; trial++) {
+    double *changes = allocate(count, sizeof *changes);
+    for (size_t p = 0; p < count; p++)
+      changes[p] = change_of(model, p) * sin(1.0 + 1.7 * (double)(p + 1) * (trial + 1));
+    double *places = places_with(model, links, changes);
+    for (size_t i = 0; i < place_count; i++)
+      holds[i] &= places != NULL &&
+                  is_sum(multiples + i * count, changes, count, links->joints[i / PLACES].place[i % PLACES], places[i]);
+  }
+  for (size_t i = 0; i < place_count; i++)
+    if (holds[i]) formulas[i] = sum_as_text(model, multiples + i * count, links->joints[i / PLACES].place[i % PLACES]);
+  return formulas;
+}
