@@ -10,6 +10,7 @@
 #include "common_elements.h"
 #include "interface/arrays.h"
 #include "model_structure.h"
+#include "quantities.h"
 #include "scene.h"
 #include "xml_output.h"
 
@@ -64,6 +65,7 @@ static void write_start(xmlTextWriterPtr writer, const struct InterfaceVariable 
 static void write_numbers(xmlTextWriterPtr writer, const struct Interface *interface,
                           const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
+  if (declared_type(variable) != NULL) write_attribute(writer, "declaredType", declared_type(variable));
   if (variable->unit != NULL && entry->type == TYPE_REAL) write_attribute(writer, "unit", variable->unit);
   if (variable->display_unit != NULL && entry->type == TYPE_REAL)
     write_attribute(writer, "displayUnit", variable->display_unit);
@@ -128,6 +130,7 @@ bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, 
   write_attribute(writer, "variableNamingConvention", naming_convention(model));
   write_interfaces(writer, program);
   write_units(writer, program->interface, program->interface->count);
+  write_types(writer, program->interface, program->interface->count, "Float64Type");
   write_log_categories(writer);
   write_experiment(writer, model);
   write_variables(writer, program->interface);

@@ -6,6 +6,7 @@
 
 #include "common_elements.h"
 #include "model_structure.h"
+#include "quantities.h"
 #include "scene.h"
 #include "xml_output.h"
 
@@ -49,6 +50,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
                        const struct InterfaceVariable *variable) {
   enum VariableKind kind = variable->entry.kind;
   xmlTextWriterStartElement(writer, BAD_CAST "Real");
+  if (declared_type(variable) != NULL) write_attribute(writer, "declaredType", declared_type(variable));
   if (variable->unit != NULL) write_attribute(writer, "unit", variable->unit);
   if (variable->display_unit != NULL) write_attribute(writer, "displayUnit", variable->display_unit);
   if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
@@ -108,6 +110,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
                                     switching != NULL ? switching->indicator_count : 0);
   write_interfaces(writer, program);
   write_units(writer, interface, interface->count_in_fmi2);
+  write_types(writer, interface, interface->count_in_fmi2, "Real");
   write_log_categories(writer);
   write_experiment(writer, model);
   if (has_scene(model)) {

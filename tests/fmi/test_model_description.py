@@ -4,6 +4,7 @@ import functools
 import re
 import zipfile
 
+import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
@@ -278,3 +279,19 @@ def test_the_documentation_page(name):
         for heading in ("Lagrangian", "Equations of motion"):
             assert heading in page
     assert "nan" not in re.sub(r"<[^>]*>", " ", page).lower().split()
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_types(version):
+    """Each declared type has the unit of its variables, one unit has one type, and all that stand there are used; torque and energy are told apart."""
+    types = {}
+    for name in fmu.all_names():
+        description = fmu.description(name) if version == 2 else fmpy.read_model_description(fmu.ROOT / "build" / "fmi3" / f"{name}.fmu")
+        declared = [variable for variable in description.modelVariables if variable.declaredType is not None]
+        assert {variable.declaredType.name for variable in declared} == {one.name for one in description.typeDefinitions}
+        assert all(variable.declaredType.unit == variable.unit for variable in declared)
+        assert not {one.name for one in description.typeDefinitions} & {variable.name for variable in description.modelVariables}
+        types |= {one.unit: one.quantity for one in description.typeDefinitions}
+        untyped = {variable.unit for variable in description.modelVariables if variable.declaredType is None}
+        assert not untyped & {"rad", "m", "kg", "N", "J"}, name
+    assert (types["N.m"], types["J"], types["m/s"]) == ("Torque", "Energy", "Velocity") and len(set(types.values())) == len(types)
