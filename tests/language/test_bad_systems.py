@@ -695,5 +695,5 @@ def test_units_with_roots(tmp_path):
     result = compile_text(broken(10, outputs), tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     text = (tmp_path / "out" / "modelDescription.xml").read_text()
-    units = dict(re.findall(r'<ScalarVariable name="([abc])".*?<Real(?: unit="(.*?)")?/>', text, re.S))
+    units = dict(re.findall(r'<ScalarVariable name="([abc])".*?<Real(?: declaredType="SI.Length")?(?: unit="(.*?)")?/>', text, re.S))
     assert units == {"a": "", "b": "m", "c": "m"} and "0.5" not in text.split("ModelVariables")[0]

@@ -143,13 +143,13 @@ def test_capabilities(tmp_path):
 def test_values_of_variables(tmp_path):
     root = description(SYSTEM.format(""), tmp_path)
     variables = {variable.get("name"): variable for variable in root.find("ModelVariables")}
-    assert dict(variables["x"][0].attrib) == dict(unit="m", nominal="20", start="0.25")
-    assert dict(variables["v"][0].attrib) == dict(unit="m/s", nominal="400", start="-1")
-    assert dict(variables["y"][0].attrib) == dict(unit="m", start="0")
-    assert dict(variables["F"][0].attrib) == dict(unit="N", start="0.5")
-    assert dict(variables["m"][0].attrib) == dict(unit="kg", min="0.5", max="8", start="2")
-    assert dict(variables["der(v)"][0].attrib) == dict(unit="m/s2", derivative="3")
-    assert dict(variables["one.x"][0].attrib) == dict(unit="m")
+    assert dict(variables["x"][0].attrib) == dict(declaredType="SI.Length", unit="m", nominal="20", start="0.25")
+    assert dict(variables["v"][0].attrib) == dict(declaredType="SI.Velocity", unit="m/s", nominal="400", start="-1")
+    assert dict(variables["y"][0].attrib) == dict(declaredType="SI.Length", unit="m", start="0")
+    assert dict(variables["F"][0].attrib) == dict(declaredType="SI.Force", unit="N", start="0.5")
+    assert dict(variables["m"][0].attrib) == dict(declaredType="SI.Mass", unit="kg", min="0.5", max="8", start="2")
+    assert dict(variables["der(v)"][0].attrib) == dict(declaredType="SI.Acceleration", unit="m/s2", derivative="3")
+    assert dict(variables["one.x"][0].attrib) == dict(declaredType="SI.Length", unit="m")
     assert variables["m"].get("description") == "mass" and "time" not in variables
     kinds = {name: tuple(variables[name].get(key) for key in ("causality", "variability", "initial")) for name in variables}
     assert kinds["x"] == ("output", "continuous", "exact") and kinds["F"] == ("input", "continuous", None)
