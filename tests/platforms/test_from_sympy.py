@@ -192,7 +192,7 @@ def rod():
     P.set_vel(N, P.pos_from(O).dt(N))
     L = m * (x.diff() ** 2 + y.diff() ** 2) / 2 - m * g * y
     method = LagrangesMethod(L, [x, y], hol_coneqs=[x**2 + y**2 - l**2], forcelist=[(P, F * N.x)], frame=N)
-    further = {"units": {m: "kg", "l": "m", g: "m/s2", F: "N", x: "m", y: "m"}, "constraints": ["rod"]}
+    further = {"units": {m: "kg", "l": "m", g: "m/s2", F: "N", x: "m", y: "m", "power": "W"}, "constraints": ["rod"]}
     further |= {"points": {"bob": P.pos_from(O), "hinge": (0, l - l)}, "outputs": {"height": y + l, "power": F * x.diff(), "sin": 2 * x}}
     return method, {m: 1, l: 0.5, g: 9.81}, further | {"start": {x: 0.5, F: 2}}
 
@@ -203,7 +203,9 @@ def test_what_is_beside_the_equations(tmp_path):
     lagrange_fmu = wheel.package()
     path = lagrange_fmu.build(lagrange_fmu.from_sympy(method, tmp_path / "Rod.xml", parameters, **further), output=tmp_path)
     variables = {variable.name: variable for variable in read_model_description(path).modelVariables}
-    assert {name: variables[name].unit for name in ("m", "l", "g", "F", "x")} == {"m": "kg", "l": "m", "g": "m/s2", "F": "N", "x": "m"}
+    assert {name: variables[name].unit for name in ("m", "l", "g", "F", "x", "power")} == {
+        "m": "kg", "l": "m", "g": "m/s2", "F": "N", "x": "m", "power": "W"
+    }
     assert "rod.force" in variables
     motion = lagrange_fmu.simulate(path, stop_time=1)
     np.testing.assert_allclose(motion["height"], motion["y"] + 0.5, rtol=0, atol=1e-12)
@@ -214,7 +216,7 @@ def test_what_is_beside_the_equations(tmp_path):
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"units": {"q": "m"}}, "q is not a parameter, input or coordinate of this LagrangesMethod; expected"),
+    ({"units": {"q": "m"}}, "q is not a parameter, input, coordinate or output of this LagrangesMethod; expected"),
     ({"constraints": ["rod", "wire"]}, "there are 2 names and 1 constraints; expected one for each, holonomic ones first"),
     ({"points": {"bob": (1,)}}, "the point bob has 1 coordinates; expected two or three"),
     ({"points": {"height": (1, 2)}}, "height is a point and an output; expected two names"),

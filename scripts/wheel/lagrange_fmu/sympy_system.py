@@ -112,6 +112,15 @@ def _values(given, quantities, kind):
     return values
 
 
+def _units(content, units, outputs):
+    """Those of outputs, which have names alone, and those of all other quantities, each as the attributes of its element."""
+    units = {key: {"unit": str(unit)} for key, unit in units.items()}
+    of_outputs = {key: unit for key, unit in units.items() if key in outputs}
+    of_quantities = {key: unit for key, unit in units.items() if key not in outputs}
+    known = [*content.parameters, *content.inputs, *content.coordinates]
+    return _by_quantity(of_quantities, known, "parameter, input, coordinate or output"), of_outputs
+
+
 def _variables(content, parameters, start, units):
     """The elements of all that has a start value."""
     values = _values(parameters, content.parameters, "parameter")
@@ -120,8 +129,6 @@ def _variables(content, parameters, start, units):
         raise Problem(f"no value is given for {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
     start = {content.velocity_of.get(key, key): value for key, value in start.items()}
     start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
-    units = _by_quantity(units, [*content.parameters, *content.inputs, *content.coordinates], "parameter, input or coordinate")
-    units = {quantity: {"unit": str(unit)} for quantity, unit in units.items()}
     for symbol in content.parameters:
         yield "parameter", {"name": content.names[symbol], "start": values[symbol]} | units.get(symbol, {}), None
     for function, count in content.inputs.items():
@@ -149,7 +156,7 @@ def _equations(content, constraint_names):
         yield "constraint", {"name": content.all_names.add(name)}, text_of(constraint, f"the constraint {constraint}")
 
 
-def _watched(content, points):
+def _watched(content, points, units):
     """The elements of what is drawn and of outputs."""
     for name, expressions in content.watched.items():
         if name in points:
@@ -157,7 +164,7 @@ def _watched(content, points):
             yield "point", {"name": content.all_names.add(name)} | dict(zip("xyz", places)), None
         else:
             [expression] = expressions
-            yield "output", {"name": content.all_names.add(name)}, text_of(expression, f"the output {name}")
+            yield "output", {"name": content.all_names.add(name)} | units.get(name, {}), text_of(expression, f"the output {name}")
 
 
 def _places(points, frame):
@@ -189,8 +196,8 @@ def from_sympy(
     those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols that stand for,
     and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs.
 
-    `outputs` has expressions by name, to be read beside the coordinates and speeds; `units` those of parameters, inputs and coordinates, such as
-    "kg"; `constraints` is a list of names, holonomic constraints first; `points` has what the animation shows by name: vectors from the origin,
+    `outputs` has expressions by name, to be read beside the coordinates and speeds; `units` those of parameters, inputs, coordinates and outputs,
+    such as "kg"; `constraints` is a list of names, holonomic constraints first; `points` has what the animation shows by name: vectors from the origin,
     such as P.pos_from(O), or tuples of two or three coordinates.
     """
     path = Path(path)
@@ -204,10 +211,11 @@ def from_sympy(
     if both:
         raise Problem(f"{both[0]} is a point and an output; expected two names")
     content = _Content(method, speeds, points | {name: [expression] for name, expression in outputs.items()})
+    units_of_quantities, units_of_outputs = _units(content, units or {}, outputs)
     root = ElementTree.Element("system", name=_system_name(path), description=description)
     for tag, attributes, text in [
-        *_variables(content, parameters, start or {}, units or {}),
-        *_watched(content, points),
+        *_variables(content, parameters, start or {}, units_of_quantities),
+        *_watched(content, points, units_of_outputs),
         *_equations(content, constraints),
     ]:
         ElementTree.SubElement(root, tag, attributes).text = text
