@@ -14,6 +14,7 @@ from mkdocs.config import load_config
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+from scripts.live import origin_in
 from scripts.live_page.description import read_tree
 from scripts.live_page.page import write_page
 from scripts.problem import Problem
@@ -69,7 +70,7 @@ def write_system(archive):
         shutil.copy(source, folder / "system.xml")
         links["system.xml"] = "system.xml"
     try:
-        write_page(archive, folder / "live.html")
+        write_page(archive, folder / "live.html", origin_in(BUILD, source) if source.exists() else None)
         links = {"<b>live</b>": "live.html"} | links
     except Problem as problem:  # of a method that carries no sources
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)

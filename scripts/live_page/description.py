@@ -5,6 +5,7 @@ from xml.etree import ElementTree
 
 # The types of FMI 2.0, and what those of FMI 3.0 are called there.
 TYPES = {"Real": "Real", "Integer": "Integer", "Boolean": "Boolean", "Float64": "Real", "Int32": "Integer", "Int64": "Integer"}
+PULL = "pull."  # with which the names of inputs begin that lagc --pull adds
 MANY = 400  # of more continuous variables than that, only what tells of the motion is shown
 POSITIONS = ("x", "y", "z", "angle", *(f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))
 
@@ -62,6 +63,21 @@ def description_of(tree):
         "duration": stop - start,
         "stepSize": float(experiment.get("stepSize", (stop - start) / 1000)),
         "variables": [_variable(variable) for variable in variables_in(tree)],
+    }
+
+
+def pulls_of(tree, description):
+    """Of the FMU whose bodies can be pulled: the references of all variables of the description, and of what pulls; None where nothing moves."""
+    references = {variable["name"]: int(variable["valueReference"]) for variable in variables_in(tree)}
+    inputs = {name.removeprefix(PULL): reference for name, reference in references.items() if name.startswith(PULL)}
+    bodies = {name.removeprefix("of."): reference for name, reference in inputs.items() if name.startswith("of.")}
+    if not bodies:
+        return None
+    return {
+        "guid": tree.get("guid"),
+        "references": [references[variable["name"]] for variable in description["variables"]],
+        "pointer": [inputs[name] for name in ("x", "y", "z", "u", "v", "w", "time")],
+        "bodies": bodies,
     }
 
 

@@ -53,10 +53,10 @@ class Fmu {
   }
 
   // Begins anew with these values: [place among the variables, value] each.
-  start(values) {
+  start(values, time = this.description.startTime) {
     if (!this.isNew) this.check(this.wasm.fmi2Reset(this.instance));
     this.isNew = false;
-    this.check(this.wasm.fmi2SetupExperiment(this.instance, 0, 0, this.description.startTime, 0, 0));
+    this.check(this.wasm.fmi2SetupExperiment(this.instance, 0, 0, time, 0, 0));
     for (const [place, value] of values) this.set(place, value);
     this.check(this.wasm.fmi2EnterInitializationMode(this.instance));
     this.check(this.wasm.fmi2ExitInitializationMode(this.instance));
@@ -68,6 +68,13 @@ class Fmu {
     if (variable.type === "Real") new Float64Array(buffer, at + 8, 1)[0] = value;
     else new Int32Array(buffer, at + 8, 1)[0] = Math.round(value);
     this.check(this.wasm[`fmi2Set${variable.type}`](this.instance, at, 1, at + 8));
+  }
+
+  setReals(references, values) {
+    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
+    new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
+    new Float64Array(this.wasm.memory.buffer, at + offset, count).set(values);
+    this.check(this.wasm.fmi2SetReal(this.instance, at, count, at + offset));
   }
 
   // Of the Reals with these references.

@@ -18,20 +18,6 @@ let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
 const { recording } = data;
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? data.window : description.duration))));
 
-async function unpacked(text) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-}
-
-async function load(text) {
-  const script = document.createElement("script");
-  script.src = URL.createObjectURL(new Blob([await unpacked(text)], { type: "text/javascript" }));
-  await new Promise((done) => {
-    script.onload = done;
-    document.head.append(script);
-  });
-}
-
 let resetDue = null; // the timer of a reset that waits for more to be set
 
 // All but what is set finds a reset done that was due.
@@ -201,7 +187,10 @@ function frame(now) {
     const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
     $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
     $("pace").textContent = playing && pace[0] > 0.5 ? "slower than wished" : "";
-    if (scene && scene.objects) scene.draw(history, at);
+    if (scene && scene.objects) {
+      if (at === history.length - 1) pullOn();
+      scene.draw(history, at);
+    }
     const first = history.placeOf(history.time(history.length - 1) - data.window);
     for (const plot of plots) plot.draw(first, history.length, at);
   }
@@ -283,13 +272,27 @@ async function playRecording() {
   setPlaying(true);
 }
 
+// The modules that were packed as one, a piece of each after the other.
+function apart(bytes) {
+  const modules = data.lengths.map((length) => new Uint8Array(length));
+  let at = 0;
+  for (let i = 0; i < data.pieces; i++) {
+    for (const module of modules) {
+      const [from, to] = [i, i + 1].map((k) => Math.floor((module.length * k) / data.pieces));
+      module.set(new Uint8Array(bytes, at, to - from), from);
+      at += to - from;
+    }
+  }
+  return modules;
+}
+
 async function runFmu() {
   const started = new Promise((done) => (live.ready = done));
-  worker = new Worker(URL.createObjectURL(new Blob([data.worker], { type: "text/javascript" })));
+  worker = new Worker(URL.createObjectURL(new Blob([await unpacked(data.worker)], { type: "text/javascript" })));
   worker.onmessage = (event) => answers[event.data.name](event.data);
   setSpeed();
-  const wasm = await unpacked(data.wasm), references = data.shown.map((place) => description.variables[place].reference);
-  worker.postMessage({ name: "begin", wasm, description, references, set: settingsOfAddress() }, [wasm]);
+  const [wasm, pulledWasm] = apart(await unpacked(data.wasm));
+  worker.postMessage({ name: "begin", wasm, pulledWasm, pulls: data.pulls, description, shown: data.shown, set: settingsOfAddress() });
   await started;
 }
 
@@ -299,9 +302,11 @@ async function begin() {
   addActions();
   addKeys();
   addVideo();
+  addSystem();
   if (data.hasScene) {
     await load(data.renderer);
     scene = live.scene = new Scene($("scene"), data.scene, (name) => columnOf.get(name) ?? -1, valueOf);
+    addPulling();
     scene.wished = { trails: true, names: false, turning: false, forces: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", !data.hasScene);

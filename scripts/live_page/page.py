@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from ..problem import Problem
-from .description import description_of, first_plots, read_tree, scene_of, shown_variables
+from .description import description_of, first_plots, pulls_of, read_tree, scene_of, shown_variables
+from .origin import pulled_system
 from .wasm import compile_to_wasm
 
 HERE = Path(__file__).resolve().parent
@@ -20,16 +21,28 @@ HERE = Path(__file__).resolve().parent
 THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
 THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
-SCRIPTS = ("history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "inputs.js", "video.js", "main.js")
-WORKER = ("fmu.js", "worker.js")
+SCRIPTS = ("history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "main.js")
+WORKER = ("fmu.js", "sides.js", "worker.js")
 WINDOW = 20.0  # s that plots show, or the experiment where that is shorter
 MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a simulation that is played
 SHORTEST, LONGEST = 2.0, 60.0  # s that are played as they are; others take
 PLAYED = 10.0  # s
+PIECE = 8192  # bytes of WebAssembly
 
 
 def _packed(content):
-    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
+    """By gzip, in letters of base 85, of which "<" would end scripts of a page; begin.js unpacks it."""
+    return base64.b85encode(gzip.compress(content, 9, mtime=0)).decode().replace("<", ",")
+
+
+def _interleaved(modules):
+    """
+    Some modules as one, a piece of each after the other: they have most functions in common, about as far into each, so that gzip finds them again within its window.
+    Their lengths tell the page how to take them apart.
+    """
+    count = -(-len(modules[0]) // PIECE)
+    pieces = (module[len(module) * i // count : len(module) * (i + 1) // count] for i in range(count) for module in modules)
+    return {"wasm": _packed(b"".join(pieces)), "lengths": [len(module) for module in modules], "pieces": count}
 
 
 def _script(names):
@@ -79,26 +92,39 @@ def _page(description, scene, shown, window, content):
         "window": window,
         "renderer": renderer() if scene else "",
         "licenses": licenses(bool(scene), "wasm" in content),
+        "script": _packed(f"(() => {{\n{_script(SCRIPTS)}\n}})();\n".encode()),
         **content,
     }
     parts = {
         "TITLE": html.escape(description["title"]),
         "STYLE": (HERE / "page.css").read_text(encoding="utf-8"),
         "DATA": json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
-        "SCRIPT": f"(() => {{\n{_script(SCRIPTS)}\n}})();\n",
+        "SCRIPT": (HERE / "begin.js").read_text(encoding="utf-8"),
     }
     return re.sub("@(TITLE|STYLE|DATA|SCRIPT)@", lambda part: parts[part[1]], (HERE / "page.html").read_text(encoding="utf-8"))
 
 
-def page_of(fmu):
-    """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text."""
+def _modules(source, origin, folder, description):
+    """The FMU in WebAssembly, and where bodies can be pulled what runs then."""
+    modules, found = [compile_to_wasm(source)], origin and pulled_system(origin, source, folder)
+    pulls = pulls_of(found[0], description) if found else None
+    if pulls:
+        modules.append(compile_to_wasm(found[1]))
+    return {"pulls": pulls, **_interleaved(modules)}
+
+
+def page_of(fmu, origin=None):
+    """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text; where its Origin is known, bodies can be pulled and the system is there to be saved."""
     tree = read_tree(fmu)
     if tree.get("fmiVersion") != "2.0":
         raise Problem(f"{Path(fmu).name} is of FMI {tree.get('fmiVersion')}; expected the one of FMI 2.0")
     description, scene = description_of(tree), scene_of(tree)
+    with zipfile.ZipFile(fmu) as archive:
+        content = {"worker": _packed(_script(WORKER).encode()), "equations": _packed(archive.read("documentation/index.html"))}
     with tempfile.TemporaryDirectory() as folder:
-        wasm = compile_to_wasm(one_source(fmu, folder))
-    content = {"worker": _script(WORKER), "wasm": _packed(wasm)}
+        content |= _modules(one_source(fmu, folder), origin if scene else None, folder, description)
+    if origin:
+        content["system"] = Path(origin.system).read_text(encoding="utf-8")
     return _page(description, scene, shown_variables(tree, description, scene), min(WINDOW, description["duration"]), content)
 
 
@@ -123,8 +149,8 @@ def page_of_motion(tree, result, start):
     return _page(description, scene, shown, float(result["time"][-1] - result["time"][0]), {"recording": recording})
 
 
-def write_page(fmu, path):
+def write_page(fmu, path, origin=None):
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page_of(fmu), encoding="utf-8")
+    path.write_text(page_of(fmu, origin), encoding="utf-8")
     return path

@@ -7,14 +7,12 @@ const SAMPLES = 16; // at most, of a tick
 const SAVED = 600; // states to go back to
 const PREVIEW = 150; // ms, in which what there will be to see is looked at
 
-let fmus = []; // one, or with its ghost beside it
-let wasm, description, references;
+let description, pulls, pulledWasm;
+let shipped, pulled = null, side; // the FMU as it is, the one whose bodies can be pulled, and which of them runs
 let values = [new Map(), new Map()]; // what was set, by the place of the variable; of each FMU
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
 let period = 0; // s, after each of which the section has a point; 0 for none
 let ghost = null; // the second one, while it is not run
-let kept = []; // a state for each FMU, of before something was set
-let saved = [], free = []; // [time, a state for each FMU]; states whose places can be used again
 
 const tell = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
@@ -34,30 +32,26 @@ function stepLength() {
 const isAtPeriod = () => period > 0 && Math.abs(time / period - Math.round(time / period)) < 1e-9;
 
 function save() {
-  if (saved.length === SAVED) free.push(saved.shift()[1]);
-  const places = free.pop() || [];
-  saved.push([time, fmus.map((fmu, i) => fmu.save(places[i]))]);
-}
-
-function forgetSaved() {
-  free.push(...saved.splice(0).map((one) => one[1]));
+  if (side.saved.length === SAVED) side.free.push(side.saved.shift()[1]);
+  const places = side.free.pop() || [];
+  side.saved.push([time, side.fmus.map((fmu, i) => fmu.save(places[i]))]);
 }
 
 function goBack() {
-  if (saved.length === 0) return false;
-  const [then, places] = saved.pop();
-  fmus.forEach((fmu, i) => fmu.restore(places[i]));
-  free.push(places);
+  if (side.saved.length === 0) return false;
+  const [then, places] = side.saved.pop();
+  side.fmus.forEach((fmu, i) => fmu.restore(places[i]));
+  side.free.push(places);
   time = then;
   return true;
 }
 
 function advance(length) {
-  for (const fmu of fmus) fmu.step(time, length);
+  for (const fmu of side.fmus) fmu.step(time, length);
   time += length;
 }
 
-const sample = () => fmus.map((fmu) => fmu.read(references));
+const sample = () => side.fmus.map((fmu) => fmu.read(side.references));
 
 function tellOf(rows, isFresh, name = "samples") {
   tell(name, { times: rows.map((row) => row[0]), rows: rows.map((row) => row[1]), isFresh });
@@ -117,19 +111,30 @@ function preview() {
 }
 
 function startAnew() {
-  forgetSaved();
+  side.forgetSaved();
+  side = shipped;
   debt = 0;
   time = description.startTime;
-  fmus.forEach((fmu, i) => fmu.start(values[i]));
+  side.fmus.forEach((fmu, i) => fmu.start(values[i]));
+}
+
+// From the present state, until a start: what pulls costs time, and is not in the FMU.
+function goOnPulled() {
+  if (side !== shipped) return;
+  const variables = description.variables.map((variable, place) => ({ ...variable, reference: pulls.references[place] }));
+  pulled ||= new Side(pulledWasm, { ...description, guid: pulls.guid, variables }, shipped.shown);
+  while (pulled.fmus.length < shipped.fmus.length) pulled.add();
+  pulled.fmus.length = shipped.fmus.length;
+  pulled.fmus.forEach((fmu, i) => fmu.start([...values[i], ...shipped.statesOf(shipped.fmus[i])], time));
+  shipped.forgetSaved();
+  side = pulled;
 }
 
 const orders = {
-  async begin(message) {
-    description = message.description;
-    references = message.references;
-    wasm = (await WebAssembly.instantiate(message.wasm, {})).instance.exports;
-    wasm._initialize();
-    fmus = [new Fmu(wasm, description)];
+  begin(message) {
+    ({ description, pulls, pulledWasm } = message);
+    side = shipped = new Side(message.wasm, description, message.shown);
+    shipped.add();
     orders.reset(message);
     preview();
     orders.reset({});
@@ -164,7 +169,7 @@ const orders = {
   // A value from now on, and from the start the next time.
   set({ place, value }) {
     const variable = description.variables[place], isLater = variable.role === "start" || variable.isFixed;
-    const earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
+    const { fmus, kept } = side, earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
     fmus.forEach((_, i) => values[i].set(place, value));
     if (isLater) return;
     fmus.forEach((fmu, i) => (kept[i] = fmu.save(kept[i])));
@@ -195,19 +200,30 @@ const orders = {
   },
   ghost({ differences }) {
     if (!differences) {
-      ghost = fmus.splice(1)[0];
+      ghost = shipped.fmus.splice(1)[0];
       orders.reset({});
       return;
     }
     values[1] = new Map([...values[0], ...differences]);
-    if (fmus.length === 1) fmus.push(ghost || new Fmu(wasm, description));
+    if (shipped.fmus.length === 1 && ghost) shipped.fmus.push(ghost);
+    else if (shipped.fmus.length === 1) shipped.add();
     orders.reset({});
+  },
+  // pointer: its place, the point of the body that it holds, and the time of damping; all is let go where there is no stiffness.
+  pull({ body, pointer, stiffness }) {
+    try {
+      if (stiffness > 0) goOnPulled();
+      if (side === shipped) return;
+      for (const fmu of side.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
+    } catch (problem) {
+      refuse(problem);
+    }
   },
   // Without pacing: by steps of the author's length to this time.
   run({ until }) {
     const steps = Math.round((until - time) / description.stepSize), start = performance.now(), from = time;
     for (let i = 0; i < steps; i++) {
-      for (const fmu of fmus) fmu.step(from + i * description.stepSize, description.stepSize);
+      for (const fmu of side.fmus) fmu.step(from + i * description.stepSize, description.stepSize);
       time = from + (i + 1) * description.stepSize;
     }
     tell("ran", { seconds: (performance.now() - start) / 1000, time, values: sample()[0] });

@@ -18,7 +18,7 @@
 #include "read/xml/schema.h"
 
 static const char usage[] =
-    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [-D NAME=VALUE ...]\n"
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --words | --version\n"
     "\n"
@@ -30,6 +30,11 @@ static const char usage[] =
     "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>\n"
     "  --form FORM      statements or tables, in which the code is written; else by the system's size\n"
+    "  --pull           adds inputs by which bodies can be pulled: the stiffness pull.of.BODY of a spring from a point "
+    "of\n"
+    "                   the body, pull.u, pull.v, pull.w along its axes, to the place pull.x, pull.y, pull.z, which "
+    "is\n"
+    "                   damped as if the point were behind by its velocity times pull.time\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
@@ -40,7 +45,7 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, words, help, version;
+  bool linearize, pull, words, help, version;
 };
 
 /* Up to the next comma that does not stand between the arguments of a function. */
@@ -72,6 +77,7 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
+    else if (strcmp(word, "--pull") == 0) arguments->pull = true;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
@@ -109,6 +115,7 @@ static int run(const struct Arguments *arguments) {
                                   .solver = arguments->solver,
                                   .point = (const char *const *)arguments->point,
                                   .point_count = arguments->point_count,
+                                  .pull = arguments->pull,
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
   struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;

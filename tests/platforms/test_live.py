@@ -4,14 +4,18 @@ import contextlib
 import json
 import math
 import re
+import subprocess
 import time
 from types import SimpleNamespace
+from xml.etree import ElementTree
 
 import mpmath
 import pytest
 
 import fmu
+from building import BUILD, LAGC, ROOT
 from driven_chromium import COLORS_SEEN, chromium, opened
+from live import origin_in
 from scripts.live_page.page import page_of
 
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
@@ -31,7 +35,9 @@ def page_file(tmp_path_factory):
     def write(name):
         if name not in written:
             written[name] = folder / f"{name}.html"
-            written[name].write_text(page_of(fmu.archive(name)), encoding="utf-8")
+            system = ROOT / "fmu" / name / "system.xml"
+            origin = origin_in(BUILD, system) if system.exists() else None
+            written[name].write_text(page_of(fmu.archive(name), origin), encoding="utf-8")
         return written[name]
 
     return write
@@ -161,6 +167,93 @@ def test_lengths_change(browser, page_file):
         for here, there in found:
             assert here == pytest.approx(there, abs=1e-6)
         assert sum(abs(here[0] - 0.9) < 1e-6 and abs(here[1]) < 1e-6 for here, _ in found) == 1
+
+
+SEEN_AT = """name => {
+  const { scene, history } = live, box = scene.renderer.domElement.getBoundingClientRect();
+  const seen = scene.position(history.samples[history.length - 1][0], scene.byName.get(name)).project(scene.camera);
+  return [box.left + ((seen.x + 1) * box.width) / 2, box.top + ((1 - seen.y) * box.height) / 2];
+}"""
+LAST = "[...live.history.samples[live.history.length - 1][0]]"
+
+
+def pull(page, name, off, by):
+    """Grasps a body this many pixels off its place, pulls it by others, and waits until all is at rest; the variables, and what pulls."""
+    x, y = page.evaluate(SEEN_AT, name)
+    page.mouse.move(x + off[0], y + off[1])
+    page.mouse.down()
+    page.mouse.move(x + off[0] + by[0], y + off[1] + by[1], steps=4)
+    page.fill("#speed", "0.6")
+    energy = page.evaluate("live.names.indexOf('kineticEnergy')")
+    page.wait_for_function(f"live.history.time(live.history.length - 1) > 2 && {LAST}[{energy}] < 1e-13", timeout=20000)
+    return SimpleNamespace(**dict(zip(page.evaluate("live.names"), page.evaluate(LAST)))), page.evaluate("live.pulled")
+
+
+def test_pulling_a_particle(browser, page_file):
+    """
+    On the spring to the pointer the bob comes to rest where the moments of the spring and its weight about the pivot are equal. Let go, and
+    started again, the system is the FMU as it was shipped, to the bit where that is it without any pull.
+    """
+    with opened(browser, page_file("SimplePendulum")) as page:
+        before, _ = run_in_page(page, 2.0)
+        page.click("#reset")
+        at, pulled = pull(page, "bob", (0, 0), (90, -50))
+        (x, y, _, *held), stiffness = pulled["pointer"][:6], pulled["stiffness"]
+        along = (math.cos(at.theta), math.sin(at.theta))
+        moment = stiffness * ((x - math.sin(at.theta)) * along[0] + (y + math.cos(at.theta)) * along[1])
+        assert held == [0, 0, 0] and abs(moment) > 1
+        assert moment == pytest.approx(9.81 * math.sin(at.theta), rel=1e-5)
+        page.mouse.up()
+        page.wait_for_function("live.pulled === null")
+        page.click("#play")
+        page.click("#reset")
+        assert run_in_page(page, 2.0)[0] == before
+
+
+def test_pulling_a_point_of_a_body(browser, page_file):
+    """
+    A linkage held off the middle of its coupler rests where no motion that the loop allows changes the energy of weights and spring; that
+    motion, from the loop's equations by hand.
+    """
+    with opened(browser, page_file("FourBar")) as page:
+        phi = page.evaluate(f"{LAST}[live.names.indexOf('phi')]")
+        at, pulled = pull(page, "coupler", (60 * math.cos(phi), -60 * math.sin(phi)), (-60, -50))
+    (x, y, _, u, v, _, _), stiffness = pulled["pointer"], pulled["stiffness"]
+    assert math.hypot(u, v) > 0.05
+    a, b, c, rho, g = 0.3, 0.8, 0.6, 2.0, 9.81
+    # d/dt of a cos theta + b cos phi - c cos psi = d and of the sines, for theta_dot = 1: by Cramer's rule.
+    turning = a / math.sin(at.psi - at.phi)
+    phi_dot, psi_dot = turning * math.sin(at.theta - at.psi) / b, turning * math.sin(at.theta - at.phi) / c
+    middle = (a * math.cos(at.theta) + b / 2 * math.cos(at.phi), a * math.sin(at.theta) + b / 2 * math.sin(at.phi))
+    lever = (u * math.cos(at.phi) - v * math.sin(at.phi), u * math.sin(at.phi) + v * math.cos(at.phi))
+    moves = (-a * math.sin(at.theta) - b / 2 * math.sin(at.phi) * phi_dot, a * math.cos(at.theta) + b / 2 * math.cos(at.phi) * phi_dot)
+    held_moves = (moves[0] - lever[1] * phi_dot, moves[1] + lever[0] * phi_dot)
+    weights = -rho * g * (a * a / 2 * math.cos(at.theta) + b * moves[1] + c * c / 2 * math.cos(at.psi) * psi_dot)
+    spring = stiffness * sum((pointer - place - off) * speed for pointer, place, off, speed in zip((x, y), middle, lever, held_moves))
+    assert abs(weights) > 1
+    assert spring == pytest.approx(-weights, rel=1e-5)
+
+
+def test_equations_and_system(browser, page_file, tmp_path):
+    """The equations are the FMU's documentation; the system is saved with what was set, as lagc reads it."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.click("#equations")
+        assert page.frame_locator("#equationsShown iframe").locator("math").first.text_content(timeout=10000)
+        page.click("#equationsShown button")
+        for name, value in (("l1", "1.25"), ("theta2", "-0.5"), ("omega1", "3")):
+            page.get_by_role("spinbutton", name=name, exact=True).fill(value)
+            page.get_by_role("spinbutton", name=name, exact=True).press("Enter")
+        with page.expect_download() as download:
+            page.click("#system")
+        download.value.save_as(tmp_path / "system.xml")
+    subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "derived"], check=True)
+
+    def starts(file):
+        variables = ElementTree.parse(file).iterfind("ModelVariables/ScalarVariable")
+        return {variable.get("name"): variable[0].get("start") for variable in variables if variable[0].get("start")}
+
+    expected = starts(BUILD / "systems" / "DoublePendulum" / "modelDescription.xml") | {"l1": "1.25", "theta2": "-0.5", "omega1": "3"}
+    assert starts(tmp_path / "derived" / "modelDescription.xml") == expected
 
 
 def test_a_section(browser, page_file):

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 from . import caching
 from .language import LAGC
+from .live_page.origin import Origin
 from .packing import pack
 from .problem import Problem
 from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
@@ -34,6 +35,12 @@ def system_file(system):
     if not path.is_file():
         raise Problem(f"there is no file {path}; expected a system in XML, a robot in URDF, or a folder with a system.xml in it")
     return path
+
+
+def origin_of(system):
+    """For pages with more than the FMU."""
+    runtime = HERE / "runtime"
+    return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name))
 
 
 def derive(system, folder, solver):

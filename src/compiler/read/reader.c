@@ -15,6 +15,7 @@
 #include "read/linearization_reader.h"
 #include "read/names/definitions.h"
 #include "read/names/words.h"
+#include "read/pulls.h"
 #include "read/robots/robot_system.h"
 #include "read/space/frames.h"
 #include "read/tables/table.h"
@@ -108,6 +109,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, POSITIONS);
   evaluate_start_expressions(reader);
   read_expanded(reader, EXPRESSIONS);
+  if (reader->options->pull && reader->model->coordinates.count > 0) add_pulls(reader);
   undisplace_branches(reader);
   complete_friction_forces(reader);
   reader->model->forces.any |= reader->model->given.inputs_move;

@@ -12,7 +12,9 @@ def arguments(parser):
 
 def run(arguments):
     from ..live_page.page import write_page
-    from ..running import fmu_of
+    from ..building import origin_of
+    from ..running import fmu_of, is_fmu
 
     with fmu_of(arguments.system) as fmu:
-        print(write_page(fmu, arguments.output or Path(f"{fmu.stem}.html")).resolve())
+        origin = None if is_fmu(arguments.system) else origin_of(arguments.system)
+        print(write_page(fmu, arguments.output or Path(f"{fmu.stem}.html"), origin).resolve())

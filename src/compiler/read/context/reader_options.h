@@ -11,5 +11,6 @@ struct ReaderOptions {
   const char *solver;       /* the method in place of the system's own; NULL for none */
   const char *const *point; /* "name=value" of a linearisation point; empty for none */
   size_t point_count;
+  bool pull;      /* with inputs by which bodies can be pulled, see pulls.h */
   bool linearize; /* linearise at point even where it is empty */
 };

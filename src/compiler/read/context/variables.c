@@ -9,6 +9,17 @@ struct Variable *append_variable(struct VariableList *list, struct Variable vari
   return &list->items[list->count++];
 }
 
+Node append_input(struct Reader *reader, struct Variable variable) {
+  struct Model *model = reader->model;
+  size_t index = model->inputs.count;
+  variable.node = scope_symbol(reader->scope, INPUT, (int)index, variable.name, variable.dimension, variable.line);
+  variable.line = scope_line(reader->scope, variable.line);
+  model->given.input_rates = make_room(model->given.input_rates, index, sizeof *model->given.input_rates);
+  model->given.input_rates[index] = ZERO;
+  append_variable(&model->inputs, variable);
+  return variable.node;
+}
+
 /* Here an angle is not a number: turns in a minute are no frequency in Hz. */
 static bool is_same_dimension(struct Dimension first, struct Dimension second) {
   for (int i = 0; i < BASE_UNIT_COUNT; i++)

@@ -12,4 +12,7 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
 /* Reports a range or a start value that does not fit. */
 void check_range(struct Reader *reader, const struct Variable *variable);
 
+/* An input without a rate; returns its symbol. */
+Node append_input(struct Reader *reader, struct Variable variable);
+
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);

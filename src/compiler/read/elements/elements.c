@@ -53,16 +53,15 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
 }
 
 static Node append_input_rate(struct Reader *reader) {
-  struct VariableList *inputs = &reader->model->inputs;
+  const struct VariableList *inputs = &reader->model->inputs;
   const struct Variable *of = &inputs->items[inputs->count - 1];
   struct Variable rate =
       variable_create(format_text("der(%s)", of->name), format_text("time derivative of %s", of->name), of->line);
   rate.start = 0.0;
   rate.dimension = dimension_multiply(of->dimension, unit_of("s"), -1.0);
-  rate.node = scope_symbol(reader->scope, INPUT, (int)inputs->count, rate.name, rate.dimension, rate.line);
-  scope_set_time_derivative(reader->scope, of->node, rate.node);
-  append_variable(inputs, rate);
-  return rate.node;
+  Node rated = of->node, node = append_input(reader, rate);
+  scope_set_time_derivative(reader->scope, rated, node);
+  return node;
 }
 
 static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -205,14 +204,13 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
     report_at(reader, node, "derivatives=\"%g\" of <input>; expected 1 or 2", derivatives);
   size_t index = model->inputs.count - 1;
-  for (int k = 0; k == 0 || (k <= 2 && derivatives >= k); k++, index++) {
-    model->given.input_rates = make_room(model->given.input_rates, index, sizeof *model->given.input_rates);
-    model->given.input_rates[index] = k < 2 && derivatives >= k + 1 ? append_input_rate(reader) : ZERO;
+  for (int k = 0; k < 2 && derivatives >= k + 1; k++, index++) {
+    Node rate = append_input_rate(reader); /* which moves the list */
+    model->given.input_rates[index] = rate;
   }
 }
 
 static void read_input(struct Reader *reader, xmlNodePtr node) {
-  struct VariableList *list = &reader->model->inputs;
   struct Variable variable = common_attributes(reader, node);
   const struct Given *given = given_for(reader, node, variable.name);
   if (is_given(given, "value")) { /* an expression like a definition */
@@ -224,10 +222,7 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   given_number_attribute(reader, node, given, "min", &variable.minimum);
   given_number_attribute(reader, node, given, "max", &variable.maximum);
   check_range(reader, &variable);
-  variable.node =
-      scope_symbol(reader->scope, INPUT, (int)list->count, variable.name, variable.dimension, variable.line);
-  variable.line = scope_line(reader->scope, variable.line);
-  append_variable(list, variable);
+  append_input(reader, variable);
   read_input_rates(reader, node);
 }
 

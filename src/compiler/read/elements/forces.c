@@ -95,6 +95,14 @@ static struct Matrix rotation_of(struct Reader *reader, long line, const struct 
   return matrix_without_displacements(reader, line, frame->name, frame->pose.rotation);
 }
 
+void add_force_along(struct Reader *reader, long line, const char *name, Node displaced, Node force) {
+  struct Model *model = reader->model;
+  struct Gradient levers = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
+                                             KIND(COORDINATE) | KIND(TIME));
+  add_virtual_work(model, force, &levers);
+  append_point_force(model, displaced, force);
+}
+
 static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Model *model = reader->model;
   const struct Body *body = find_body(reader, name);
@@ -116,10 +124,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
                    "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
                    axes[axis]);
     Node displaced = body != NULL ? body->displaced[axis] : point.position.along[axis];
-    struct Gradient levers = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
-                                               KIND(COORDINATE) | KIND(TIME));
-    add_virtual_work(model, force.along[axis], &levers);
-    append_point_force(model, displaced, force.along[axis]);
+    add_force_along(reader, line, name, displaced, force.along[axis]);
   }
 }
 

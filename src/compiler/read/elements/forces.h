@@ -10,6 +10,9 @@
  */
 void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers);
 
+/* Adds a force along a component of a position, which is a function of displacements too; name: of what it acts on. */
+void add_force_along(struct Reader *reader, long line, const char *name, Node displaced, Node force);
+
 void read_force(struct Reader *reader, xmlNodePtr node);
 void read_torque(struct Reader *reader, xmlNodePtr node);
 

@@ -1,0 +1,81 @@
+#include "read/pulls.h"
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/context/variables.h"
+#include "read/elements/forces.h"
+
+/* More would make the equations of long chains slow. */
+enum { MOST_PULLED = 30 };
+
+struct Pointer {
+  struct Vector place; /* m */
+  struct Vector held;  /* m, from the body's place along its axes */
+  Node time;           /* s */
+};
+
+static Node append_pull(struct Reader *reader, const char *name, const char *unit) {
+  struct Variable variable = variable_create(format_text("pull.%s", name), NULL, 0);
+  variable.unit = copy_text(unit);
+  variable.dimension = unit_of(unit);
+  variable.start = 0.0;
+  return append_input(reader, variable);
+}
+
+static struct Vector append_vector(struct Reader *reader, const char *const names[3]) {
+  struct Vector vector;
+  for (int axis = 0; axis < 3; axis++) vector.along[axis] = append_pull(reader, names[axis], "m");
+  return vector;
+}
+
+/* From the body's place to the point of it that is held, along the base's axes; nothing for what has no direction. */
+static struct Vector lever_of(const struct Model *model, const struct Body *body, struct Vector held) {
+  struct Graph *graph = model->graph;
+  if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, held);
+  if (!body->has_angle || !body->has_position[0] || !body->has_position[1]) return (struct Vector){{ZERO, ZERO, ZERO}};
+  Node sine = function(graph, SINE, body->displaced[3], ZERO),
+       cosine = function(graph, COSINE, body->displaced[3], ZERO);
+  Node across = multiply(graph, cosine, held.along[0]), along = multiply(graph, sine, held.along[0]);
+  across = subtract(graph, across, multiply(graph, sine, held.along[1]));
+  along = add(graph, along, multiply(graph, cosine, held.along[1]));
+  return (struct Vector){{across, along, ZERO}};
+}
+
+static struct Vector held_point(const struct Model *model, const struct Body *body, struct Vector held) {
+  struct Vector point, lever = lever_of(model, body, held);
+  for (int axis = 0; axis < 3; axis++)
+    point.along[axis] = body->has_position[axis] ? add(model->graph, body->displaced[axis], lever.along[axis]) : ZERO;
+  return point;
+}
+
+static bool moves(const struct Graph *graph, const struct Vector *point) {
+  bool found = false;
+  for (int axis = 0; axis < 3; axis++) found |= graph_depends_on(graph, point->along[axis], COORDINATE);
+  return found;
+}
+
+/* stiffness (pointer - point - time d point/dt) */
+static void pull_body(struct Reader *reader, const struct Body *body, const struct Pointer *pointer) {
+  struct Graph *graph = reader->model->graph;
+  struct Vector held = held_point(reader->model, body, pointer->held);
+  if (!moves(graph, &held)) return;
+  Node stiffness = append_pull(reader, format_text("of.%s", body->name), "N/m");
+  for (int axis = 0; axis < 3; axis++) {
+    Node point = without_displacements(reader, body->line, body->name, held.along[axis]);
+    Node behind = multiply(graph, pointer->time, total_time_derivative(reader->scope, point));
+    Node away = subtract(graph, subtract(graph, pointer->place.along[axis], point), behind);
+    add_force_along(reader, body->line, body->name, held.along[axis], multiply(graph, stiffness, away));
+  }
+}
+
+void add_pulls(struct Reader *reader) {
+  static const char *const place[] = {"x", "y", "z"}, *const held[] = {"u", "v", "w"};
+  struct Model *model = reader->model;
+  size_t count = model->mechanism.body_count, every = count / MOST_PULLED + 1;
+  struct Pointer pointer = {.place = append_vector(reader, place), .held = append_vector(reader, held)};
+  pointer.time = append_pull(reader, "time", "s");
+  model->forces.any = true;
+  /* Counted from the last one: the end of a chain is what a hand is after. */
+  for (size_t i = (count + every - 1) % every; i < count; i += every)
+    pull_body(reader, &model->mechanism.bodies[i], &pointer);
+}
