@@ -15,7 +15,7 @@ import pytest
 import fmu
 from building import BUILD, LAGC, ROOT
 from driven_chromium import COLORS_SEEN, chromium, opened
-from live import origin_in
+from scripts.live import origin_in
 from scripts.live_page.page import page_of
 
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
