@@ -57,6 +57,29 @@ static void write_body(xmlTextWriterPtr writer, const struct Model *model, const
   xmlTextWriterEndElement(writer);
 }
 
+/* What it is part of is the base where nothing is named. */
+static void write_shape(xmlTextWriterPtr writer, const struct Model *model, const struct ContactShape *shape) {
+  static const char *const types[] = {[SHAPE_PLANE] = "plane",
+                                      [SHAPE_SPHERE] = "sphere",
+                                      [SHAPE_BOX] = "box",
+                                      [SHAPE_CYLINDER] = "cylinder",
+                                      [SHAPE_CAPSULE] = "capsule"};
+  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
+  const struct Graph *graph = model->graph;
+  xmlTextWriterStartElement(writer, BAD_CAST "shape");
+  if (shape->particle != NO_PARTICLE) write_attribute(writer, "in", shape->in);
+  else write_frame_of(writer, model, shape->frame);
+  write_attribute(writer, "type", types[shape->type]);
+  write_attribute(writer, "axis", axes[shape->axis]);
+  for (int i = 0; i < 3; i++) {
+    write_formula(writer, graph, axes[i], shape->offset.along[i]);
+    write_formula(writer, graph, sizes[i], shape->size.along[i]);
+  }
+  write_formula(writer, graph, "radius", shape->radius);
+  write_formula(writer, graph, "length", shape->length);
+  xmlTextWriterEndElement(writer);
+}
+
 static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   const Node *gravity = model->mechanism.gravity.along;
   if (gravity[0] == ZERO && gravity[1] == ZERO && gravity[2] == ZERO) return;
@@ -146,6 +169,7 @@ void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   write_gravity(writer, model);
   write_frames(writer, model);
   for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
+  for (size_t i = 0; i < model->mechanism.shape_count; i++) write_shape(writer, model, &model->mechanism.shapes[i]);
   write_what_holds(writer, model);
   xmlTextWriterEndElement(writer);
 }

@@ -34,6 +34,7 @@ LAGC = House(
     src/compiler/read/robots
     src/compiler/read/context
     src/compiler/read/space
+    src/compiler/read/shapes
     src/compiler/read/elements
     src/compiler/read
     src/compiler/program/values

@@ -16,6 +16,7 @@ class Scene {
     const others = things.filter((thing) => thing.tag === "joint" && isPlanar(thing.with));
     this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
     this.holders.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
+    this.shapes = things.filter((thing) => thing.tag === "shape");
     this.surfaces = things.filter((thing) => thing.tag === "surface");
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
@@ -103,7 +104,7 @@ class Scene {
     this.span = this.box.getSize(point).length() || 1;
     this.solids = this.things.map((thing) => this.solidOf(thing));
     for (const surface of this.surfaces) if (surface.stop) this.box.expandByPoint(point.set(...AXES.map((axis) => Number(surface[axis]))));
-    const largest = Math.max(0, ...this.solids.filter(Boolean).map(sizeOf));
+    const largest = Math.max(this.sizeOfShapes(), ...this.solids.filter(Boolean).map(sizeOf));
     this.radius = 0.5 * this.box.getSize(point).length() + largest || 1;
     const margin = Math.max(largest, 0.09 * this.radius);
     this.frameBox = this.box.clone().expandByScalar(margin);
@@ -112,6 +113,7 @@ class Scene {
     this.addGround();
     this.objects = this.things.map((thing, i) => this.addThing(thing, i));
     this.rods = this.holders.map((holder) => this.addRod(holder)).filter(Boolean);
+    this.addStillShapes();
     this.addSurfaces();
     this.addForces();
     this.addTrails();
@@ -129,7 +131,13 @@ class Scene {
     return COLORS[i % COLORS.length];
   }
 
+  // Drawn by its shapes, which may be those of the frame that it is in.
+  hasShape(thing) {
+    return this.shapes.some((shape) => shape.in === thing.name || (thing.in && shape.in === thing.in));
+  }
+
   solidOf(thing) {
+    if (this.hasShape(thing)) return null;
     if (thing.tag !== "body" || (thing.inertia !== undefined && this.isJointed(thing.name))) return null;
     const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
     if (thing.inertia !== undefined) {
@@ -151,7 +159,7 @@ class Scene {
   // Of a particle, by its mass among the others'; 0 of what is drawn otherwise.
   ballRadius(i) {
     const thing = this.things[i];
-    if (this.solids[i] || !(thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name)))) return 0;
+    if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name)))) return 0;
     const massOf = (one) => this.value(one.mass || "0"), mass = massOf(thing);
     const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
     const share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
@@ -169,6 +177,7 @@ class Scene {
 
   addParts(group, thing, i) {
     const solid = this.solids[i];
+    for (const shape of this.shapes) if (shape.in === thing.name) group.add(this.meshOfShape(shape, i));
     if (solid) group.add(this.meshOf(solid, i));
     else if (this.ballRadius(i) > 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
@@ -195,6 +204,41 @@ class Scene {
     }
     mesh.applyMatrix(new THREE.Matrix4().makeBasis(...properAxes(solid.axes).map((axis) => new THREE.Vector3(...axis))));
     return mesh;
+  }
+
+  meshOfShape(shape, i) {
+    const measure = (name) => this.value(shape[name] || "0"), material = this.material(i === undefined ? (this.isDark ? 0x7a8699 : 0x9aa5b4) : this.colorOf(i), { transparent: true, opacity: 0.92 });
+    const mesh = new THREE.Group(), axis = AXES.indexOf(shape.axis), add = (geometry) => mesh.children[mesh.add(new THREE.Mesh(geometry, material)).children.length - 1];
+    const [radius, length] = [measure("radius"), measure("length")], part = new THREE.Group();
+    if (shape.type === "box") add(new THREE.BoxBufferGeometry(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(name) || 0.02 * this.radius)));
+    else if (shape.type === "sphere") {
+      add(new THREE.SphereBufferGeometry(radius, 32, 24));
+      add(new THREE.TorusBufferGeometry(radius, 0.03 * radius, 8, 48)).material = this.material(this.isDark ? 0x14171c : 0xffffff); // to see it turn
+    } else if (shape.type === "plane") add(new THREE.BoxBufferGeometry(2.4 * this.radius, 0.03 * this.radius, 2.4 * this.radius)).position.y = -0.015 * this.radius;
+    else {
+      add(new THREE.CylinderBufferGeometry(radius, radius, length, 48));
+      if (shape.type === "capsule") for (const end of [-1, 1]) add(new THREE.SphereBufferGeometry(radius, 32, 16)).position.y = (end * length) / 2;
+    }
+    // three's axis of cylinders is y.
+    if (shape.type !== "box" && shape.type !== "sphere") mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
+    part.add(mesh);
+    part.position.set(...AXES.map(measure));
+    return part;
+  }
+
+  // How far shapes reach from where they are.
+  sizeOfShapes() {
+    const measure = (shape, name) => this.value(shape[name] || "0");
+    const sizes = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => {
+      const half = Math.hypot(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(shape, name))) / 2;
+      return Math.hypot(...AXES.map((axis) => measure(shape, axis))) + Math.max(half, measure(shape, "radius") + measure(shape, "length") / 2);
+    });
+    return Math.max(0, ...sizes);
+  }
+
+  // Of the base.
+  addStillShapes() {
+    for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
   }
 
   // A rod between two things, or from a planar body's centre to its joint.

@@ -9,6 +9,11 @@ struct Vector vector_add(struct Graph *graph, struct Vector a, struct Vector b) 
   return a;
 }
 
+struct Vector vector_subtract(struct Graph *graph, struct Vector a, struct Vector b) {
+  for (int i = 0; i < 3; i++) a.along[i] = subtract(graph, a.along[i], b.along[i]);
+  return a;
+}
+
 struct Vector vector_scale(struct Graph *graph, Node factor, struct Vector a) {
   for (int i = 0; i < 3; i++) a.along[i] = multiply(graph, factor, a.along[i]);
   return a;

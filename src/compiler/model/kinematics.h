@@ -30,6 +30,7 @@ struct Pose {
 struct Vector vector_add(struct Graph *graph, struct Vector a, struct Vector b);
 struct Vector vector_cross(struct Graph *graph, struct Vector a, struct Vector b);
 struct Vector vector_scale(struct Graph *graph, Node factor, struct Vector a);
+struct Vector vector_subtract(struct Graph *graph, struct Vector a, struct Vector b);
 Node vector_dot(struct Graph *graph, struct Vector a, struct Vector b);
 
 /* matrix a, and with the transposed matrix. */

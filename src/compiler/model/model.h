@@ -96,12 +96,31 @@ struct GivenMotion {
   const struct Variable *constraint; /* one that moves in a given way, so that it does work; NULL for none */
 };
 
-/* Bodies, and the frames that they are in. */
+enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE };
+
+/* What is drawn, and touches. A plane is where its axis is 0, and open above it. */
+struct ContactShape {
+  char *name;
+  enum ShapeType type;
+  size_t frame;         /* among the model's: where it is and how it turns */
+  const char *in;       /* the frame or body; a particle in the plane has the base's axes */
+  size_t particle;      /* that one's place among the bodies; NO_PARTICLE for none */
+  int axis;             /* of a plane, cylinder or capsule: x, y or z of the frame */
+  struct Vector offset; /* m, of its middle along the frame's axes */
+  Node radius, length;  /* m; of a capsule without its round ends */
+  struct Vector size;   /* m, of a box along the frame's axes */
+};
+
+#define NO_PARTICLE ((size_t)-1)
+
+/* Bodies, the frames that they are in, and their shapes. */
 struct Mechanism {
   struct Body *bodies;
   size_t body_count;
   struct ReferenceFrame *frames;
   size_t frame_count;
+  struct ContactShape *shapes;
+  size_t shape_count;
   struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
   struct Vector gravity;      /* m/s2: the direction of what <gravity> gives, along the base's axes */
   struct Stillness *stillnesses;

@@ -3,7 +3,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/elements/forces.h"
+#include "read/space/forces.h"
 
 /* More would make the equations of long chains slow. */
 enum { MOST_PULLED = 30 };

@@ -9,13 +9,14 @@
 #include "read/context/includes.h"
 #include "read/context/variables.h"
 #include "read/elements/constraint_reader.h"
-#include "read/elements/forces.h"
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
+#include "read/shapes/shapes.h"
 #include "read/space/bodies.h"
+#include "read/space/forces.h"
 #include "read/space/frames.h"
 #include "read/space/joints.h"
 #include "read/space/springs.h"
@@ -282,6 +283,7 @@ static const struct Element elements[] = {
     {"particle", number_body, collect_components, read_body, NULL, false},
     {"point", NULL, collect_components, read_body, NULL, false},
     {"potential", NULL, NULL, NULL, read_potential, false},
+    {"shape", declare_shape, NULL, place_shape, NULL, false},
     {"solver", read_solver, NULL, NULL, NULL, true},
     {"spring", NULL, collect_spring, NULL, read_spring, false},
     {"stop", declare_stop, NULL, NULL, read_stop, false},

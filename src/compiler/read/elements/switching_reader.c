@@ -9,7 +9,8 @@
 #include "base/memory.h"
 #include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
-#include "read/elements/forces.h"
+#include "read/shapes/shape_contacts.h"
+#include "read/space/forces.h"
 
 enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 
@@ -57,9 +58,33 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
+/* As many contacts as there are places where the shapes may touch: NAME, or NAME[1], NAME[2], ... */
+static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
+  size_t count = count_shape_contacts(reader, node);
+  if (is_compliant(node)) return;
+  if (!has_attribute(node, "name")) {
+    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\", by which its force is known");
+    return;
+  }
+  struct Variable contact = common_attributes(reader, node);
+  for (size_t i = 1; i <= count; i++) {
+    struct Variable one = contact;
+    if (count > 1) one.name = format_text("%s[%zu]", contact.name, i);
+    one.unit = copy_text("m");
+    one.dimension = unit_of("m");
+    append_contact(reader, one);
+  }
+}
+
+static bool is_of_gap(xmlNodePtr node) {
+  return !is_of_shapes(node) && has_attribute(node, "gap") && has_attribute(node, "name");
+}
+
 void declare_contact(struct Reader *reader, xmlNodePtr node) {
   reader->present->number = reader->model->switches.contact_count;
-  append_contact(reader, common_attributes(reader, node));
+  if (is_of_shapes(node)) declare_shape_contact(reader, node);
+  else if (is_of_gap(node)) append_contact(reader, common_attributes(reader, node));
+  else report_at(reader, node, "a <contact> needs a name and a gap, or shapes: between=\"...\" and=\"...\"");
 }
 
 /* The constraint of one end of a stop: x.min or x.max. */
@@ -121,13 +146,25 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }
 
-void read_contact(struct Reader *reader, xmlNodePtr node) {
+static void read_rigid_contact(struct Reader *reader, xmlNodePtr node) {
+  const Node *gaps = shape_gaps(reader, node);
+  size_t count = gaps != NULL ? count_shape_contacts(reader, node) : 0;
+  for (size_t i = 0; i < count; i++) set_contact(reader, node, reader->present->number + i, gaps[i]);
+}
+
+static void read_contact_of_gap(struct Reader *reader, xmlNodePtr node) {
   struct Quantity gap = {.node = ZERO};
   expression_attribute(reader, node, "gap", IN_GAP, &gap);
   size_t number = reader->present->number;
   struct Variable *constraint = &reader->model->constraints.items[reader->model->switches.contacts[number].constraint];
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the gap", gap, constraint->dimension);
   set_contact(reader, node, number, gap.node);
+}
+
+void read_contact(struct Reader *reader, xmlNodePtr node) {
+  if (is_of_gap(node)) read_contact_of_gap(reader, node);
+  else if (is_of_shapes(node) && is_compliant(node)) read_compliant_contact(reader, node);
+  else if (is_of_shapes(node)) read_rigid_contact(reader, node);
 }
 
 void read_stop(struct Reader *reader, xmlNodePtr node) {

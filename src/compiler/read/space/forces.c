@@ -1,4 +1,4 @@
-#include "read/elements/forces.h"
+#include "read/space/forces.h"
 
 #include <string.h>
 
@@ -153,6 +153,12 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
 }
 
+void add_torque_on(struct Reader *reader, long line, struct Vector torque, const struct ReferenceFrame *frame) {
+  struct Matrix rotation = rotation_of(reader, line, frame);
+  torque = matrix_apply_transposed(reader->model->graph, &rotation, torque);
+  add_torque(reader, line, torque, frame->pose.angular_velocity);
+}
+
 void read_torque(struct Reader *reader, xmlNodePtr node) {
   char *name = reference_attribute(reader, node, "on");
   const struct ReferenceFrame *turned = name != NULL ? find_frame(reader, name) : NULL;
@@ -163,11 +169,9 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
   if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
   if (turned != NULL && frame != NULL) {
     if (frame != turned) {
-      struct Graph *graph = reader->model->graph;
-      struct Matrix to_base = rotation_of(reader, line, frame), from_turned = rotation_of(reader, line, turned);
-      torque = matrix_apply_transposed(graph, &from_turned, matrix_apply(graph, &to_base, torque));
-    }
-    add_torque(reader, line, torque, turned->pose.angular_velocity);
+      struct Matrix to_base = rotation_of(reader, line, frame);
+      add_torque_on(reader, line, matrix_apply(reader->model->graph, &to_base, torque), turned);
+    } else add_torque(reader, line, torque, turned->pose.angular_velocity);
   }
 }
 

@@ -13,6 +13,9 @@ void add_virtual_work(struct Model *model, Node force, const struct Gradient *le
 /* Adds a force along a component of a position, which is a function of displacements too; name: of what it acts on. */
 void add_force_along(struct Reader *reader, long line, const char *name, Node displaced, Node force);
 
+/* Adds a torque along the base's axes on what turns with a frame. */
+void add_torque_on(struct Reader *reader, long line, struct Vector torque, const struct ReferenceFrame *frame);
+
 void read_force(struct Reader *reader, xmlNodePtr node);
 void read_torque(struct Reader *reader, xmlNodePtr node);
 

@@ -1,0 +1,182 @@
+#include "read/shapes/shape_contacts.h"
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/context/variables.h"
+#include "read/names/pieces_of_functions.h"
+#include "read/shapes/shapes.h"
+#include "read/shapes/touches.h"
+#include "read/space/forces.h"
+
+/* m/s: below, friction is a damper. */
+static const double usual_creep = 1e-3;
+
+struct Law {
+  Node stiffness, damping, friction, creep;
+};
+
+struct ShapeContact {
+  struct Side first, second;
+  struct Touches touches;
+};
+
+bool is_of_shapes(xmlNodePtr node) {
+  return has_attribute(node, "between");
+}
+
+bool is_compliant(xmlNodePtr node) {
+  return has_attribute(node, "stiffness");
+}
+
+static void check_attributes(struct Reader *reader, xmlNodePtr node) {
+  static const char *const of_compliance[] = {"damping", "friction", "creep"};
+  if (has_attribute(node, "gap"))
+    report_at(reader, node, "a <contact> with a gap and between=\"...\"; expected one of them");
+  if (!has_attribute(node, "and")) report_at(reader, node, "a <contact> between one shape; expected and=\"...\" too");
+  for (size_t i = 0; i < sizeof of_compliance / sizeof *of_compliance; i++)
+    if (!is_compliant(node) && has_attribute(node, of_compliance[i]))
+      report_at(reader, node,
+                "the %s of a <contact> between shapes without a stiffness; expected stiffness=\"...\" in N/m beside it",
+                of_compliance[i]);
+  if (is_compliant(node) && has_attribute(node, "restitution"))
+    report_at(reader, node,
+              "a <contact> with a stiffness and a restitution; expected damping=\"...\" in s/m in place of the latter");
+}
+
+/* Whether both shapes are there, and have touches. */
+static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
+  shapes[0] = shape_of_attribute(reader, node, "between");
+  shapes[1] = shape_of_attribute(reader, node, "and");
+  if (shapes[0] == NULL || shapes[1] == NULL) return false;
+  if (count_touches(shapes[0], shapes[1]) > 0) return true;
+  report_at(reader, node,
+            "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or capsule as one of them, "
+            "or a plane",
+            shapes[0]->name, shapes[1]->name);
+  return false;
+}
+
+size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
+  const struct ContactShape *shapes[2];
+  check_attributes(reader, node);
+  return find_shapes(reader, node, shapes) ? count_touches(shapes[0], shapes[1]) : 0;
+}
+
+static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struct ShapeContact *contact) {
+  const struct ContactShape *shapes[2];
+  long line = xmlGetLineNo(node);
+  if (reader->diagnostics->errors > 0 || !find_shapes(reader, node, shapes)) return false;
+  contact->first = side_of_contact(reader, line, shapes[0]);
+  contact->second = side_of_contact(reader, line, shapes[1]);
+  contact->touches = touches_of(reader, line, &contact->first, &contact->second);
+  for (size_t i = 0; i < contact->touches.count; i++) {
+    if (graph_depends_on(reader->model->graph, contact->touches.items[i].gap, COORDINATE)) continue;
+    report_at(reader, node, "nothing moves '%s' against '%s'; expected shapes of bodies or frames that move",
+              shapes[0]->name, shapes[1]->name);
+    return false;
+  }
+  return true;
+}
+
+const Node *shape_gaps(struct Reader *reader, xmlNodePtr node) {
+  struct ShapeContact contact;
+  if (!read_contact_of_shapes(reader, node, &contact)) return NULL;
+  Node *gaps = allocate(contact.touches.count, sizeof *gaps);
+  for (size_t i = 0; i < contact.touches.count; i++) gaps[i] = contact.touches.items[i].gap;
+  return gaps;
+}
+
+static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit, Node usual) {
+  struct Quantity value = {.node = usual};
+  if (!expression_attribute(reader, node, name, IN_MASS, &value)) return usual;
+  require_unit(reader, xmlGetLineNo(node), name, value, unit_of(unit));
+  expect_not_negative(reader, node, format_text("the %s of <contact>", name), value.node, false);
+  return value.node;
+}
+
+/* stiffness depth (1 + damping d depth/dt) while they overlap, and 0 where that would pull. */
+static Node pressing_force(struct Reader *reader, long line, const struct Law *law, Node gap) {
+  struct Scope *scope = reader->scope;
+  struct Graph *graph = scope->graph;
+  Node is_apart = branch_of(scope, gap, "the gap of the contact", line);
+  Node rate = negate(graph, total_time_derivative(scope, gap));
+  Node factor = add(graph, ONE, multiply(graph, law->damping, rate));
+  if (law->damping != ZERO) factor = pieces_of(scope, MAXIMUM, factor, ZERO, line);
+  Node force = multiply(graph, multiply(graph, law->stiffness, negate(graph, gap)), factor);
+  return choose_node(graph, is_apart, ZERO, force);
+}
+
+/* Of the material of a side, along the base's axes. */
+static struct Vector velocity_of_point(struct Graph *graph, const struct Side *side, struct Vector point) {
+  struct Vector lever = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
+  struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, lever);
+  return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
+}
+
+/* The force on the first side. */
+static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, const struct ShapeContact *contact,
+                                    const struct Touch *touch, Node pressing) {
+  struct Vector force = vector_scale(graph, pressing, touch->normal);
+  if (law->friction == ZERO) return force;
+  struct Vector sliding = vector_subtract(graph, velocity_of_point(graph, &contact->first, touch->point),
+                                          velocity_of_point(graph, &contact->second, touch->point));
+  Node along = vector_dot(graph, sliding, touch->normal);
+  sliding = vector_subtract(graph, sliding, vector_scale(graph, along, touch->normal));
+  Node squares = add(graph, vector_dot(graph, sliding, sliding), power_number(graph, law->creep, 2.0));
+  Node factor = multiply(graph, multiply(graph, law->friction, pressing), power_number(graph, squares, -0.5));
+  return vector_subtract(graph, force, vector_scale(graph, factor, sliding));
+}
+
+/* On what a side is part of, at a point. */
+static void add_force_on(struct Reader *reader, long line, const struct Side *side, struct Vector point,
+                         struct Vector force) {
+  struct Graph *graph = reader->model->graph;
+  const struct Mechanism *mechanism = &reader->model->mechanism;
+  const struct ContactShape *shape = side->shape;
+  const struct ReferenceFrame *frame = &mechanism->frames[shape->frame];
+  bool is_particle = shape->particle != NO_PARTICLE;
+  for (int i = 0; i < 3; i++) {
+    Node place = is_particle ? mechanism->bodies[shape->particle].displaced[i] : frame->pose.origin.along[i];
+    add_force_along(reader, line, shape->name, place, force.along[i]);
+  }
+  if (is_particle) return;
+  struct Vector lever = vector_subtract(graph, point, side->pose.origin);
+  add_torque_on(reader, line, vector_cross(graph, lever, force), frame);
+}
+
+static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  struct Variable variable = variable_create(format_text("%s.force", name),
+                                             format_text("force with which %s presses '%s' and '%s' apart", name,
+                                                         attribute(node, "between"), attribute(node, "and")),
+                                             xmlGetLineNo(node));
+  variable.unit = copy_text("N");
+  variable.dimension = unit_of("N");
+  variable.node = force;
+  scope_define(reader->scope, variable.name, (struct Quantity){.node = force, .dimension = variable.dimension},
+               variable.line);
+  append_variable(&reader->model->mechanism.places, variable);
+}
+
+void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
+  struct Graph *graph = reader->model->graph;
+  struct ShapeContact contact;
+  long line = xmlGetLineNo(node);
+  struct Law law = {.stiffness = read_law_attribute(reader, node, "stiffness", "N/m", ZERO),
+                    .damping = read_law_attribute(reader, node, "damping", "s/m", ZERO),
+                    .friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
+  law.creep = read_law_attribute(reader, node, "creep", "m/s", graph_constant(graph, usual_creep));
+  if (!read_contact_of_shapes(reader, node, &contact)) return;
+  reader->model->forces.any = true;
+  Node sum = ZERO;
+  for (size_t i = 0; i < contact.touches.count; i++) {
+    const struct Touch *touch = &contact.touches.items[i];
+    Node pressing = pressing_force(reader, line, &law, touch->gap);
+    struct Vector force = force_of_touch(graph, &law, &contact, touch, pressing);
+    add_force_on(reader, line, &contact.first, touch->point, force);
+    add_force_on(reader, line, &contact.second, touch->point, vector_scale(graph, graph_constant(graph, -1.0), force));
+    sum = add(graph, sum, pressing);
+  }
+  append_force(reader, node, sum);
+}

@@ -1,0 +1,127 @@
+#include "read/shapes/shapes.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/context/includes.h"
+#include "read/names/similar.h"
+#include "read/space/bodies.h"
+#include "read/space/frames.h"
+
+/* A measure of a shape, and the types that have it. */
+struct Measure {
+  const char *name;
+  unsigned types;
+  bool is_needed;
+};
+
+#define TYPE(type) (1u << (type))
+
+static const struct Measure measures[] = {
+    {"radius", TYPE(SHAPE_SPHERE) | TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE), true},
+    {"length", TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE), true},
+    {"sizeX", TYPE(SHAPE_BOX), false},
+    {"sizeY", TYPE(SHAPE_BOX), false},
+    {"sizeZ", TYPE(SHAPE_BOX), false},
+};
+enum { MEASURE_COUNT = sizeof measures / sizeof *measures };
+
+static const char *const type_names[] = {[SHAPE_PLANE] = "plane",
+                                         [SHAPE_SPHERE] = "sphere",
+                                         [SHAPE_BOX] = "box",
+                                         [SHAPE_CYLINDER] = "cylinder",
+                                         [SHAPE_CAPSULE] = "capsule"};
+
+static const struct ContactShape *find_shape(const struct Reader *reader, const char *name) {
+  const struct Mechanism *mechanism = &reader->model->mechanism;
+  for (size_t i = 0; i < mechanism->shape_count; i++)
+    if (strcmp(mechanism->shapes[i].name, name) == 0) return &mechanism->shapes[i];
+  return NULL;
+}
+
+static enum ShapeType type_of(xmlNodePtr node) {
+  enum ShapeType type = SHAPE_PLANE;
+  for (size_t i = 0; i < sizeof type_names / sizeof *type_names; i++)
+    if (attribute_is(node, "type", type_names[i])) type = (enum ShapeType)i;
+  return type; /* the schema refuses others */
+}
+
+static void check_measures(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape) {
+  bool has_size = false;
+  for (int i = 0; i < MEASURE_COUNT; i++) {
+    const struct Measure *measure = &measures[i];
+    bool is_given = has_attribute(node, measure->name), is_of_type = (measure->types & TYPE(shape->type)) != 0;
+    has_size |= is_given;
+    if (is_given && !is_of_type)
+      report_at(reader, node, "the shape '%s' is a %s, which has no %s", shape->name, type_names[shape->type],
+                measure->name);
+    if (!is_given && is_of_type && measure->is_needed)
+      report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", type_names[shape->type], shape->name,
+                measure->name, measure->name);
+  }
+  if (shape->type == SHAPE_BOX && !has_size)
+    report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
+}
+
+void declare_shape(struct Reader *reader, xmlNodePtr node) {
+  struct Mechanism *mechanism = &reader->model->mechanism;
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  if (find_shape(reader, name) != NULL) report_at(reader, node, "a shape named '%s' is already there", name);
+  struct ContactShape shape = {.name = name, .type = type_of(node), .particle = NO_PARTICLE, .axis = 2};
+  check_measures(reader, node, &shape);
+  for (int i = 0; i < 3; i++) shape.size.along[i] = has_attribute(node, measures[2 + i].name) ? ONE : ZERO;
+  reader->present->number = mechanism->shape_count;
+  mechanism->shapes = make_room(mechanism->shapes, mechanism->shape_count, sizeof *mechanism->shapes);
+  mechanism->shapes[mechanism->shape_count++] = shape;
+}
+
+static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name, bool may_be_negative) {
+  struct Quantity length = {.node = ZERO};
+  if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ZERO;
+  require_unit(reader, xmlGetLineNo(node), name, length, unit_of("m"));
+  if (!may_be_negative) expect_not_negative(reader, node, format_text("the %s of <shape>", name), length.node, false);
+  return length.node;
+}
+
+/* The base where nothing is named. */
+static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
+  if (!has_attribute(node, "in")) return;
+  char *name = reference_attribute(reader, node, "in");
+  const struct ReferenceFrame *frame = name != NULL ? find_frame(reader, name) : NULL;
+  const struct Body *body = name != NULL && frame == NULL ? find_body(reader, name) : NULL;
+  shape->in = name;
+  if (frame != NULL) shape->frame = (size_t)(frame - reader->model->mechanism.frames);
+  else if (body != NULL) shape->particle = (size_t)(body - reader->model->mechanism.bodies);
+  else if (name != NULL)
+    report_at(reader, node, "there is nothing named '%s' for this <shape>; expected a <frame>, <body> or <particle>",
+              name);
+}
+
+void place_shape(struct Reader *reader, xmlNodePtr node) {
+  if (!has_attribute(node, "name")) return;
+  struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
+  place_in(reader, node, shape);
+  for (int i = 0; i < 3; i++) {
+    if (attribute_is(node, "axis", axes[i])) shape->axis = i;
+    shape->offset.along[i] = read_length(reader, node, axes[i], true);
+    shape->size.along[i] = read_length(reader, node, measures[2 + i].name, false);
+  }
+  shape->radius = read_length(reader, node, "radius", false);
+  shape->length = read_length(reader, node, "length", false);
+}
+
+const struct ContactShape *shape_of_attribute(const struct Reader *reader, xmlNodePtr node,
+                                              const char *attribute_name) {
+  char *name = attribute(node, attribute_name),
+       *full_name = name != NULL ? format_text("%s%s", reader->source->prefix, name) : NULL;
+  const struct ContactShape *shape = full_name != NULL ? find_shape(reader, full_name) : NULL;
+  if (shape != NULL || name == NULL) return shape;
+  struct Similar similar = {.wanted = full_name};
+  for (size_t i = 0; i < reader->model->mechanism.shape_count; i++)
+    similar_consider(&similar, reader->model->mechanism.shapes[i].name);
+  if (similar.best != NULL)
+    report_at(reader, node, "there is no shape '%s' above this <contact>; did you mean '%s'?", name, similar.best);
+  else report_at(reader, node, "there is no shape '%s' above this <contact>; expected the name of a <shape>", name);
+  return NULL;
+}

@@ -1,0 +1,248 @@
+#include "read/shapes/touches.h"
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/names/pieces_of_functions.h"
+
+/* Of each rim of a cylinder on a plane. */
+enum { RIM_POINTS = 8, MOST_POINTS = 2 * RIM_POINTS };
+
+/* What joins the two: nodes are made in its graph and their pieces in its scope. */
+struct Pair {
+  struct Scope *scope;
+  struct Graph *graph;
+  long line;
+  const struct Side *first, *second;
+};
+
+/* Points with a common radius about them, in which the touches of a shape with a plane lie. */
+struct Points {
+  struct Vector places[MOST_POINTS]; /* along the axes of its frame */
+  size_t count;
+  Node radius;
+};
+
+struct Side side_of_contact(struct Reader *reader, long line, const struct ContactShape *shape) {
+  const struct Mechanism *mechanism = &reader->model->mechanism;
+  const char *name = shape->name;
+  struct Pose pose = mechanism->frames[shape->frame].pose;
+  if (shape->particle != NO_PARTICLE) {
+    pose = pose_of_base();
+    for (int i = 0; i < 3; i++) pose.origin.along[i] = mechanism->bodies[shape->particle].displaced[i];
+    for (int i = 0; i < 3; i++) pose.velocity.along[i] = total_time_derivative(reader->scope, pose.origin.along[i]);
+  }
+  pose.rotation = matrix_without_displacements(reader, line, name, pose.rotation);
+  pose.origin = vector_without_displacements(reader, line, name, pose.origin);
+  pose.velocity = vector_without_displacements(reader, line, name, pose.velocity);
+  pose.angular_velocity = vector_without_displacements(reader, line, name, pose.angular_velocity);
+  return (struct Side){shape, pose};
+}
+
+static struct Vector along_axis(const struct ContactShape *shape, Node length) {
+  struct Vector vector = {{ZERO, ZERO, ZERO}};
+  vector.along[shape->axis] = length;
+  return vector;
+}
+
+static void append_point(struct Graph *graph, struct Points *points, const struct ContactShape *shape,
+                         struct Vector from) {
+  points->places[points->count++] = vector_add(graph, shape->offset, from);
+}
+
+static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+  for (int corner = 0; corner < 8; corner++) {
+    struct Vector place = {{ZERO, ZERO, ZERO}};
+    bool is_another = true; /* a box without a size along an axis has half as many */
+    for (int i = 0; i < 3; i++) {
+      bool is_upper = (corner >> i & 1) != 0;
+      place.along[i] = scale(graph, is_upper ? 0.5 : -0.5, shape->size.along[i]);
+      is_another &= !(is_upper && shape->size.along[i] == ZERO);
+    }
+    if (is_another) append_point(graph, points, shape, place);
+  }
+}
+
+/* Points on the rims, the first on the axis that follows the cylinder's. */
+static void append_rims(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+  static const double half = 0.70710678118654752440;
+  static const double circle[RIM_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
+                                               {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
+  int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
+  for (int i = 0; i < MOST_POINTS; i++) {
+    struct Vector place = along_axis(shape, scale(graph, i < RIM_POINTS ? 0.5 : -0.5, shape->length));
+    place.along[across] = scale(graph, circle[i % RIM_POINTS][0], shape->radius);
+    place.along[beside] = scale(graph, circle[i % RIM_POINTS][1], shape->radius);
+    append_point(graph, points, shape, place);
+  }
+}
+
+static struct Points points_of(struct Graph *graph, const struct ContactShape *shape) {
+  struct Points points = {.radius = ZERO};
+  switch (shape->type) {
+  case SHAPE_SPHERE:
+    points.radius = shape->radius;
+    append_point(graph, &points, shape, (struct Vector){{ZERO, ZERO, ZERO}});
+    break;
+  case SHAPE_CAPSULE:
+    points.radius = shape->radius;
+    append_point(graph, &points, shape, along_axis(shape, scale(graph, 0.5, shape->length)));
+    append_point(graph, &points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
+    break;
+  case SHAPE_BOX: append_corners(graph, &points, shape); break;
+  case SHAPE_CYLINDER: append_rims(graph, &points, shape); break;
+  case SHAPE_PLANE: break;
+  }
+  return points;
+}
+
+static struct Vector axis_of(const struct Pair *pair, const struct Side *side) {
+  return matrix_apply(pair->graph, &side->pose.rotation, along_axis(side->shape, ONE));
+}
+
+static struct Vector middle_of(const struct Pair *pair, const struct Side *side) {
+  return position_at(pair->graph, &side->pose, side->shape->offset);
+}
+
+static Node length_of(struct Graph *graph, struct Vector vector) {
+  return power_number(graph, vector_dot(graph, vector, vector), 0.5);
+}
+
+/* The second's plane, from the first's points. */
+static void touch_plane(const struct Pair *pair, struct Touches *touches) {
+  struct Graph *graph = pair->graph;
+  struct Points points = points_of(graph, pair->first->shape);
+  struct Vector normal = axis_of(pair, pair->second), ground = middle_of(pair, pair->second);
+  for (size_t i = 0; i < points.count; i++) {
+    struct Vector centre = position_at(graph, &pair->first->pose, points.places[i]);
+    Node height = vector_dot(graph, normal, vector_subtract(graph, centre, ground));
+    struct Vector down = vector_scale(graph, negate(graph, points.radius), normal);
+    touches->items[touches->count++] =
+        (struct Touch){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius)};
+  }
+}
+
+/* Two balls, as which all round shapes touch, about the nearest points of what is in them. */
+static void touch_balls(const struct Pair *pair, struct Vector first, struct Vector second, Node second_radius,
+                        struct Touches *touches) {
+  struct Graph *graph = pair->graph;
+  struct Vector between = vector_subtract(graph, first, second);
+  Node radius = pair->first->shape->radius, distance = length_of(graph, between);
+  struct Vector normal = vector_scale(graph, power_number(graph, distance, -1.0), between);
+  struct Vector point = vector_subtract(graph, first, vector_scale(graph, radius, normal));
+  Node gap = subtract(graph, subtract(graph, distance, radius), second_radius);
+  touches->items[touches->count++] = (struct Touch){point, normal, gap};
+}
+
+/* A length cut to what lies within half a length on both sides. */
+static Node clamp(const struct Pair *pair, Node length, Node whole) {
+  Node half = scale(pair->graph, 0.5, whole);
+  Node above = pieces_of(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
+  return pieces_of(pair->scope, MINIMUM, above, half, pair->line);
+}
+
+static void touch_sphere(const struct Pair *pair, struct Touches *touches) {
+  touch_balls(pair, middle_of(pair, pair->first), middle_of(pair, pair->second), pair->second->shape->radius, touches);
+}
+
+static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
+  struct Graph *graph = pair->graph;
+  struct Vector centre = middle_of(pair, pair->first), middle = middle_of(pair, pair->second);
+  struct Vector axis = axis_of(pair, pair->second);
+  Node along = vector_dot(graph, axis, vector_subtract(graph, centre, middle));
+  along = clamp(pair, along, pair->second->shape->length);
+  struct Vector nearest = vector_add(graph, middle, vector_scale(graph, along, axis));
+  touch_balls(pair, centre, nearest, pair->second->shape->radius, touches);
+}
+
+/* The centre of the first along the axes of the second, from its middle. */
+static struct Vector seen_from_second(const struct Pair *pair) {
+  struct Vector between = vector_subtract(pair->graph, middle_of(pair, pair->first), middle_of(pair, pair->second));
+  return matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
+}
+
+static void touch_nearest(const struct Pair *pair, struct Vector nearest, struct Touches *touches) {
+  struct Vector turned = matrix_apply(pair->graph, &pair->second->pose.rotation, nearest);
+  struct Vector place = vector_add(pair->graph, middle_of(pair, pair->second), turned);
+  touch_balls(pair, middle_of(pair, pair->first), place, ZERO, touches);
+}
+
+static void touch_box(const struct Pair *pair, struct Touches *touches) {
+  struct Vector seen = seen_from_second(pair);
+  for (int i = 0; i < 3; i++) seen.along[i] = clamp(pair, seen.along[i], pair->second->shape->size.along[i]);
+  touch_nearest(pair, seen, touches);
+}
+
+static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
+  struct Graph *graph = pair->graph;
+  const struct ContactShape *shape = pair->second->shape;
+  struct Vector seen = seen_from_second(pair);
+  int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
+  struct Vector off = seen;
+  off.along[shape->axis] = ZERO;
+  Node far = subtract(graph, vector_dot(graph, off, off), power_number(graph, shape->radius, 2.0));
+  Node is_outside = branch_of(pair->scope, far, "the cylinder's side", pair->line);
+  Node share = choose_node(graph, is_outside, divide(graph, shape->radius, length_of(graph, off)), ONE);
+  seen.along[across] = multiply(graph, share, seen.along[across]);
+  seen.along[beside] = multiply(graph, share, seen.along[beside]);
+  seen.along[shape->axis] = clamp(pair, seen.along[shape->axis], shape->length);
+  touch_nearest(pair, seen, touches);
+}
+
+/* By turns each to the nearest point of the other; the first guess is that of lines without ends. */
+static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
+  static const double nothing = 1e-12; /* of lines that are parallel, which are nearest everywhere */
+  struct Graph *graph = pair->graph;
+  struct Vector first = middle_of(pair, pair->first), second = middle_of(pair, pair->second);
+  struct Vector u = axis_of(pair, pair->first), w = axis_of(pair, pair->second);
+  struct Vector between = vector_subtract(graph, first, second);
+  Node uw = vector_dot(graph, u, w), along_u = vector_dot(graph, between, u), along_w = vector_dot(graph, between, w);
+  Node skew = subtract(graph, graph_constant(graph, 1.0 + nothing), power_number(graph, uw, 2.0));
+  Node s = divide(graph, subtract(graph, multiply(graph, uw, along_w), along_u), skew);
+  s = clamp(pair, s, pair->first->shape->length);
+  Node t = clamp(pair, add(graph, along_w, multiply(graph, s, uw)), pair->second->shape->length);
+  s = clamp(pair, subtract(graph, multiply(graph, t, uw), along_u), pair->first->shape->length);
+  struct Vector nearest = vector_add(graph, first, vector_scale(graph, s, u));
+  touch_balls(pair, nearest, vector_add(graph, second, vector_scale(graph, t, w)), pair->second->shape->radius,
+              touches);
+}
+
+typedef void TouchFunction(const struct Pair *pair, struct Touches *touches);
+
+/* By the types of the first and the second; those of the other order are found by exchanging them. */
+static TouchFunction *const functions[SHAPE_CAPSULE + 1][SHAPE_CAPSULE + 1] = {
+    [SHAPE_SPHERE] = {touch_plane, touch_sphere, touch_box, touch_cylinder, touch_capsule},
+    [SHAPE_BOX] = {touch_plane},
+    [SHAPE_CYLINDER] = {touch_plane},
+    [SHAPE_CAPSULE] = {[SHAPE_PLANE] = touch_plane, [SHAPE_CAPSULE] = touch_capsules},
+};
+
+static size_t point_count(const struct ContactShape *shape) {
+  size_t corners = 1;
+  switch (shape->type) {
+  case SHAPE_BOX:
+    for (int i = 0; i < 3; i++) corners *= shape->size.along[i] != ZERO ? 2 : 1;
+    return corners;
+  case SHAPE_CYLINDER: return MOST_POINTS;
+  case SHAPE_CAPSULE: return 2;
+  default: return 1;
+  }
+}
+
+size_t count_touches(const struct ContactShape *first, const struct ContactShape *second) {
+  if (functions[first->type][second->type] != NULL) return second->type == SHAPE_PLANE ? point_count(first) : 1;
+  if (functions[second->type][first->type] != NULL) return first->type == SHAPE_PLANE ? point_count(second) : 1;
+  return 0;
+}
+
+struct Touches touches_of(struct Reader *reader, long line, const struct Side *first, const struct Side *second) {
+  struct Graph *graph = reader->model->graph;
+  TouchFunction *touch = functions[first->shape->type][second->shape->type];
+  bool is_exchanged = touch == NULL;
+  struct Pair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
+  if (is_exchanged) touch = functions[second->shape->type][first->shape->type];
+  struct Touches touches = {allocate(count_touches(first->shape, second->shape), sizeof *touches.items), 0};
+  touch(&pair, &touches);
+  for (size_t i = 0; i < touches.count && is_exchanged; i++)
+    touches.items[i].normal = vector_scale(graph, graph_constant(graph, -1.0), touches.items[i].normal);
+  return touches;
+}

@@ -1,0 +1,223 @@
+"""Shapes that touch: gaps against a search for the nearest points, forces and motions against closed forms and conserved quantities."""
+
+import math
+import random
+import subprocess
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+import fmu
+from building import LAGC, build_systems
+
+HEAD = """<constant name="g" value="9.81" unit="m/s2"/><parameter name="m" start="2" unit="kg"/><parameter name="r" start="0.1" unit="m"/>
+  <parameter name="k" start="1e5" unit="N/m"/><parameter name="c" start="0" unit="s/m"/><parameter name="mu" start="0" unit="1"/>"""
+
+
+def free(name, x="0", velocity=""):
+    """A frame that moves and turns freely, with a body like a solid ball."""
+    quaternion = " ".join(f'<coordinate name="{name}q{i}" velocity="{name}r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4))
+    return f"""<coordinate name="{name}x" velocity="{name}vx" unit="m" start="{x}"/><coordinate name="{name}y" velocity="{name}vy" unit="m"/>
+  <coordinate name="{name}z" velocity="{name}vz" unit="m"/>{quaternion}
+  <frame name="{name}"><translate x="{name}x" y="{name}y" z="{name}z"/><rotate quaternion="{name}q0 {name}q1 {name}q2 {name}q3"/></frame>
+  <body name="{name}Body" in="{name}" mass="m" Ixx="0.4*m*r^2" Iyy="0.4*m*r^2" Izz="0.4*m*r^2"/>"""
+
+
+CONTACT = '<contact name="touch" between="{}" and="{}" stiffness="k" damping="c" friction="mu"/>'
+SHAPES = {
+    "Sphere": '<shape name="{0}" in="{1}" type="sphere" radius="0.3" x="0.02"/>',
+    "Capsule": '<shape name="{0}" in="{1}" type="capsule" radius="0.2" length="0.8" axis="y" z="0.05"/>',
+    "Box": '<shape name="{0}" in="{1}" type="box" sizeX="0.6" sizeY="0.8" sizeZ="1" y="-0.1"/>',
+    "Cylinder": '<shape name="{0}" in="{1}" type="cylinder" radius="0.35" length="0.7" axis="x" y="0.03"/>',
+}
+PAIRS = [("Sphere", "Sphere"), ("Sphere", "Capsule"), ("Box", "Sphere"), ("Sphere", "Cylinder"), ("Capsule", "Capsule")]
+PAIR = """<system name="{0}{1}">{HEAD}{a}{b}
+  {first}{second}{contact}<experiment stopTime="1"/></system>"""
+SLOPE = f"""<system name="Slope">{HEAD}<parameter name="slope" start="0.3" unit="rad"/>
+  <coordinate name="x" velocity="vx" unit="m"/><coordinate name="z" velocity="vz" unit="m"/><coordinate name="phi" velocity="w" unit="rad"/>
+  <frame name="ball"><translate x="x" z="z"/><rotate axis="y" angle="phi"/></frame>
+  <body name="solid" in="ball" mass="m" Ixx="0.4*m*r^2" Iyy="0.4*m*r^2" Izz="0.4*m*r^2"/>
+  <gravity x="g*sin(slope)" z="-g*cos(slope)"/>
+  <shape name="skin" in="ball" type="sphere" radius="r"/><shape name="floor" type="plane"/>
+  {CONTACT.format("skin", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+STAND = f"""<system name="Stand">{HEAD}{free("a")}<gravity z="-g"/>
+  <shape name="block" in="a" type="box" sizeX="0.4" sizeY="0.6" sizeZ="0.2"/><shape name="floor" type="plane"/>
+  {CONTACT.format("floor", "block")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+HARD = f"""<system name="Hard">{HEAD}<parameter name="e" start="0.5" unit="1"/>{free("a")}<gravity z="-g"/>
+  <shape name="block" in="a" type="box" sizeX="0.4" sizeY="0.6" sizeZ="0.2"/><shape name="floor" type="plane"/>
+  <contact name="touch" between="block" and="floor" restitution="e"/><experiment stopTime="2" stepSize="0.01"/></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD}
+    for first, second in PAIRS:
+        parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
+        texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
+    build_systems("shapes", texts)
+
+
+class Running:
+    """An FMU that is freed at the end."""
+
+    def __init__(self, name, values):
+        self.instance = fmu.Instance(name, logging=False)
+        self.values = values
+
+    def __enter__(self):
+        return self.instance.initialize(self.values)
+
+    def __exit__(self, *_):
+        self.instance.free()
+
+
+def pose(name, place, turn):
+    x, y, z, w = turn.as_quat()
+    return dict(zip((f"{name}x", f"{name}y", f"{name}z"), place)) | dict(zip((f"{name}q{i}" for i in range(4)), (w, x, y, z)))
+
+
+# The solids without their round edges, in their own axes: the nearest of their points to a place, which for all of them is that of clamped coordinates.
+def nearest(kind, place):
+    x, y, z = place
+    if kind == "Sphere":
+        return np.array([0.02, 0, 0])
+    if kind == "Capsule":
+        return np.array([0, np.clip(y, -0.4, 0.4), 0.05])
+    if kind == "Box":
+        return np.array([np.clip(x, -0.3, 0.3), np.clip(y, -0.5, 0.3), np.clip(z, -0.5, 0.5)])
+    across = math.hypot(y - 0.03, z)
+    share = min(1.0, 0.35 / across)
+    return np.array([np.clip(x, -0.35, 0.35), 0.03 + share * (y - 0.03), share * z])
+
+
+RADIUS = {"Sphere": 0.3, "Capsule": 0.2, "Box": 0.0, "Cylinder": 0.0}
+
+
+def distance(kinds, places, turns):
+    """By projections to and fro between the two convex solids, which come to the nearest points."""
+    point = np.array(places[0], dtype=float)
+    for _ in range(2000):
+        other = places[1] + turns[1].apply(nearest(kinds[1], turns[1].inv().apply(point - places[1])))
+        point = places[0] + turns[0].apply(nearest(kinds[0], turns[0].inv().apply(other - places[0])))
+    return np.linalg.norm(point - other) - RADIUS[kinds[0]] - RADIUS[kinds[1]]
+
+
+@pytest.mark.parametrize("kinds", PAIRS, ids="".join)
+def test_depths(kinds):
+    """Without damping the force is the stiffness times the depth."""
+    chance, deep = random.Random(1), 0
+    for _ in range(60):
+        turns = [Rotation.from_quat([chance.gauss(0, 1) for _ in range(4)]) for _ in range(2)]
+        places = [np.zeros(3), np.array([chance.uniform(-0.8, 0.8) for _ in range(3)])]
+        gap = distance(kinds, places, turns)
+        if gap < -0.9 * sum(RADIUS[kind] for kind in kinds):
+            continue  # one's middle may be in the other
+        with Running("".join(kinds), pose("a", places[0], turns[0]) | pose("b", places[1], turns[1])) as instance:
+            assert instance.get("touch.force") == pytest.approx(1e5 * max(0.0, -gap), rel=1e-6, abs=1e-3)
+        deep += gap < 0
+    assert 5 < deep < 60
+
+
+def momenta(instance, moment=0.4 * 2 * 0.1**2):
+    """Linear and angular momentum about the origin, and the kinetic energy, of two balls."""
+    linear, angular, energy = np.zeros(3), np.zeros(3), 0.0
+    for name in "ab":
+        place, speed = (np.array([instance.get(f"{name}{part}{axis}") for axis in "xyz"]) for part in ("", "v"))
+        rotation = np.array([[instance.get(f"{name}.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
+        spin = rotation @ np.array([instance.get(f"{name}Body.omega{axis}") for axis in "XYZ"])
+        linear += 2 * speed
+        angular += np.cross(place, 2 * speed) + moment * spin
+        energy += speed @ speed + moment * spin @ spin / 2
+    return linear, angular, energy
+
+
+def test_impact_of_spheres():
+    """
+    Head on and without damping, equal balls exchange their velocities; oblique, with friction and damping, momentum and angular momentum
+    stay, and energy is lost.
+    """
+    still = {"ax": -1.0, "avx": 2.0, "bx": 0.6}
+    with Running("SphereSphere", still) as instance:
+        instance.run(1.0, 0.01)
+        assert [instance.get("avx"), instance.get("bvx")] == pytest.approx([0, 2], abs=1e-6)
+    with Running("SphereSphere", still | {"az": 0.25, "c": 0.3, "mu": 0.5}) as instance:
+        before = momenta(instance)
+        instance.run(1.0, 0.01)
+        after = momenta(instance)
+        assert instance.get("bvx") > 0.5
+    assert after[0] == pytest.approx(before[0], abs=1e-8) and after[1] == pytest.approx(before[1], abs=1e-8)
+    assert 0.3 * before[2] < after[2] < 0.999 * before[2]
+
+
+@pytest.mark.parametrize("mu", [0.4, 0.05])
+def test_ball_on_a_slope(mu):
+    """It rolls at 5/7 g sin a where mu >= 2/7 tan a, but for the creep that the friction needs; else it slides as friction lets it."""
+    g, slope, m, r = 9.81, 0.3, 2.0, 0.1
+    weight = m * g * math.cos(slope)
+    with Running("Slope", {"mu": mu, "z": r - weight / 1e5, "c": 0.5}) as instance:
+        instance.run(1.0, 0.01)
+        assert instance.get("touch.force") == pytest.approx(weight, rel=1e-7)
+        creeping = instance.get("vx") - instance.get("w") * r
+        if mu > 2 / 7 * math.tan(slope):
+            needed = 2 / 7 * m * g * math.sin(slope)
+            assert instance.get("der(vx)") == pytest.approx(5 / 7 * g * math.sin(slope), rel=1e-4)
+            assert creeping == pytest.approx(1e-3 * needed / math.sqrt((mu * weight) ** 2 - needed**2), rel=1e-2)
+        else:
+            assert instance.get("der(vx)") == pytest.approx(g * (math.sin(slope) - mu * math.cos(slope)), rel=1e-6)
+            assert instance.get("der(w)") == pytest.approx(mu * weight * r / (0.4 * m * r**2), rel=1e-3)
+
+
+def test_a_block_that_stands():
+    """Dropped flat, with damping, it rests on four corners which bear its weight, and does not turn."""
+    with Running("Stand", {"az": 0.11, "c": 5.0, "mu": 0.5}) as instance:
+        instance.run(3.0, 0.01)
+        assert instance.get("touch.force") == pytest.approx(2 * 9.81, rel=1e-6)
+        assert instance.get("az") == pytest.approx(0.1 - 2 * 9.81 / 4e5, rel=1e-9)
+        assert [instance.get(f"aq{i}") for i in (1, 2, 3)] == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+def test_hard_contacts():
+    """
+    A block that falls on a corner and tumbles on a smooth floor: its energy never grows, nothing of it is below the floor, and the eight
+    forces bear the weight at rest. Flat, it bounces like a ball.
+    """
+    turn = Rotation.from_euler("xyz", [0.4, 0.3, 0.1])
+    corners = np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.3, 0.3) for z in (-0.1, 0.1)])
+    with Running("Hard", pose("a", [0, 0, 0.6], turn) | {"e": 0.3}) as instance:
+        energy = instance.get("totalEnergy")
+        for _ in range(200):
+            instance.run(instance.time + 0.02, 0.02)
+            now = instance.get("totalEnergy")
+            rotation = np.array([[instance.get(f"a.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
+            assert now < energy + 1e-7
+            assert min(instance.get("az") + (rotation @ corner)[2] for corner in corners) > -1e-7
+            energy = now
+    with Running("Hard", {"az": 0.6, "e": 0.5}) as instance:
+        fall = math.sqrt(2 * 0.5 / 9.81)
+        instance.run(2 * fall, fall / 10)
+        time = fall
+        speed = 0.5 * 9.81 * fall
+        assert instance.get("az") == pytest.approx(0.1 + speed * time - 9.81 / 2 * time**2, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        ('<contact between="skin" and="flor" stiffness="k"/>', "there is no shape 'flor' above this <contact>; did you mean 'floor'?"),
+        ('<contact name="q" between="skin"/>', "between one shape; expected and"),
+        ('<contact name="q" between="skin" and="floor" friction="mu"/>', "the friction of a <contact> between shapes without a stiffness"),
+        ('<contact between="floor" and="floor2" stiffness="k"/>', "there is no <contact> between such shapes as 'floor' and 'floor2'"),
+        ('<shape name="s" type="sphere"/>', "the sphere 's' has no radius"),
+        ('<shape name="s" type="sphere" radius="r" sizeX="r"/>', "is a sphere, which has no sizeX"),
+        ('<shape name="s" in="bal" type="sphere" radius="r"/>', "there is nothing named 'bal' for this <shape>"),
+        ('<contact gap="z"/>', "a <contact> needs a name and a gap, or shapes"),
+
+        ('<shape name="t" type="sphere" radius="r"/><contact between="t" and="floor" stiffness="k"/>', "nothing moves 't' against 'floor'"),
+    ],
+)
+def test_messages(tmp_path, text, message):
+    (tmp_path / "system.xml").write_text(SLOPE.replace("<experiment", f'<shape name="floor2" type="plane"/>{text}<experiment'))
+    found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert found.returncode == 1 and message in found.stderr
