@@ -64,7 +64,7 @@ static void write_shape(xmlTextWriterPtr writer, const struct Model *model, cons
                                       [SHAPE_BOX] = "box",
                                       [SHAPE_CYLINDER] = "cylinder",
                                       [SHAPE_CAPSULE] = "capsule"};
-  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
+  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const angles[] = {"roll", "pitch", "yaw"};
   const struct Graph *graph = model->graph;
   xmlTextWriterStartElement(writer, BAD_CAST "shape");
   if (shape->particle != NO_PARTICLE) write_attribute(writer, "in", shape->in);
@@ -74,6 +74,7 @@ static void write_shape(xmlTextWriterPtr writer, const struct Model *model, cons
   for (int i = 0; i < 3; i++) {
     write_formula(writer, graph, axes[i], shape->offset.along[i]);
     write_formula(writer, graph, sizes[i], shape->size.along[i]);
+    write_formula(writer, graph, angles[i], shape->angles[i]);
   }
   write_formula(writer, graph, "radius", shape->radius);
   write_formula(writer, graph, "length", shape->length);

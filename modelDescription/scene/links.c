@@ -32,6 +32,13 @@ static bool moves(const struct Samples *samples, size_t thing) {
   return false;
 }
 
+/* The norm of a quaternion, with which all distances of a body would change: its force is along none of them. */
+static bool is_norm(const struct Model *model, size_t constraint) {
+  for (size_t i = 0; i < model->mechanism.stillness_count; i++)
+    if (model->mechanism.stillnesses[i].constraint == model->constraints.items[constraint].node) return true;
+  return false;
+}
+
 /* Whether distance^power is a number and multiples of constraints. */
 static bool is_rod(const struct Samples *samples, int power, struct Rod *rod) {
   size_t columns = 1 + samples->constraint_count;
@@ -52,7 +59,7 @@ static bool is_rod(const struct Samples *samples, int power, struct Rod *rod) {
     rod->constraint = samples->constraints[c];
     rod->factor = -(power == 1 ? 1.0 : 2.0 * rod->length) / solution[1 + c];
   }
-  rod->has_force = forces == 1;
+  rod->has_force = forces == 1 && !is_norm(samples->model, rod->constraint);
   return true;
 }
 

@@ -223,6 +223,7 @@ class Scene {
     if (shape.type !== "box" && shape.type !== "sphere") mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
     part.add(mesh);
     part.position.set(...AXES.map(measure));
+    part.rotation.set(...["roll", "pitch", "yaw"].map(measure), "ZYX");
     return part;
   }
 

@@ -145,6 +145,11 @@ def beam_on_three(t):
     return {"s": 0.5 * t - 1, "left.force": share - lever, "middle.force": share, "right.force": share + lever, "z": 0.0}
 
 
+def ball_on_slope(t):
+    """It rolls, and creeps by 0.2 mm/s."""
+    return {"x": 5 / 14 * 9.81 * np.sin(0.3) * t**2, "touch.force": 2 * 9.81 * np.cos(0.3)}
+
+
 def swing(t):
     """Released as it hangs, where it stays; the limits are not reached."""
     return {"hinge": 0, "tool_z": 1, "tool_x": 0, "hinge_beyond": 0}
@@ -175,6 +180,7 @@ MOTIONS = {
     "BeamOnThree": (beam_on_three, 1e-10),
     "LeaningGate": (lambda t: {"load": -20 * 9.81 * np.cos(0.3), "gate.z": -0.6 * np.sin(0.3) * np.cos(float(pendulum_angle(np.pi / 2, np.sqrt(9.81 * np.sin(0.3) / 0.8), t)))}, 1e-6),
     "Sling": (lambda t: {"x": np.cos(10**0.5 * t), "y": np.sin(10**0.5 * t), "sling.force": 20, "sling.length": 1}, 1e-7),
+    "BallOnSlope": (ball_on_slope, 1e-3),
     "Turntable": (lambda t: {"theta": t**2, "omega": 2 * t, "inwards": 0.5 * (2 * t) ** 2, "disk.alphaZ": 2}, 1e-8),
     "FreeTop": (lambda t: {"theta": 0.5, "phi": 2 * t, "psi": 4 * np.cos(0.5) * t}, 1e-7),
     "Thrown": (lambda t: {"bob.z": -9.81 * t**2 / 2, "a": np.cos(1.5 * t), "d": np.sin(1.5 * t), "bob.omegaZ": 3}, 1e-7),

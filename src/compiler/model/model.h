@@ -107,6 +107,8 @@ struct ContactShape {
   size_t particle;      /* that one's place among the bodies; NO_PARTICLE for none */
   int axis;             /* of a plane, cylinder or capsule: x, y or z of the frame */
   struct Vector offset; /* m, of its middle along the frame's axes */
+  struct Matrix turn;   /* from its own axes to the frame's */
+  Node angles[3];       /* rad, of that about the frame's x, y and z, one after the other */
   Node radius, length;  /* m; of a capsule without its round ends */
   struct Vector size;   /* m, of a box along the frame's axes */
 };

@@ -8,10 +8,20 @@
 
 enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, JOINT_TYPES };
 
+/* What a link touches with: a <shape> of this type, in the link's frame. */
+struct Collision {
+  const char *type;
+  struct Placement place;
+  double radius, length, size[3]; /* m, of a cylinder along its z, of a box */
+  long line;
+};
+
 struct Link {
   char *name;   /* as in the file */
   char *symbol; /* the same as a name of the language */
   long line;
+  struct Collision *collisions;
+  size_t collision_count;
   struct RigidBody body; /* in the link's frame; without inertia where the file gives none */
   /* What robot_connect() finds: */
   struct Joint *joint;                     /* that carries the link; NULL of the root */
@@ -48,6 +58,7 @@ struct RobotOptions {
   bool floats;            /* the root link moves freely; else it stands in the inertial frame */
   bool has_stops;         /* limits stop the joints; else outputs tell how far these are beyond them */
   bool sticks;            /* the joints' friction is dry; else it lets them creep */
+  bool has_ground;        /* the links' shapes stand on a plane */
   bool is_effort_limited; /* motors push and turn with no more than their effort */
   const char *
       tool; /* the link whose position and velocity are outputs; NULL: the only one without children, if there is one */

@@ -6,6 +6,7 @@
 #include "model/kinematics.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
+#include "read/robots/robot_shapes.h"
 #include "read/robots/robot_tree.h"
 #include "read/robots/urdf.h"
 #include "read/xml/schema.h"
@@ -42,6 +43,11 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
 }
 
+/* Whether what the link is fixed to moves. */
+static bool has_moving_carrier(const struct Link *link, bool floats) {
+  return floats || link->carrier->joint != NULL;
+}
+
 /* The frame of a link, in that of the link to which the joint's other side is fixed. */
 static void write_link(struct Writer *writer, const struct Link *link) {
   bool floats = writer->options->floats;
@@ -63,6 +69,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
     write_motion(writer, frame, joint);
   } else if (floats) write_free_motion(writer, frame, base);
   if (moves || (joint == NULL && floats)) write_body(writer, link);
+  write_shapes(writer, link, has_moving_carrier(link, floats));
 }
 
 /* The link without children, where there is one alone. */
@@ -102,11 +109,12 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   write_parameter(writer, copy_text("g"), 9.81, "m/s2", copy_text("gravitational acceleration, along -z"));
   set_attribute(write_element(writer, "gravity"), "z", copy_text("-g"));
   write_friction_parameters(writer, robot);
+  if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */
-  if (!has_losses(robot, writer->options))
+  if (!has_losses(robot, writer->options) && !writer->options->has_ground)
     set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
   xmlNodePtr experiment = write_element(writer, "experiment");
   set_attribute(experiment, "stopTime", number(1));

@@ -146,13 +146,50 @@ static void read_inertial(struct Urdf *urdf, xmlNodePtr node, struct Link *link)
   link->body = body_seen_from(&place, &body);
 }
 
+/* False of what has no shape here, such as a <mesh>. */
+static bool read_geometry(struct Urdf *urdf, xmlNodePtr node, struct Collision *collision) {
+  xmlNodePtr sphere = child_of(urdf, node, "sphere"), box = child_of(urdf, node, "box");
+  xmlNodePtr round = child_of(urdf, node, "cylinder"), capsule = round == NULL ? child_of(urdf, node, "capsule") : NULL;
+  if (round == NULL) round = capsule;
+  if (sphere != NULL) {
+    collision->type = "sphere";
+    collision->radius = required_number(urdf, sphere, "radius");
+  } else if (box != NULL) {
+    collision->type = "box";
+    if (*required_attribute(urdf, box, "size") != '\0') read_numbers(urdf, box, "size", 3, collision->size);
+  } else if (round != NULL) {
+    collision->type = capsule != NULL ? "capsule" : "cylinder";
+    collision->radius = required_number(urdf, round, "radius");
+    collision->length = required_number(urdf, round, "length");
+  }
+  return collision->type != NULL;
+}
+
+static void read_collision(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
+  xmlNodePtr geometry = child_of(urdf, node, "geometry");
+  struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
+  if (geometry == NULL || !read_geometry(urdf, geometry, &collision)) {
+    if (!urdf->options->has_ground) leave_out(urdf, "collision");
+    else
+      report_warning(urdf->diagnostics, collision.line,
+                     "a <collision> of the link '%s' is a mesh, or has no geometry, and touches nothing; expected a "
+                     "<box>, <sphere>, <cylinder> or <capsule>",
+                     link->name);
+    return;
+  }
+  link->collisions = make_room(link->collisions, link->collision_count, sizeof *link->collisions);
+  link->collisions[link->collision_count++] = collision;
+}
+
 static void read_link(struct Urdf *urdf, xmlNodePtr node) {
-  static const char *const known[] = {"inertial", NULL};
+  static const char *const known[] = {"inertial", "collision", NULL};
   struct Robot *robot = urdf->robot;
   struct Link *link = allocate(1, sizeof *link);
   link->name = required_attribute(urdf, node, "name");
   link->line = xmlGetLineNo(node);
   leave_out_others(urdf, node, known);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_element(child, "collision")) read_collision(urdf, child, link);
   xmlNodePtr inertial = child_of(urdf, node, "inertial");
   if (inertial != NULL) read_inertial(urdf, inertial, link);
   robot->links = make_room(robot->links, robot->link_count, sizeof(struct Link *));

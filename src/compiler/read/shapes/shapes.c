@@ -98,10 +98,27 @@ static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape
               name);
 }
 
+/* Roll, pitch and yaw as in URDF: about the fixed axes x, y, z in this order. */
+static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
+  static const char *const names[3] = {"roll", "pitch", "yaw"};
+  struct Pose pose = pose_of_base();
+  for (int i = 2; i >= 0; i--) {
+    struct Quantity angle = {.node = ZERO};
+    if (!expression_attribute(reader, node, names[i], IN_MASS, &angle)) continue;
+    require_unit(reader, xmlGetLineNo(node), names[i], angle, unit_of("rad"));
+    shape->angles[i] = angle.node;
+    struct Vector axis = {{ZERO, ZERO, ZERO}};
+    axis.along[i] = ONE;
+    pose_turn(reader->model->graph, &pose, axis, angle.node, ZERO);
+  }
+  shape->turn = pose.rotation;
+}
+
 void place_shape(struct Reader *reader, xmlNodePtr node) {
   if (!has_attribute(node, "name")) return;
   struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
   place_in(reader, node, shape);
+  turn_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;
     shape->offset.along[i] = read_length(reader, node, axes[i], true);

@@ -46,7 +46,7 @@ static struct Vector along_axis(const struct ContactShape *shape, Node length) {
 
 static void append_point(struct Graph *graph, struct Points *points, const struct ContactShape *shape,
                          struct Vector from) {
-  points->places[points->count++] = vector_add(graph, shape->offset, from);
+  points->places[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->turn, from));
 }
 
 static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
@@ -95,8 +95,14 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
   return points;
 }
 
+/* From the axes of a side's shape to those of the base. */
+static struct Vector turned_by(const struct Pair *pair, const struct Side *side, struct Vector vector) {
+  vector = matrix_apply(pair->graph, &side->shape->turn, vector);
+  return matrix_apply(pair->graph, &side->pose.rotation, vector);
+}
+
 static struct Vector axis_of(const struct Pair *pair, const struct Side *side) {
-  return matrix_apply(pair->graph, &side->pose.rotation, along_axis(side->shape, ONE));
+  return turned_by(pair, side, along_axis(side->shape, ONE));
 }
 
 static struct Vector middle_of(const struct Pair *pair, const struct Side *side) {
@@ -157,11 +163,12 @@ static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
 /* The centre of the first along the axes of the second, from its middle. */
 static struct Vector seen_from_second(const struct Pair *pair) {
   struct Vector between = vector_subtract(pair->graph, middle_of(pair, pair->first), middle_of(pair, pair->second));
-  return matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
+  between = matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
+  return matrix_apply_transposed(pair->graph, &pair->second->shape->turn, between);
 }
 
 static void touch_nearest(const struct Pair *pair, struct Vector nearest, struct Touches *touches) {
-  struct Vector turned = matrix_apply(pair->graph, &pair->second->pose.rotation, nearest);
+  struct Vector turned = turned_by(pair, pair->second, nearest);
   struct Vector place = vector_add(pair->graph, middle_of(pair, pair->second), turned);
   touch_balls(pair, middle_of(pair, pair->first), place, ZERO, touches);
 }

@@ -1,0 +1,90 @@
+"""Robots that stand: the shapes of a URDF's <collision>, on the ground that an <include> asks for."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import fmu
+from building import build_systems
+from fmu import lagc
+
+LEGS = {"lf": (0.2, 0.1), "rf": (0.2, -0.1), "lh": (-0.2, 0.1), "rh": (-0.2, -0.1)}
+INERTIA = '<inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/>'
+
+
+def leg(name, x, y):
+    part = '<link name="{0}"><inertial><origin xyz="0 0 -0.1"/><mass value="{1}"/>{2}</inertial>{3}</link>'
+    joint = '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="{3}"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>'
+    foot = '<collision><origin xyz="0 0 -0.2"/><geometry><sphere radius="0.025"/></geometry></collision>'
+    thigh, shank = part.format(f"{name}_thigh", 1, INERTIA.format(0.004), ""), part.format(f"{name}_shank", 0.5, INERTIA.format(0.002), foot)
+    hip = joint.format(f"{name}_hip", "trunk", f"{name}_thigh", f"{x} {y} 0")
+    return hip + thigh + joint.format(f"{name}_knee", f"{name}_thigh", f"{name}_shank", "0 0 -0.2") + shank
+
+
+DOG = f"""<robot name="dog"><link name="trunk"><inertial><mass value="8"/>{INERTIA.format(0.15)}</inertial>
+<collision><geometry><box size="0.5 0.18 0.1"/></geometry></collision></link>{"".join(leg(name, *place) for name, place in LEGS.items())}</robot>"""
+WISHES = {"hip": 0.5, "knee": -1.0}
+MOTORS = "".join(
+    f'<input name="{leg}_{joint}_torque" value="200*({wish} - dog.{leg}_{joint}) - 5*dog.{leg}_{joint}_velocity"/>' for leg in LEGS for joint, wish in WISHES.items()
+)
+STARTS = "".join(f'<coordinate name="{leg}_{joint}" start="{wish}"/>' for leg in LEGS for joint, wish in WISHES.items())
+STANDING = f"""<system name="Standing"><include file="dog.urdf" as="dog" base="floating" ground="true">{MOTORS}{STARTS}
+<coordinate name="base_z" start="0.385"/></include><experiment stopTime="5" stepSize="0.01"/></system>"""
+ROUND = """<robot name="roller"><link name="roller"><inertial><mass value="3"/>{0}</inertial>
+<collision><origin xyz="0.1 0 0.05" rpy="1.5707963267948966 0 0.3"/><geometry><cylinder radius="0.2" length="0.6"/></geometry></collision></link></robot>"""
+ROLLER = '<system name="Roller"><include file="roller.urdf" as="r" base="floating" ground="true"/></system>'
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    files = {"Standing/dog.urdf": DOG, "Roller/roller.urdf": ROUND.format(INERTIA.format(0.1))}
+    build_systems("grounded", {"Standing": STANDING, "Roller": ROLLER}, files=files)
+
+
+def test_a_quadruped_stands():
+    """Its feet bear its weight, and the moments of their forces about its centre of mass are 0; it does not drift."""
+    instance = fmu.Instance("Standing", logging=False)
+    try:
+        instance.initialize()
+        instance.run(6.0, 0.01)
+        forces = np.array([instance.get(f"dog.{leg}_shank_ground1.force") for leg in LEGS])
+        feet = np.array([[instance.get(f"dog.{leg}_shank.{a}") - 0.2 * instance.get(f"dog.{leg}_shank.R{i}3") for i, a in ((1, "x"), (2, "y"))] for leg in LEGS])
+        bodies = {"trunk": 8.0} | {f"{leg}_{part}": mass for leg in LEGS for part, mass in (("thigh", 1.0), ("shank", 0.5))}
+        centre = sum(mass * np.array([instance.get(f"dog.{link}_body.{axis}") for axis in "xy"]) for link, mass in bodies.items()) / 14
+        assert sum(forces) == pytest.approx(14 * 9.81, rel=1e-6)
+        assert forces @ (feet - centre) / sum(forces) == pytest.approx([0, 0], abs=1e-6)
+        assert all(forces > 10) and instance.get("dog.trunk_ground1.force") == 0
+        assert abs(instance.get("dog.base_x_velocity")) < 1e-5
+    finally:
+        instance.free()
+
+
+def test_where_shapes_are():
+    """A cylinder by its origin and rpy: how deep the points of its rims are in the ground says it."""
+    instance = fmu.Instance("Roller", logging=False)
+    try:
+        place = {"r.base_z": 0.1, "r.base_qw": math.cos(0.2), "r.base_qx": math.sin(0.2)}
+        instance.initialize(place)
+        # As the reference of URDF says: about the fixed axes x, y, z.
+        own, base = Rotation.from_euler("xyz", [math.pi / 2, 0, 0.3]), Rotation.from_euler("x", 0.4)
+        rims = [[0.2 * math.cos(k * math.pi / 4), 0.2 * math.sin(k * math.pi / 4), end] for k in range(8) for end in (-0.3, 0.3)]
+        heights = 0.1 + base.apply(np.array([0.1, 0, 0.05]) + own.apply(rims))[:, 2]
+        expected = instance.get("r.ground_stiffness") * sum(-height for height in heights if height < 0)
+        assert expected > 0
+        assert instance.get("r.roller_ground1.force") == pytest.approx(expected, rel=1e-9)
+    finally:
+        instance.free()
+
+
+def test_a_mesh_is_told_of(tmp_path):
+    """Where it touches nothing, though there is a ground; without one, all that is left out is told in a line."""
+    mesh = re.sub("<geometry>.*</geometry>", '<geometry><mesh filename="roller.stl"/></geometry>', ROUND.format(INERTIA.format(0.1)))
+    (tmp_path / "roller.urdf").write_text(mesh)
+    (tmp_path / "system.xml").write_text(ROLLER)
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and "a <collision> of the link 'roller' is a mesh" in result.stderr
+    (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
+    assert "left out, since the motion does not depend on them: collision" in lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
