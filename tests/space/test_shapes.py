@@ -151,6 +151,15 @@ def test_impact_of_spheres():
     assert 0.3 * before[2] < after[2] < 0.999 * before[2]
 
 
+def test_nothing_sticks():
+    """What is pulled apart faster than 1/damping is not held back."""
+    deep = {"ax": 0.5, "bx": 1.0, "c": 0.5}
+    for speed, factor in ((1.0, 0.5), (3.0, 0.0)):
+        with Running("SphereSphere", deep | {"avx": -speed}) as instance:
+            depth = 0.6 - 0.5
+            assert instance.get("touch.force") == pytest.approx(1e5 * depth * factor, rel=1e-9)
+
+
 @pytest.mark.parametrize("mu", [0.4, 0.05])
 def test_ball_on_a_slope(mu):
     """It rolls at 5/7 g sin a where mu >= 2/7 tan a, but for the creep that the friction needs; else it slides as friction lets it."""
