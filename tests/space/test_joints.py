@@ -55,7 +55,7 @@ def text_of(kind):
 
 @pytest.fixture(scope="module")
 def joints():
-    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
+    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
 
 
 def simulate(name, outputs, **words):
@@ -239,6 +239,37 @@ def test_wheel_in_the_plane(joints):
     assert result["ground.forceX"] == pytest.approx(1, abs=1e-8)
 
 
+VECTORS = """<system name="Vectors">
+<parameter name="L" start="2" unit="m"/>
+<coordinate name="p" velocity="vp" unit="rad" start="0.3" velocityStart="1.1"/>
+<coordinate name="q" velocity="vq" unit="rad" start="-0.7" velocityStart="-0.4"/>
+<frame name="arm"><rotate axis="z" angle="p"/><translate x="0.5"/><rotate axis="y" angle="q"/></frame>
+<body name="rod" in="arm" mass="1" x="0.3" Ixx="0.1" Iyy="0.2" Izz="0.3"/>
+<point name="tip" in="arm" x="0.4" y="-0.2" z="0.1"/>
+<body name="disk" mass="1" x="L*p" y="L*q/2" inertia="0.1" angle="p"/>
+<output name="a" unit="m2">dot(tip, disk - arm)</output>
+<output name="b" unit="m2/s">norm(cross(tip - arm, tip.v - rod.v))</output>
+<output name="c" unit="m2/s">dot(cross(arm.axisY, -tip), (rod.v + tip.v))</output>
+<output name="d" unit="1">dot(arm.axisX, base.axisY) - dot(arm.axisZ, cross(base.axisX, arm.axisY))</output>
+<experiment stopTime="1"/>
+</system>"""
+
+
+def test_vectors(joints):
+    """Products of what NumPy makes of the angles."""
+    for row in simulate("Vectors", ["p", "q", "vp", "vq", "a", "b", "c", "d"]):
+        about_z = Rotation.from_euler("Z", row["p"])
+        turned = about_z * Rotation.from_euler("Y", row["q"])
+        arm, omega = about_z.apply([0.5, 0, 0]), [0, 0, row["vp"]] + row["vq"] * about_z.apply([0, 1, 0])
+        offsets = {"tip": turned.apply([0.4, -0.2, 0.1]), "rod": turned.apply([0.3, 0, 0])}
+        velocity = {name: np.cross([0, 0, row["vp"]], arm) + np.cross(omega, offset) for name, offset in offsets.items()}
+        tip, (x, y, z) = arm + offsets["tip"], turned.as_matrix().T
+        assert row["a"] == pytest.approx(tip @ (np.array([2 * row["p"], row["q"], 0]) - arm), abs=1e-12)
+        assert row["b"] == pytest.approx(np.linalg.norm(np.cross(offsets["tip"], velocity["tip"] - velocity["rod"])), abs=1e-12)
+        assert row["c"] == pytest.approx(np.cross(y, -tip) @ (velocity["rod"] + velocity["tip"]), abs=1e-12)
+        assert row["d"] == pytest.approx(x[1] - z @ np.cross([1, 0, 0], y), abs=1e-12)
+
+
 BAD = [
     ('<joint name="h" type="pin" from="base" to="tip"/>', "there is nothing named 'tip' for this <joint>"),
     ('<joint name="h" type="revolute" from="base" to="bob"/>', "the joint 'h' holds z, which nothing moves"),
@@ -250,6 +281,16 @@ BAD = [
     ('<joint name="h" type="pin" from="bob" to="bob"/>', "nor does anything move the rest of what it holds; expected 'bob' and 'bob' that move"),
     ('<frame name="A"><rotate axis="z" angle="x"/></frame><frame name="B"><rotate axis="x" angle="1"/><rotate axis="z" angle="y"/></frame><joint name="h" type="universal" from="A" to="B"/>',
      'expected <constraint name="h">A.R11*B.R12 + A.R21*B.R22 + A.R31*B.R32</constraint> for shafts whose places are held already'),
+    ('<output name="o">dot(bob, tip)</output>', "there is no point 'tip'"),
+    ('<output name="o">dot(bob)</output>', "expected ',' between the two vectors of dot"),
+    ('<output name="o">norm(bob, bob)</output>', "expected ')' after the vector of norm"),
+    ('<output name="o">norm(2*bob)</output>', "or a vector such as arm.axisX, tip.v or cross(...), found '2'"),
+    ('<output name="o">cross(bob, bob)</output>', "cross(...) is a vector; expected it in dot(...) or norm(...)"),
+    ('<parameter name="d" start="1" unit="m"/><output name="o">norm(bob + base.axisX)</output>', "m and 1 in one sum"),
+    ('<output name="o">distance(bob, base.axisX)</output>', "distance(...) is between two points"),
+    ('<output name="o">norm(bob.axisW)</output>', "there is no point 'bob.axisW'"),
+    ('<point name="tip" x="x"/><potential>dot(tip.v, tip.v)*tip.v</potential>', "unknown name 'tip.v'"),
+    ('<point name="tip" x="x"/><particle mass="1" x="norm(tip.v)"/>', "cannot depend on velocities, but 'tip.vx' does"),
     ('<joint name="h" type="screw" from="base" to="bob"/>', "<joint type=\"screw\"> needs the attribute 'pitch'"),
     ('<joint name="h" type="screw" from="base" to="bob" pitch="0"/>', "the pitch of <joint> is 0; expected a length"),
     ('<joint name="h" type="pin" from="base" to="bob" radius="1"/>', "<joint> has the attribute 'radius' with type=\"rolling\" alone"),
