@@ -55,7 +55,7 @@ def text_of(kind):
 
 @pytest.fixture(scope="module")
 def joints():
-    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
+    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS, "Bushed": BUSHED} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
 
 
 def simulate(name, outputs, **words):
@@ -270,6 +270,31 @@ def test_vectors(joints):
         assert row["d"] == pytest.approx(x[1] - z @ np.cross([1, 0, 0], y), abs=1e-12)
 
 
+BUSHED = """<system name="Bushed">
+{coordinates}
+<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="a b c d"/></frame>
+<body name="rod" in="f" mass="2" Ixx="0.2" Iyy="0.3" Izz="0.12"/>
+<frame name="wall"><translate x="0.1" y="-0.2" z="0.4"/><rotate axis="y" angle="1.2"/><rotate axis="x" angle="0.4"/></frame>
+<bushing from="wall" to="rod" stiffness="30 40 50" damping="1 2 3" torsion="4" torsionDamping="0.1 0.2 0.3"/>
+<experiment stopTime="1"/>
+</system>""".format(coordinates="\n".join(f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{(q == "a") + 0.1 * (q in "xyz")}" velocityStart="{0.5 * (q in "bdy")}"/>' for q in "xyzabcd"))
+
+
+def test_bushing(joints):
+    """Forces and torques along the axes of the wall; equal torsion about all axes turns back with 4 sin(angle) about the axis of the turn."""
+    names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
+    for row in simulate("Bushed", names):
+        body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
+        place, velocity, acceleration = (np.array([row[name.format(q)] for q in "xyz"]) for name in ("{}", "v{}", "der(v{})"))
+        omega, alpha = (np.array([row[f"rod.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
+        back = WALL_TURNED.inv()
+        force = -np.array([30, 40, 50]) * back.apply(place - WALL) - np.array([1, 2, 3]) * back.apply(velocity)
+        turn = (back * body).as_rotvec()
+        torque = -4 * np.sinc(np.linalg.norm(turn) / np.pi) * turn - np.array([0.1, 0.2, 0.3]) * back.apply(body.apply(omega))
+        assert 2 * acceleration == pytest.approx(WALL_TURNED.apply(force), abs=1e-8)
+        assert body.apply(INERTIA * alpha + np.cross(omega, INERTIA * omega)) == pytest.approx(WALL_TURNED.apply(torque), abs=1e-7)
+
+
 BAD = [
     ('<joint name="h" type="pin" from="base" to="tip"/>', "there is nothing named 'tip' for this <joint>"),
     ('<joint name="h" type="revolute" from="base" to="bob"/>', "the joint 'h' holds z, which nothing moves"),
@@ -281,6 +306,10 @@ BAD = [
     ('<joint name="h" type="pin" from="bob" to="bob"/>', "nor does anything move the rest of what it holds; expected 'bob' and 'bob' that move"),
     ('<frame name="A"><rotate axis="z" angle="x"/></frame><frame name="B"><rotate axis="x" angle="1"/><rotate axis="z" angle="y"/></frame><joint name="h" type="universal" from="A" to="B"/>',
      'expected <constraint name="h">A.R11*B.R12 + A.R21*B.R22 + A.R31*B.R32</constraint> for shafts whose places are held already'),
+    ('<bushing from="base" to="bob"/>', "<bushing> has neither stiffness nor damping"),
+    ('<bushing from="base" to="bob" stiffness="1 2"/>', "the stiffness of <bushing> has 2 parts; expected one, or three"),
+    ('<bushing from="base" to="tip" stiffness="1"/>', "there is nothing named 'tip' for this <bushing>"),
+    ('<bushing from="base" to="bob" torsion="1"/>', "the energy of <bushing> is the same at all times; expected 'base' and 'bob' that move or turn"),
     ('<output name="o">dot(bob, tip)</output>', "there is no point 'tip'"),
     ('<output name="o">dot(bob)</output>', "expected ',' between the two vectors of dot"),
     ('<output name="o">norm(bob, bob)</output>', "expected ')' after the vector of norm"),

@@ -5,8 +5,7 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
-  long line = xmlGetLineNo(node);
+bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
   char *full_name = reference_attribute(reader, node, name);
   if (full_name == NULL) return false;
   if (attribute_is(node, name, "base")) full_name = copy_text("base");
@@ -25,9 +24,17 @@ bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct 
               attribute(node, name), (const char *)node->name);
     return false;
   }
-  side->position = vector_without_displacements(reader, line, full_name, side->position);
-  side->rotation = matrix_without_displacements(reader, line, full_name, frame->pose.rotation);
+  side->rotation = frame->pose.rotation;
   side->frame = (size_t)(frame - reader->model->mechanism.frames);
+  return true;
+}
+
+bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
+  long line = xmlGetLineNo(node);
+  const char *what = attribute(node, name);
+  if (!read_displaced_side(reader, node, name, side)) return false;
+  side->position = vector_without_displacements(reader, line, what, side->position);
+  side->rotation = matrix_without_displacements(reader, line, what, side->rotation);
   return true;
 }
 

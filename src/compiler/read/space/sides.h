@@ -1,4 +1,4 @@
-/* What an element between two places joins: anything in a frame with the frame's axes, where nothing is displaced. */
+/* What an element between two places joins: anything in a frame with the frame's axes. */
 #pragma once
 
 #include "read/context/attributes.h"
@@ -10,7 +10,10 @@ struct Side {
   size_t frame;  /* among the model's, whose axes these are */
 };
 
-/* What the attribute names; false after reporting that there is no such thing. */
+/* What the attribute names, as a function of displacements too; false after reporting that there is no such thing. */
+bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
+
+/* The same where nothing is displaced. */
 bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
 /* Its angular velocity along the base's axes. */
