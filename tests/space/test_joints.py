@@ -55,7 +55,7 @@ def text_of(kind):
 
 @pytest.fixture(scope="module")
 def joints():
-    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG})
+    build_systems("joints", {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS, "Bushed": BUSHED} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
 
 
 def simulate(name, outputs, **words):
@@ -151,6 +151,150 @@ def test_spring(joints):
     assert 1.0 * result["der(vy[2])"] == pytest.approx(-force * between[1] / length, abs=1e-9)
 
 
+SCREWED = """<system name="Screwed">
+<parameter name="p" start="-0.02" unit="m"/>
+{coordinates}
+<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="a b c d"/></frame>
+<body name="nut" in="f" mass="2" Ixx="0.2" Iyy="0.3" Izz="0.0001"/>
+<gravity z="-9.81"/>
+<joint name="rod" type="screw" from="base" to="nut" pitch="p"/>
+<experiment stopTime="1"/>
+</system>""".format(coordinates="\n".join(f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{int(q == "a")}"/>' for q in "xyzabcd"))
+
+
+def test_screw(joints):
+    """A nut falls along a rod with a left-hand thread, for many turns, by m z'' = -m g - J (2 pi/p)^2 z''."""
+    result = simulate("Screwed", ["z", "vz", "nut.omegaZ", "rod.forceZ", "a", "d", "totalEnergy"])
+    t, ratio = result["time"], 2 * np.pi / -0.02
+    fall = 9.81 / (1 + 0.0001 * ratio**2 / 2)
+    assert fall * 0.5 > 3 * 0.02
+    assert result["z"] == pytest.approx(-fall * t**2 / 2, abs=1e-8)
+    assert result["nut.omegaZ"] == pytest.approx(ratio * result["vz"], abs=1e-6)
+    # The thread holds at all times, not only its rate: the angle follows from the place.
+    angle = 2 * np.arctan2(result["d"], result["a"])
+    assert np.sin((angle - ratio * result["z"]) / 2) == pytest.approx(0, abs=1e-9)
+    assert result["rod.forceZ"] == pytest.approx(-2 * (9.81 - fall), abs=1e-7)
+    assert np.ptp(result["totalEnergy"]) < 1e-8
+
+
+PLANE_TURNED, RADIUS, SPIN = Rotation.from_euler("YX", [0.1, -0.15]), 0.3, np.array([0.05, 0.05, 0.09])
+LEAN = Rotation.from_euler("YX", [0.1, -0.15]) * Rotation.from_euler("X", 1.3)
+ROLLING_START = dict(zip("abcd", map(float, LEAN.as_quat()[[3, 0, 1, 2]]))) | dict(zip("xyz", map(float, PLANE_TURNED.apply([0.5, 0.2, 0.3]) + [0.1, -0.2, 0.4])))
+ROLLING_VELOCITY = {"vb": -0.3, "vd": 2.5, "vc": 0.4}
+ROLLING_COORDINATES = "\n".join(
+    f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{ROLLING_START[q]!r}" velocityStart="{ROLLING_VELOCITY.get("v" + q, 0)}"/>' for q in "xyzabcd"
+)
+ROLLS = """<system name="Rolls_{shape}">
+{coordinates}
+<frame name="plane"><translate x="0.1" y="-0.2" z="0.4"/><rotate axis="y" angle="0.1"/><rotate axis="x" angle="-0.15"/></frame>
+<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="a b c d"/></frame>
+<body name="wheel" in="f" mass="2" Ixx="0.05" Iyy="0.05" Izz="0.09"/>
+<gravity x="0.3" y="-0.5" z="-9.81"/>
+<joint name="ground" type="rolling" from="plane" to="f" radius="0.3" shape="{shape}"/>
+<experiment stopTime="0.6"/>
+</system>"""
+
+
+@pytest.mark.parametrize("shape", ["wheel", "sphere"])
+def test_rolling_obeys_newton_and_euler(joints, shape):
+    """The forces that are told act at the lowest point, which does not move; nothing else acts but weight."""
+    forces = [f"ground.force{axis}" for axis in "XYZ"]
+    names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"wheel.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
+    result = simulate(f"Rolls_{shape}", [*names, *forces, "totalEnergy"])
+    assert np.ptp(result["totalEnergy"]) < 1e-7
+    up, way = PLANE_TURNED.apply([0, 0, 1]), 0.0
+    for row in result:
+        body, place = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]]), np.array([row[q] for q in "xyz"])
+        axle = body.apply([0, 0, 1])
+        # Of a circle, what is lowest is down across the axle.
+        down = -up if shape == "sphere" else np.cross(np.cross(axle, -up), axle)
+        lever = RADIUS * down / np.linalg.norm(down)
+        assert up @ (place + lever - WALL) == pytest.approx(0, abs=1e-9)
+        omega, alpha = (np.array([row[f"wheel.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
+        velocity = np.array([row[f"v{q}"] for q in "xyz"])
+        assert velocity + np.cross(body.apply(omega), lever) == pytest.approx(np.zeros(3), abs=1e-8)
+        force = -PLANE_TURNED.apply([row[of] for of in forces])
+        assert 2 * (np.array([row[f"der(v{q})"] for q in "xyz"]) - GRAVITY) == pytest.approx(force, abs=1e-7)
+        assert body.apply(SPIN * alpha + np.cross(omega, SPIN * omega)) == pytest.approx(np.cross(lever, force), abs=1e-7)
+        way = max(way, np.linalg.norm(velocity))
+    assert way > 0.5
+
+
+UPRIGHT = """<system name="Upright">
+<coordinate name="x" velocity="v" unit="m"/>
+<coordinate name="phi" velocity="w" unit="rad"/>
+<frame name="road"><rotate axis="x" angle="-pi/2"/></frame>
+<body name="disk" mass="2" x="x" y="0.1" inertia="0.01" angle="phi"/>
+<force on="disk" x="3"/>
+<joint name="ground" type="rolling" from="road" to="disk" radius="0.1" holds="x"/>
+<experiment stopTime="1"/>
+</system>"""
+
+
+def test_wheel_in_the_plane(joints):
+    """Coordinates keep it on the road: 3 N push a disk of 2 kg and 0.01/0.1^2 kg, which turns as it rolls."""
+    result = simulate("Upright", ["x", "phi", "ground.forceX"])
+    assert result["x"] == pytest.approx(result["time"] ** 2 / 2, abs=1e-8)
+    assert result["phi"] == pytest.approx(-10 * result["x"], abs=1e-8)
+    assert result["ground.forceX"] == pytest.approx(1, abs=1e-8)
+
+
+VECTORS = """<system name="Vectors">
+<parameter name="L" start="2" unit="m"/>
+<coordinate name="p" velocity="vp" unit="rad" start="0.3" velocityStart="1.1"/>
+<coordinate name="q" velocity="vq" unit="rad" start="-0.7" velocityStart="-0.4"/>
+<frame name="arm"><rotate axis="z" angle="p"/><translate x="0.5"/><rotate axis="y" angle="q"/></frame>
+<body name="rod" in="arm" mass="1" x="0.3" Ixx="0.1" Iyy="0.2" Izz="0.3"/>
+<point name="tip" in="arm" x="0.4" y="-0.2" z="0.1"/>
+<body name="disk" mass="1" x="L*p" y="L*q/2" inertia="0.1" angle="p"/>
+<output name="a" unit="m2">dot(tip, disk - arm)</output>
+<output name="b" unit="m2/s">norm(cross(tip - arm, tip.v - rod.v))</output>
+<output name="c" unit="m2/s">dot(cross(arm.axisY, -tip), (rod.v + tip.v))</output>
+<output name="d" unit="1">dot(arm.axisX, base.axisY) - dot(arm.axisZ, cross(base.axisX, arm.axisY))</output>
+<experiment stopTime="1"/>
+</system>"""
+
+
+def test_vectors(joints):
+    """Products of what NumPy makes of the angles."""
+    for row in simulate("Vectors", ["p", "q", "vp", "vq", "a", "b", "c", "d"]):
+        about_z = Rotation.from_euler("Z", row["p"])
+        turned = about_z * Rotation.from_euler("Y", row["q"])
+        arm, omega = about_z.apply([0.5, 0, 0]), [0, 0, row["vp"]] + row["vq"] * about_z.apply([0, 1, 0])
+        offsets = {"tip": turned.apply([0.4, -0.2, 0.1]), "rod": turned.apply([0.3, 0, 0])}
+        velocity = {name: np.cross([0, 0, row["vp"]], arm) + np.cross(omega, offset) for name, offset in offsets.items()}
+        tip, (x, y, z) = arm + offsets["tip"], turned.as_matrix().T
+        assert row["a"] == pytest.approx(tip @ (np.array([2 * row["p"], row["q"], 0]) - arm), abs=1e-12)
+        assert row["b"] == pytest.approx(np.linalg.norm(np.cross(offsets["tip"], velocity["tip"] - velocity["rod"])), abs=1e-12)
+        assert row["c"] == pytest.approx(np.cross(y, -tip) @ (velocity["rod"] + velocity["tip"]), abs=1e-12)
+        assert row["d"] == pytest.approx(x[1] - z @ np.cross([1, 0, 0], y), abs=1e-12)
+
+
+BUSHED = """<system name="Bushed">
+{coordinates}
+<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="a b c d"/></frame>
+<body name="rod" in="f" mass="2" Ixx="0.2" Iyy="0.3" Izz="0.12"/>
+<frame name="wall"><translate x="0.1" y="-0.2" z="0.4"/><rotate axis="y" angle="1.2"/><rotate axis="x" angle="0.4"/></frame>
+<bushing from="wall" to="rod" stiffness="30 40 50" damping="1 2 3" torsion="4" torsionDamping="0.1 0.2 0.3"/>
+<experiment stopTime="1"/>
+</system>""".format(coordinates="\n".join(f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{(q == "a") + 0.1 * (q in "xyz")}" velocityStart="{0.5 * (q in "bdy")}"/>' for q in "xyzabcd"))
+
+
+def test_bushing(joints):
+    """Forces and torques along the axes of the wall; equal torsion about all axes turns back with 4 sin(angle) about the axis of the turn."""
+    names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
+    for row in simulate("Bushed", names):
+        body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
+        place, velocity, acceleration = (np.array([row[name.format(q)] for q in "xyz"]) for name in ("{}", "v{}", "der(v{})"))
+        omega, alpha = (np.array([row[f"rod.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
+        back = WALL_TURNED.inv()
+        force = -np.array([30, 40, 50]) * back.apply(place - WALL) - np.array([1, 2, 3]) * back.apply(velocity)
+        turn = (back * body).as_rotvec()
+        torque = -4 * np.sinc(np.linalg.norm(turn) / np.pi) * turn - np.array([0.1, 0.2, 0.3]) * back.apply(body.apply(omega))
+        assert 2 * acceleration == pytest.approx(WALL_TURNED.apply(force), abs=1e-8)
+        assert body.apply(INERTIA * alpha + np.cross(omega, INERTIA * omega)) == pytest.approx(WALL_TURNED.apply(torque), abs=1e-7)
+
+
 BAD = [
     ('<joint name="h" type="pin" from="base" to="tip"/>', "there is nothing named 'tip' for this <joint>"),
     ('<joint name="h" type="revolute" from="base" to="bob"/>', "the joint 'h' holds z, which nothing moves"),
@@ -158,10 +302,30 @@ BAD = [
     ('<spring from="bob" to="tip" stiffness="k"/>', "there is no point 'tip'"),
     ('<spring from="bob" to="base" stiffness="2*x"/>', "stiffness of <spring> cannot depend on coordinates"),
     ('<output name="o">distance(bob)</output>', "expected ',' between the two points of distance"),
-    ('<joint name="h" type="hinge" from="base" to="bob"/>', "expected pin, spherical, universal, revolute, cylindrical, prismatic, planar or fixed"),
+    ('<joint name="h" type="hinge" from="base" to="bob"/>', "expected pin, spherical, universal, revolute, cylindrical, prismatic, planar, fixed, screw or rolling"),
     ('<joint name="h" type="pin" from="bob" to="bob"/>', "nor does anything move the rest of what it holds; expected 'bob' and 'bob' that move"),
     ('<frame name="A"><rotate axis="z" angle="x"/></frame><frame name="B"><rotate axis="x" angle="1"/><rotate axis="z" angle="y"/></frame><joint name="h" type="universal" from="A" to="B"/>',
      'expected <constraint name="h">A.R11*B.R12 + A.R21*B.R22 + A.R31*B.R32</constraint> for shafts whose places are held already'),
+    ('<bushing from="base" to="bob"/>', "<bushing> has neither stiffness nor damping"),
+    ('<bushing from="base" to="bob" stiffness="1 2"/>', "the stiffness of <bushing> has 2 parts; expected one, or three"),
+    ('<bushing from="base" to="tip" stiffness="1"/>', "there is nothing named 'tip' for this <bushing>"),
+    ('<bushing from="base" to="bob" torsion="1"/>', "the energy of <bushing> is the same at all times; expected 'base' and 'bob' that move or turn"),
+    ('<output name="o">dot(bob, tip)</output>', "there is no point 'tip'"),
+    ('<output name="o">dot(bob)</output>', "expected ',' between the two vectors of dot"),
+    ('<output name="o">norm(bob, bob)</output>', "expected ')' after the vector of norm"),
+    ('<output name="o">norm(2*bob)</output>', "or a vector such as arm.axisX, tip.v or cross(...), found '2'"),
+    ('<output name="o">cross(bob, bob)</output>', "cross(...) is a vector; expected it in dot(...) or norm(...)"),
+    ('<parameter name="d" start="1" unit="m"/><output name="o">norm(bob + base.axisX)</output>', "m and 1 in one sum"),
+    ('<output name="o">distance(bob, base.axisX)</output>', "distance(...) is between two points"),
+    ('<output name="o">norm(bob.axisW)</output>', "there is no point 'bob.axisW'"),
+    ('<point name="tip" x="x"/><potential>dot(tip.v, tip.v)*tip.v</potential>', "unknown name 'tip.v'"),
+    ('<point name="tip" x="x"/><particle mass="1" x="norm(tip.v)"/>', "cannot depend on velocities, but 'tip.vx' does"),
+    ('<joint name="h" type="screw" from="base" to="bob"/>', "<joint type=\"screw\"> needs the attribute 'pitch'"),
+    ('<joint name="h" type="screw" from="base" to="bob" pitch="0"/>', "the pitch of <joint> is 0; expected a length"),
+    ('<joint name="h" type="pin" from="base" to="bob" radius="1"/>', "<joint> has the attribute 'radius' with type=\"rolling\" alone"),
+    ('<joint name="h" type="rolling" from="base" to="bob" radius="1"/>', "'bob' has no axes and cannot roll; expected a <frame> or <body>"),
+    ('<body name="disk" mass="1" x="x" y="1" inertia="1" angle="y"/><frame name="road"><rotate axis="x" angle="-pi/2"/></frame><joint name="h" type="rolling" from="road" to="disk" radius="1"/>',
+     'expected the axes along which something moves, such as holds="x y"'),
     ('<spring from="bob" to="bob" stiffness="k"/>', "the ends 'bob' and 'bob' of <spring> are 0 m apart at all times; expected two that move"),
 ]  # fmt: skip
 

@@ -126,8 +126,8 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     bool is_of_joint = constraint->force_name != NULL; /* whose description is that of the force */
     char *text = is_of_joint ? copy_text(description) : format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
-    const char *unit = is_of_joint ? (strcmp(constraint->unit, "m") == 0 ? "N" : "N.m")
-                                   : unit_of_dimension(dimension_multiply(unit_of("J"), constraint->dimension, -1.0));
+    const char *unit = is_of_joint ? (strcmp(constraint->unit, "1") == 0 ? "N.m" : "N")
+                                   : unit_of_dimension(constraint_force_dimension(constraint));
     append_result(interface, constraint_force_name(constraint), unit, whole_force(model, i, force), text);
   }
 }

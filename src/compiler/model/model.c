@@ -1,6 +1,7 @@
 #include "model/model.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -60,6 +61,11 @@ Node unknown_of_row(const struct Model *model, size_t row) {
 char *constraint_force_name(const struct Variable *constraint) {
   if (constraint->force_name != NULL) return constraint->force_name;
   return format_text("%s.force", constraint->name);
+}
+
+struct Dimension constraint_force_dimension(const struct Variable *constraint) {
+  bool is_slip = constraint->force_name != NULL && strcmp(constraint->unit, "m/s") == 0;
+  return dimension_multiply(unit_of("J"), is_slip ? unit_of("m") : constraint->dimension, -1.0);
 }
 
 char *variable_unit(const struct Variable *variable) {

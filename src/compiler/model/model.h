@@ -222,5 +222,8 @@ Node unknown_of_row(const struct Model *model, size_t row);
 /* The name of the force of a constraint. */
 char *constraint_force_name(const struct Variable *constraint);
 
+/* Of that force: energy by the constraint's unit; of a joint that holds a velocity, still a force. */
+struct Dimension constraint_force_dimension(const struct Variable *constraint);
+
 /* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. */
 char *variable_unit(const struct Variable *variable);

@@ -61,7 +61,7 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     char *name = constraint_force_name(constraint);
-    struct Dimension dimension = dimension_multiply(unit_of("J"), constraint->dimension, -1.0);
+    struct Dimension dimension = constraint_force_dimension(constraint);
     int index = (int)(model->coordinates.count + i);
     Node node = model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
     scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);

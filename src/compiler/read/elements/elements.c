@@ -16,6 +16,7 @@
 #include "read/elements/table_reader.h"
 #include "read/shapes/shapes.h"
 #include "read/space/bodies.h"
+#include "read/space/bushing.h"
 #include "read/space/forces.h"
 #include "read/space/frames.h"
 #include "read/space/joints.h"
@@ -261,6 +262,7 @@ struct Element {
 
 static const struct Element elements[] = {
     {"body", number_body, collect_components, read_body, NULL, false},
+    {"bushing", NULL, NULL, NULL, read_bushing, false},
     {"constant", read_constant, NULL, NULL, NULL, false},
     {"constraint", declare_constraint, NULL, NULL, read_constraint, false},
     {"contact", declare_contact, NULL, NULL, read_contact, false},

@@ -9,10 +9,10 @@
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "model/kinematics.h"
 #include "read/expressions/comparisons.h"
 #include "read/expressions/quantities.h"
 #include "read/expressions/unknown_names.h"
+#include "read/expressions/vectors.h"
 #include "read/names/pieces_of_functions.h"
 #include "read/names/hints.h"
 #include "read/names/words.h"
@@ -122,6 +122,11 @@ static char *read_name_suffix(struct Parser *parser, char *name) {
   return name;
 }
 
+char *read_name(struct Parser *parser) {
+  char *identifier = read_identifier(parser);
+  return read_name_suffix(parser, identifier);
+}
+
 /* Time derivatives that the system knows of an input. */
 static int derivatives_of_input(const struct Scope *scope, Node symbol) {
   int count = 0;
@@ -157,7 +162,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
   }
 }
 
-static struct Quantity look_up(struct Parser *parser, const char *name) {
+struct Quantity look_up(struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   const struct Quantity *quantity = scope_find(parser->scope, full_name);
   if (quantity == NULL) {
@@ -276,53 +281,13 @@ static const struct Table *find_table(const struct Parser *parser, const char *n
   return table_named(parser->scope, scope_full_name(parser->scope, name));
 }
 
-/* A component of a point; 0 where it has a position without this one, as a particle in a plane. */
-static Node parse_component(struct Parser *parser, const char *point, const char *axis, bool *is_known) {
-  char *name = format_text("%s.%s", point, axis), *full_name = scope_full_name(parser->scope, name);
-  bool is_there =
-      scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
-  *is_known |= is_there;
-  return is_there ? look_up(parser, name).node : ZERO;
-}
-
-/* The name of a particle, body, point or frame, or of the base. */
-static struct Vector parse_point(struct Parser *parser) {
-  struct Vector position = {{ZERO, ZERO, ZERO}};
-  char buffer[32];
-  skip_space(parser);
-  if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected the name of a point as in distance(bob, base), found %s", parser->place.what,
-         found(parser, buffer));
-  char *identifier = read_identifier(parser), *name = read_name_suffix(parser, identifier);
-  bool is_base = strcmp(name, "base") == 0, is_known = is_base;
-  for (int i = 0; i < 3 && !parser->failed && !is_base; i++)
-    position.along[i] = parse_component(parser, name, axes[i], &is_known);
-  if (!is_known)
-    FAIL(parser, "%s: there is no point '%s'; expected the name of a <particle>, <body>, <point> or <frame>, or base",
-         parser->place.what, name);
-  return position;
-}
-
-/* Between two points, in m. */
-static struct Quantity parse_distance(struct Parser *parser) {
-  struct Graph *graph = parser->graph;
-  struct Vector first = parse_point(parser);
-  expect_character(parser, ',', "between the two points of distance");
-  struct Vector second = parse_point(parser);
-  expect_character(parser, ')', "after the two points of distance");
-  if (parser->failed) return nothing;
-  struct Vector between = vector_add(graph, second, vector_scale(graph, graph_constant(graph, -1.0), first));
-  Node square = vector_dot(graph, between, between);
-  return (struct Quantity){.node = power_number(graph, square, 0.5), .dimension = unit_of("m")};
-}
-
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
   const struct Table *table = find_table(parser, name);
   if (table != NULL) return parse_table(parser, table, name);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
   if (strcmp(name, "if") == 0) return parse_choice(parser);
-  if (strcmp(name, "distance") == 0) return parse_distance(parser);
+  if (is_function_of_vectors(name)) return parse_function_of_vectors(parser, name);
   bool is_root = strcmp(name, "sqrt") == 0;
   enum Operation operation = is_root ? POWER : find_function(name);
   if (operation == OPERATION_COUNT) {

@@ -12,14 +12,22 @@
  *   power    = primary [ "^" sign ]
  *   primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
  *            | "sum" "(" index "," first "," last "," sum ")" | "der" "(" sum ")"
- *            | "distance" "(" name "," name ")"
+ *            | "distance" "(" vector "," vector ")" | "dot" "(" vector "," vector ")" | "norm" "(" vector ")"
  *   name     = part { "." part }
  *   part     = identifier [ "[" index expression "]" ]
+ *   vector   = [ "-" ] arrow { ("+" | "-") arrow }
+ *   arrow    = name | "cross" "(" vector "," vector ")" | "(" vector ")"
  */
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
 
 /* The same from the reading position on, as far as it goes. */
 struct Quantity parse_sum(struct Parser *parser);
+
+/* A name at the reading position, its indices worked out. */
+char *read_name(struct Parser *parser);
+
+/* The value of a name, which must be allowed in this place. */
+struct Quantity look_up(struct Parser *parser, const char *name);
 
 /* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
 bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value);

@@ -7,11 +7,14 @@
 #include "base/memory.h"
 #include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
-#include "read/space/bodies.h"
-#include "read/space/frames.h"
+#include "read/space/rolling.h"
+#include "read/space/sides.h"
 
-/* What a joint holds: the place of `to` along the axes of `from`, and the directions of its axes. */
-enum Held { ALONG_X, ALONG_Y, ALONG_Z, ABOUT_X, ABOUT_Y, ABOUT_Z, CROSS, NOTHING };
+/*
+ * What a joint holds: the place of `to` along the axes of `from`, the directions of its axes, the thread of a screw, and of
+ * what rolls the velocity of its lowest point and the height of that.
+ */
+enum Held { ALONG_X, ALONG_Y, ALONG_Z, ABOUT_X, ABOUT_Y, ABOUT_Z, CROSS, THREAD, SLIP_X, SLIP_Y, HEIGHT, NOTHING };
 
 struct JointType {
   const char *name;
@@ -27,11 +30,32 @@ static const struct JointType types[] = {
     {"prismatic", {ALONG_X, ALONG_Y, ABOUT_X, ABOUT_Y, ABOUT_Z, NOTHING}},
     {"planar", {ALONG_Z, ABOUT_X, ABOUT_Y, NOTHING}},
     {"fixed", {ALONG_X, ALONG_Y, ALONG_Z, ABOUT_X, ABOUT_Y, ABOUT_Z, NOTHING}},
+    {"screw", {ALONG_X, ALONG_Y, ABOUT_X, ABOUT_Y, THREAD, NOTHING}},
+    {"rolling", {SLIP_X, SLIP_Y, HEIGHT, NOTHING}},
 };
 
-/* Names of what is held, and of its force or torque. */
-static const char *const held_names[] = {"x", "y", "z", "aboutX", "aboutY", "aboutZ", "aboutZ"};
-static const char *const force_names[] = {"forceX", "forceY", "forceZ", "torqueX", "torqueY", "torqueZ", "torqueZ"};
+/* Names of what is held and of its force or torque, its unit, and the axis of `from` that it is along or about. */
+static const struct HeldWords {
+  const char *name, *force, *unit;
+  char axis;
+} words[] = {
+    [ALONG_X] = {"x", "forceX", "m", 'x'},       [ALONG_Y] = {"y", "forceY", "m", 'y'},
+    [ALONG_Z] = {"z", "forceZ", "m", 'z'},       [ABOUT_X] = {"aboutX", "torqueX", "1", 'x'},
+    [ABOUT_Y] = {"aboutY", "torqueY", "1", 'y'}, [ABOUT_Z] = {"aboutZ", "torqueZ", "1", 'z'},
+    [CROSS] = {"aboutZ", "torqueZ", "1", 'z'},   [THREAD] = {"thread", "forceZ", "m", 'z'},
+    [SLIP_X] = {"slipX", "forceX", "m/s", 'x'},  [SLIP_Y] = {"slipY", "forceY", "m/s", 'y'},
+    [HEIGHT] = {"z", "forceZ", "m", 'z'},
+};
+
+static bool is_of_force(enum Held held) {
+  return words[held].force[0] == 'f';
+}
+
+/* What rolls may hold less, where its coordinates hold the rest: the attribute names the axes. */
+static bool is_held(xmlNodePtr node, enum Held held) {
+  char *axes_held = attribute(node, "holds");
+  return axes_held == NULL || strchr(axes_held, words[held].axis) != NULL;
+}
 
 static const struct JointType *type_of(xmlNodePtr node) {
   for (size_t i = 0; i < sizeof types / sizeof *types; i++)
@@ -42,86 +66,62 @@ static const struct JointType *type_of(xmlNodePtr node) {
 static char *description_of(xmlNodePtr node, const char *joint, enum Held held) {
   const char *from = attribute(node, "from");
   char *what =
-      format_text("%s of %s on %s at %s", held < ABOUT_X ? "force" : "torque", attribute(node, "to"), from, joint);
+      format_text("%s of %s on %s at %s", is_of_force(held) ? "force" : "torque", attribute(node, "to"), from, joint);
   if (held == CROSS) return format_text("%s, about the axis across both of its own", what);
-  return format_text("%s, %s the %c axis of %s", what, held < ABOUT_X ? "along" : "about", "xyzxyz"[held], from);
+  return format_text("%s, %s the %c axis of %s", what, is_of_force(held) ? "along" : "about", words[held].axis, from);
+}
+
+/* An attribute that one type needs, or may have, and no other has. */
+static void check_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *type,
+                            bool is_needed) {
+  if (attribute_is(node, "type", type) && is_needed && !has_attribute(node, name))
+    report_at(reader, node, "<joint type=\"%s\"> needs the attribute '%s'", type, name);
+  else if (!attribute_is(node, "type", type) && has_attribute(node, name))
+    report_at(reader, node, "<joint> has the attribute '%s' with type=\"%s\" alone", name, type);
 }
 
 void declare_joint(struct Reader *reader, xmlNodePtr node) {
   const struct JointType *type = type_of(node);
+  check_attribute(reader, node, "pitch", "screw", true);
+  check_attribute(reader, node, "radius", "rolling", true);
+  check_attribute(reader, node, "shape", "rolling", false);
+  check_attribute(reader, node, "holds", "rolling", false);
   struct Variable joint = common_attributes(reader, node);
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, joint.name, word, joint.line);
   reader->present->number = reader->model->constraints.count;
   for (const enum Held *held = type != NULL ? type->held : &(enum Held){NOTHING}; *held != NOTHING; held++) {
+    if (!is_held(node, *held)) continue;
     struct Variable constraint =
-        variable_create(format_text("%s.%s", joint.name, held_names[*held]), description_of(node, joint.name, *held),
+        variable_create(format_text("%s.%s", joint.name, words[*held].name), description_of(node, joint.name, *held),
                         scope_line(reader->scope, joint.line));
-    constraint.force_name = format_text("%s.%s", joint.name, force_names[*held]);
-    constraint.unit = copy_text(*held < ABOUT_X ? "m" : "1");
+    constraint.force_name = format_text("%s.%s", joint.name, words[*held].force);
+    constraint.unit = copy_text(words[*held].unit);
     constraint.dimension = unit_of(constraint.unit);
     append_variable(&reader->model->constraints, constraint);
   }
-}
-
-/* A side of the joint, where nothing is displaced. */
-struct Side {
-  struct Vector position; /* along the base's axes */
-  struct Matrix rotation;
-};
-
-/* What the attribute names: anything in a frame, with the frame's axes, or a particle in the plane, with the base's. */
-static bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
-  long line = xmlGetLineNo(node);
-  char *full_name = reference_attribute(reader, node, name);
-  if (full_name == NULL) return false;
-  if (attribute_is(node, name, "base")) full_name = copy_text("base");
-  struct SpatialPoint point;
-  const struct Body *body = find_body(reader, full_name);
-  const struct ReferenceFrame *frame = &reader->model->mechanism.frames[0];
-  if (find_spatial_point(reader, full_name, &point)) {
-    frame = &reader->model->mechanism.frames[point.frame];
-    side->position = point.position;
-  } else if (body != NULL) {
-    for (int axis = 0; axis < 3; axis++) side->position.along[axis] = body->displaced[axis];
-  } else {
-    report_at(
-        reader, node,
-        "there is nothing named '%s' for this <joint>; expected a <frame>, <body>, <point> or <particle>, or base",
-        attribute(node, name));
-    return false;
-  }
-  side->position = vector_without_displacements(reader, line, full_name, side->position);
-  side->rotation = matrix_without_displacements(reader, line, full_name, frame->pose.rotation);
-  return true;
-}
-
-static struct Vector axis_of(const struct Side *side, int axis) {
-  return (struct Vector){
-      {side->rotation.row[0].along[axis], side->rotation.row[1].along[axis], side->rotation.row[2].along[axis]}};
-}
-
-/* The product of an axis of one side and one of the other, 0 where they are perpendicular. */
-static Node product(struct Graph *graph, const struct Side *from, int first, const struct Side *to, int second) {
-  return vector_dot(graph, axis_of(from, first), axis_of(to, second));
 }
 
 /*
  * Is 0 while it is held. Signs are such that it grows as `to` moves along, or turns about, the axis of `from`, so that the
  * force is what `to` does to `from`.
  */
-static Node expression_of(struct Graph *graph, enum Held held, const struct Side *from, const struct Side *to) {
+static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
+                          const struct Side *to) {
   enum { X, Y, Z };
+  struct Graph *graph = reader->model->graph;
   switch (held) {
-  case ABOUT_X: return negate(graph, product(graph, from, Y, to, Z));
-  case ABOUT_Y: return product(graph, from, X, to, Z);
-  case ABOUT_Z: return product(graph, from, Y, to, X);
-  case CROSS: return negate(graph, product(graph, from, X, to, Y));
+  case THREAD: return thread_of(reader, node, from, to);
+  case SLIP_X: return slip_of(reader, node, from, to, X);
+  case SLIP_Y: return slip_of(reader, node, from, to, Y);
+  case HEIGHT: return height_of(reader, node, from, to);
+  case ABOUT_X: return negate(graph, product_of_axes(graph, from, Y, to, Z));
+  case ABOUT_Y: return product_of_axes(graph, from, X, to, Z);
+  case ABOUT_Z: return product_of_axes(graph, from, Y, to, X);
+  case CROSS: return negate(graph, product_of_axes(graph, from, X, to, Y));
   default: break;
   }
-  struct Vector between =
-      vector_add(graph, to->position, vector_scale(graph, graph_constant(graph, -1.0), from->position));
-  return vector_dot(graph, axis_of(from, (int)held), between);
+  return place_along(graph, from, to, (int)held);
 }
 
 /* The first of a joint's constraints that nothing moves; NULL where all can be moved. */
@@ -147,6 +147,8 @@ static char *remedy_for(struct Reader *reader, xmlNodePtr node, const struct Var
     return format_text("nor does anything move the rest of what it holds; expected '%s' and '%s' that move "
                        "against one another",
                        from, to);
+  if (attribute_is(node, "type", "rolling"))
+    return copy_text("expected the axes along which something moves, such as holds=\"x y\"");
   if (attribute_is(node, "type", "universal") && !graph_is_constant(graph, first[count - 1].node) &&
       has_axes(reader, node, "from") && has_axes(reader, node, "to"))
     return format_text("expected <constraint name=\"%s\">%s.R11*%s.R12 + %s.R21*%s.R22 + %s.R31*%s.R32</constraint> "
@@ -172,10 +174,11 @@ void read_joint(struct Reader *reader, xmlNodePtr node) {
   struct Side from, to;
   bool is_right = read_side(reader, node, "from", &from);
   is_right &= read_side(reader, node, "to", &to);
+  if (is_right && attribute_is(node, "type", "rolling")) is_right = can_roll(reader, node, &to);
   if (type == NULL || !is_right) return;
   struct Variable *first = &model->constraints.items[reader->present->number];
   size_t count = 0;
-  for (; type->held[count] != NOTHING; count++)
-    first[count].node = expression_of(model->graph, type->held[count], &from, &to);
-  check_held(reader, node, first, count);
+  for (const enum Held *held = type->held; *held != NOTHING; held++)
+    if (is_held(node, *held)) first[count++].node = expression_of(reader, node, *held, &from, &to);
+  if (reader->diagnostics->errors == 0) check_held(reader, node, first, count);
 }

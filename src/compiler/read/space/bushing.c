@@ -1,0 +1,113 @@
+#include "read/space/bushing.h"
+
+#include <string.h>
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/space/sides.h"
+
+enum { X, Y, Z };
+
+/* One factor for all axes, or three between blanks; 0 where the attribute is missing. */
+static struct Vector read_factors(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit) {
+  struct Vector factors = {{ZERO, ZERO, ZERO}};
+  char *text = attribute(node, name), *rest = NULL;
+  const char *what = format_text("the %s of <bushing>", name);
+  int count = 0;
+  for (char *part = text != NULL ? strtok_r(text, " \t\r\n", &rest) : NULL; part != NULL;
+       part = strtok_r(NULL, " \t\r\n", &rest)) {
+    struct Quantity factor = parse_expression(reader->scope, part, place_at(node, what, IN_MASS));
+    require_unit(reader, xmlGetLineNo(node), what, factor, unit_of(unit));
+    expect_not_negative(reader, node, what, factor.node, false);
+    if (count < 3) factors.along[count] = factor.node;
+    count++;
+  }
+  if (count == 1) factors.along[Y] = factors.along[Z] = factors.along[X];
+  if (text != NULL && count != 1 && count != 3)
+    report_at(reader, node, "%s has %d parts; expected one, or three between blanks, without blanks in them", what,
+              count);
+  return factors;
+}
+
+static bool is_zero(struct Vector vector) {
+  return vector.along[X] == ZERO && vector.along[Y] == ZERO && vector.along[Z] == ZERO;
+}
+
+/* The sum of factor value^2/2 along the axes. */
+static Node half_of_squares(struct Graph *graph, struct Vector factors, struct Vector values) {
+  Node sum = ZERO;
+  for (int i = 0; i < 3; i++) {
+    Node square = power_number(graph, values.along[i], 2.0);
+    sum = add(graph, sum, scale(graph, 0.5, multiply(graph, factors.along[i], square)));
+  }
+  return sum;
+}
+
+static struct Vector stretch_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+  struct Vector stretch;
+  for (int i = 0; i < 3; i++) stretch.along[i] = place_along(graph, from, to, i);
+  return stretch;
+}
+
+/* 2 sin(angle/2) along the axis of the turn, which needs no angle: twice the vector of the turn's quaternion. */
+static struct Vector twist_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+  struct Vector twist;
+  Node trace = ONE;
+  for (int i = 0; i < 3; i++) trace = add(graph, trace, product_of_axes(graph, from, i, to, i));
+  Node factor = power_number(graph, trace, -0.5);
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    Node forth = product_of_axes(graph, from, k, to, j), back = product_of_axes(graph, from, j, to, k);
+    twist.along[i] = multiply(graph, factor, subtract(graph, forth, back));
+  }
+  return twist;
+}
+
+/* How fast `to` turns against `from`, along the axes of `from`. */
+static struct Vector spin_of(struct Reader *reader, const struct Side *from, const struct Side *to) {
+  struct Graph *graph = reader->model->graph;
+  const struct ReferenceFrame *frames = reader->model->mechanism.frames;
+  struct Vector ours = matrix_apply(graph, &to->rotation, frames[to->frame].pose.angular_velocity);
+  struct Vector spin = matrix_apply_transposed(graph, &from->rotation, ours);
+  Node minus = graph_constant(graph, -1.0);
+  return vector_add(graph, spin, vector_scale(graph, minus, frames[from->frame].pose.angular_velocity));
+}
+
+static void add_springs(struct Reader *reader, xmlNodePtr node, struct Vector factors, struct Vector values) {
+  struct Energies *energies = &reader->model->energies;
+  Node energy = half_of_squares(reader->model->graph, factors, values);
+  if (!is_zero(factors) && graph_is_constant_in_time(reader->model->graph, energy))
+    report_at(reader, node,
+              "the energy of <bushing> is the same at all times; expected '%s' and '%s' that move or turn",
+              attribute(node, "from"), attribute(node, "to"));
+  else if (!is_zero(factors))
+    add_energy(reader, node, "the energy of <bushing>", energy, &energies->displaced_potential, &energies->potential);
+}
+
+static void add_dampers(struct Reader *reader, xmlNodePtr node, struct Vector factors, struct Vector rates) {
+  struct Energies *energies = &reader->model->energies;
+  if (is_zero(factors)) return;
+  add_energy(reader, node, "the dissipation of <bushing>", half_of_squares(reader->model->graph, factors, rates),
+             &energies->displaced_dissipation, &energies->dissipation);
+  reader->model->forces.any = true;
+}
+
+void read_bushing(struct Reader *reader, xmlNodePtr node) {
+  struct Graph *graph = reader->model->graph;
+  struct Side from, to;
+  struct Vector stiffness = read_factors(reader, node, "stiffness", "N/m");
+  struct Vector damping = read_factors(reader, node, "damping", "N.s/m");
+  struct Vector torsion = read_factors(reader, node, "torsion", "N.m/rad");
+  struct Vector torsion_damping = read_factors(reader, node, "torsionDamping", "N.m.s/rad");
+  bool is_right = read_displaced_side(reader, node, "from", &from);
+  is_right &= read_displaced_side(reader, node, "to", &to);
+  if (!is_right || reader->diagnostics->errors > 0) return;
+  if (is_zero(stiffness) && is_zero(damping) && is_zero(torsion) && is_zero(torsion_damping))
+    report_at(reader, node, "<bushing> has neither stiffness nor damping, torsion nor torsionDamping; expected one");
+  struct Vector stretch = stretch_of(graph, &from, &to), rate;
+  add_springs(reader, node, stiffness, stretch);
+  for (int i = 0; i < 3; i++) rate.along[i] = total_time_derivative(reader->scope, stretch.along[i]);
+  add_dampers(reader, node, damping, rate);
+  if (!is_zero(torsion)) add_springs(reader, node, torsion, twist_of(graph, &from, &to));
+  if (!is_zero(torsion_damping)) add_dampers(reader, node, torsion_damping, spin_of(reader, &from, &to));
+}

@@ -1,0 +1,89 @@
+#include "read/space/rolling.h"
+
+#include <math.h>
+
+#include "algebra/simplify.h"
+#include "read/names/definitions.h"
+
+enum { X, Y, Z };
+
+/* A length of parameters that is not 0. */
+static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Quantity length = {.node = ZERO};
+  if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ONE; /* reported */
+  require_unit(reader, xmlGetLineNo(node), name, length, unit_of("m"));
+  if (length.node == ZERO) report_at(reader, node, "the %s of <joint> is 0; expected a length", name);
+  return length.node == ZERO ? ONE : length.node;
+}
+
+/*
+ * pitch/(2 pi) sin(2 pi z/pitch - angle) with the cosine and the sine of the angle from the axes: it needs no angle, which
+ * jumps after a turn, and its slope along z is 1.
+ */
+Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+  struct Graph *graph = reader->model->graph;
+  Node lead = scale(graph, 0.5 / M_PI, read_length(reader, node, "pitch"));
+  Node moved = place_along(graph, from, to, Z);
+  Node fitting = divide(graph, moved, lead);
+  Node cosine = product_of_axes(graph, from, X, to, X), sine = product_of_axes(graph, from, Y, to, X);
+  Node forth = multiply(graph, function(graph, SINE, fitting, ZERO), cosine);
+  Node back = multiply(graph, function(graph, COSINE, fitting, ZERO), sine);
+  return multiply(graph, lead, subtract(graph, forth, back));
+}
+
+bool can_roll(struct Reader *reader, xmlNodePtr node, const struct Side *to) {
+  if (!to->has_axes)
+    report_at(reader, node, "'%s' has no axes and cannot roll; expected a <frame> or <body>", attribute(node, "to"));
+  return to->has_axes;
+}
+
+static bool is_sphere(xmlNodePtr node) {
+  return attribute_is(node, "shape", "sphere");
+}
+
+/* The product of the plane's normal and the wheel's axis, and the sine of the angle between them. */
+struct Tilt {
+  Node cosine, sine;
+};
+
+static struct Tilt tilt_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+  Node cosine = product_of_axes(graph, from, Z, to, Z);
+  Node square = subtract(graph, ONE, power_number(graph, cosine, 2.0));
+  return (struct Tilt){cosine, power_number(graph, square, 0.5)};
+}
+
+Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+  struct Graph *graph = reader->model->graph;
+  Node radius = read_length(reader, node, "radius"), centre = place_along(graph, from, to, Z);
+  if (is_sphere(node)) return subtract(graph, centre, radius);
+  return subtract(graph, centre, multiply(graph, radius, tilt_of(graph, from, to).sine));
+}
+
+/* From the centre to the lowest point: down, and of a wheel as far as that is across its axis. */
+static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct Side *from,
+                              const struct Side *to) {
+  struct Vector up = axis_of_side(from, Z);
+  if (is_sphere(node)) return vector_scale(graph, negate(graph, radius), up);
+  struct Tilt tilt = tilt_of(graph, from, to);
+  struct Vector axle = vector_scale(graph, tilt.cosine, axis_of_side(to, Z));
+  struct Vector across = vector_add(graph, axle, vector_scale(graph, graph_constant(graph, -1.0), up));
+  return vector_scale(graph, divide(graph, radius, tilt.sine), across);
+}
+
+/* The velocity, along the base's axes, of what is at a lever from the side's place and turns with it. */
+static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side, struct Vector lever) {
+  struct Graph *graph = reader->model->graph;
+  struct Vector spin = angular_velocity_of_side(reader, node, side), velocity;
+  for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->position.along[i]);
+  return vector_add(graph, velocity, vector_cross(graph, spin, lever));
+}
+
+Node slip_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to, int axis) {
+  struct Graph *graph = reader->model->graph;
+  Node radius = read_length(reader, node, "radius"), minus = graph_constant(graph, -1.0);
+  struct Vector lever = lever_of(graph, node, radius, from, to);
+  struct Vector between = vector_add(graph, to->position, vector_scale(graph, minus, from->position));
+  struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, lever));
+  struct Vector rim = velocity_of(reader, node, to, lever);
+  return vector_dot(graph, axis_of_side(from, axis), vector_add(graph, rim, vector_scale(graph, minus, ground)));
+}

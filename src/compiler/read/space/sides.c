@@ -1,0 +1,61 @@
+#include "read/space/sides.h"
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/space/bodies.h"
+#include "read/space/frames.h"
+
+bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
+  char *full_name = reference_attribute(reader, node, name);
+  if (full_name == NULL) return false;
+  if (attribute_is(node, name, "base")) full_name = copy_text("base");
+  struct SpatialPoint point;
+  const struct Body *body = find_body(reader, full_name);
+  const struct ReferenceFrame *frame = &reader->model->mechanism.frames[0];
+  side->has_axes = find_spatial_point(reader, full_name, &point);
+  if (side->has_axes) {
+    frame = &reader->model->mechanism.frames[point.frame];
+    side->position = point.position;
+  } else if (body != NULL) {
+    for (int axis = 0; axis < 3; axis++) side->position.along[axis] = body->displaced[axis];
+  } else {
+    report_at(reader, node,
+              "there is nothing named '%s' for this <%s>; expected a <frame>, <body>, <point> or <particle>, or base",
+              attribute(node, name), (const char *)node->name);
+    return false;
+  }
+  side->rotation = frame->pose.rotation;
+  side->frame = (size_t)(frame - reader->model->mechanism.frames);
+  return true;
+}
+
+bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
+  long line = xmlGetLineNo(node);
+  const char *what = attribute(node, name);
+  if (!read_displaced_side(reader, node, name, side)) return false;
+  side->position = vector_without_displacements(reader, line, what, side->position);
+  side->rotation = matrix_without_displacements(reader, line, what, side->rotation);
+  return true;
+}
+
+struct Vector angular_velocity_of_side(struct Reader *reader, xmlNodePtr node, const struct Side *side) {
+  const struct Pose *pose = &reader->model->mechanism.frames[side->frame].pose;
+  const char *what = "the angular velocity of a frame";
+  struct Vector spin = vector_without_displacements(reader, xmlGetLineNo(node), what, pose->angular_velocity);
+  return matrix_apply(reader->model->graph, &side->rotation, spin);
+}
+
+struct Vector axis_of_side(const struct Side *side, int axis) {
+  return (struct Vector){
+      {side->rotation.row[0].along[axis], side->rotation.row[1].along[axis], side->rotation.row[2].along[axis]}};
+}
+
+Node product_of_axes(struct Graph *graph, const struct Side *from, int first, const struct Side *to, int second) {
+  return vector_dot(graph, axis_of_side(from, first), axis_of_side(to, second));
+}
+
+Node place_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis) {
+  struct Vector between =
+      vector_add(graph, to->position, vector_scale(graph, graph_constant(graph, -1.0), from->position));
+  return vector_dot(graph, axis_of_side(from, axis), between);
+}
