@@ -22,11 +22,13 @@ from .problem import Problem
 if TYPE_CHECKING:
     import numpy as np
 
+    from .fitting import Fit
     from .linearization import Linearization
     from .results import Result
+    from .sensitivity import Sensitivities
 
 __version__ = version("lagrange-fmu")
-__all__ = ["Problem", "build", "check", "from_sympy", "linearize", "new", "run", "simulate"]
+__all__ = ["Problem", "build", "check", "fit", "from_sympy", "linearize", "new", "run", "sensitivities", "simulate"]
 
 
 def simulate(
@@ -74,6 +76,44 @@ def linearize(
     from .linearization import linearize
 
     return linearize(system, dict(at or {}) | dict(parameters or {}))
+
+
+def sensitivities(
+    system: str | PathLike[str],
+    of: Sequence[str],
+    by: Sequence[str],
+    times: Sequence[float],
+    start_values: Mapping[str, float] | None = None,
+    tolerance: float = 1e-10,
+) -> Sensitivities:
+    """
+    The derivatives of outputs and states `of`, at times in s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
+    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, with SciPy; not through events,
+    which are refused.
+    """
+    from .sensitivity import sensitivities
+
+    return sensitivities(system, list(of), list(by), times, dict(start_values or {}), tolerance)
+
+
+def fit(
+    system: str | PathLike[str],
+    data: str | PathLike[str] | np.ndarray | Sequence[Any],
+    vary: Sequence[str],
+    start_values: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    noise: Mapping[str, float] | None = None,
+) -> Fit:
+    """
+    Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
+    inputs in its first line; or a structured array of these; or several experiments. Least squares from the start values on, with the exact
+    derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
+    is not given all columns count the same. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can
+    write_page() and write_system().
+    """
+    from .fitting import fit
+
+    return fit(system, data, vary, dict(start_values or {}), dict(bounds or {}), dict(noise or {}))
 
 
 def run(

@@ -3,4 +3,4 @@ The commands of lagrange-fmu, one a module with the command's name, in the order
 which declares its words; run(arguments).
 """
 
-COMMANDS = ("new", "check", "build", "run", "live", "linearize", "sweep", "words")
+COMMANDS = ("new", "check", "build", "run", "live", "linearize", "fit", "sweep", "words")

@@ -66,7 +66,7 @@ static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius,
   if (is_sphere(node)) return vector_scale(graph, negate(graph, radius), up);
   struct Tilt tilt = tilt_of(graph, from, to);
   struct Vector axle = vector_scale(graph, tilt.cosine, axis_of_side(to, Z));
-  struct Vector across = vector_add(graph, axle, vector_scale(graph, graph_constant(graph, -1.0), up));
+  struct Vector across = vector_subtract(graph, axle, up);
   return vector_scale(graph, divide(graph, radius, tilt.sine), across);
 }
 

@@ -55,7 +55,6 @@ Node product_of_axes(struct Graph *graph, const struct Side *from, int first, co
 }
 
 Node place_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis) {
-  struct Vector between =
-      vector_add(graph, to->position, vector_scale(graph, graph_constant(graph, -1.0), from->position));
+  struct Vector between = vector_subtract(graph, to->position, from->position);
   return vector_dot(graph, axis_of_side(from, axis), between);
 }

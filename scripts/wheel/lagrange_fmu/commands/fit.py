@@ -1,0 +1,27 @@
+"""Finds parameters and start values with which the motion meets measurements; tells how sure they are, and writes a page and the system with the new values."""
+
+from pathlib import Path
+
+from .run import start_value
+from .words_of_systems import SYSTEM_OR_FMU
+
+
+def arguments(parser):
+    parser.add_argument("system", **SYSTEM_OR_FMU)
+    parser.add_argument("data", nargs="+", metavar="DATA.csv", help="time and measured variables, and perhaps inputs, by names in the first line; several are several experiments")
+    parser.add_argument("--vary", nargs="+", required=True, metavar="NAME", help="parameters and start values to be found")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="values to begin with, or to keep")
+    parser.add_argument("--noise", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="standard deviations of measured variables")
+    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="for NAME-fit.html and NAME-fit.xml")
+
+
+def run(arguments):
+    from ..fitting import fit
+
+    found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), {}, dict(arguments.noise))
+    print(found)
+    folder = Path(arguments.output)
+    folder.mkdir(parents=True, exist_ok=True)
+    print(found.write_page(folder / f"{found.name}-fit.html").resolve())
+    if found.system is not None and found.system.suffix == ".xml":
+        print(found.write_system(folder / f"{found.name}-fit.xml").resolve())

@@ -1,0 +1,119 @@
+"""Motions with their derivatives by start values, parameters and inputs, by the variational equations, for which the FMU gives directional derivatives."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .model_exchange import opened
+from .problem import Problem
+
+try:
+    from scipy.integrate import DOP853
+except ImportError:
+    raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
+
+STEP = 1e-3  # relative, of differences of fourth order through initialization
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """At n times: `values[of]`, and `derivatives[of, by]` of them, all in SI units."""
+
+    time: np.ndarray
+    values: dict
+    derivatives: dict
+
+
+class Motion:
+    """A motion from values by name, of an opened FMU, with its derivatives by some of these."""
+
+    def __init__(self, point, of, by, tolerance):
+        self.point, self.model, self.of, self.by, self.tolerance = point, point.model, list(of), list(by), tolerance
+        reference = point.references
+        self.state_references = [reference[name] for name in point.states]
+        self.rate_references = [reference[name] for name in point.derivatives]
+        self.read_references = [reference[name] for name in self.of]
+        # What a start value is by, acts through the start alone.
+        self.acting = [[] if name in point.states else [reference[name]] for name in self.by]
+
+    def place(self, time, state, inputs):
+        self.model.setTime(time)
+        self.point.set_states(state)
+        if inputs is not None:
+            names, values = inputs(time)
+            self.model.setReal([self.point.references[name] for name in names], values)
+
+    def along(self, unknowns, slopes):
+        """The derivatives of unknowns by each of what this motion is differentiated by; slopes: those of the states, one row each."""
+        columns = [self.model.getDirectionalDerivative(unknowns, [*self.state_references, *acting], [*slope, *[1.0] * len(acting)]) for acting, slope in zip(self.acting, slopes)]
+        return np.array(columns)
+
+    def rates(self, time, both, inputs):
+        count = len(self.state_references)
+        self.place(time, both[:count], inputs)
+        slopes = both[count:].reshape(len(self.by), count)
+        values = self.model.getReal(self.rate_references)
+        return np.concatenate([values, self.along(self.rate_references, slopes).ravel()]) if self.by else np.array(values)
+
+    def start(self, values):
+        """The states that initialization makes of these values, and their derivatives."""
+        slopes = []
+        at = dict(zip(self.by, (self.point.start(values=values), self.point.read(self.by))[1]))
+        for name in self.by:
+            step = STEP * (abs(at[name]) or 1.0)
+            one, two = (self.point.start(values=values | {name: at[name] + k * step}) - self.point.start(values=values | {name: at[name] - k * step}) for k in (1, 2))
+            slopes.append((8 * one - two) / (12 * step))
+        return np.concatenate([self.point.start(values=values), *slopes])
+
+    def read(self, time, both, inputs):
+        """Values and derivatives of what is asked for."""
+        count = len(self.state_references)
+        self.place(time, both[:count], inputs)
+        slopes = both[count:].reshape(len(self.by), count)
+        values = np.array(self.model.getReal(self.read_references))
+        derivatives = self.along(self.read_references, slopes) if self.by else np.empty((0, len(values)))
+        return values, derivatives.T
+
+    def over(self, times, values=None, inputs=None, kinks=()):
+        """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, smooth between the kinks."""
+        both = self.start(values or {})
+        ends = [*kinks, times[-1]]
+        rows, begin = [self.read(times[0], both, inputs)], times[0]
+        before = self.point.indicators()
+        for end in ends:
+            solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
+            due = [time for time in times if begin < time <= end]
+            while solver.status == "running":
+                message = solver.step()
+                if solver.status == "failed":
+                    raise Problem(f"the motion cannot be followed beyond {solver.t:g} s: {message}")
+                self.place(solver.t, solver.y[: len(self.state_references)], inputs)
+                before = self.check_events(before, solver)
+                dense = solver.dense_output()
+                while due and due[0] <= solver.t:
+                    rows.append(self.read(due[0], dense(due.pop(0)), inputs))
+            begin, both = end, solver.y
+        found = [np.array(part) for part in zip(*rows)]
+        return found[0], found[1]
+
+    def check_events(self, before, solver):
+        now = self.point.indicators()
+        if (before * now < 0).any():
+            raise Problem(f"there is an event between {solver.t_old:g} and {solver.t:g} s, and derivatives through events are not known here; expected a stop time before it")
+        return np.where(now == 0, before, now)
+
+
+def check_names(point, of, by):
+    for names, among, what in ((of, {*point.outputs, *point.derivatives, *point.states}, "an output, a state or its derivative"), (by, {*point.settable}, "a parameter, a start value or an input")):
+        for name in names:
+            if name not in among:
+                raise Problem(f"'{name}' is not {what}; these are: {', '.join(sorted(among))}")
+
+
+def sensitivities(system, of, by, times, start_values, tolerance):
+    with opened(system, dict(start_values), what="be followed") as point:
+        check_names(point, of, by)
+        motion = Motion(point, of, by, tolerance)
+        values, derivatives = motion.over(np.asarray(times, dtype=float))
+    named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
+    return Sensitivities(np.asarray(times, dtype=float), dict(zip(of, values.T)), named)

@@ -1,0 +1,162 @@
+"""Derivatives of motions, and fits to measurements, of the package: against closed forms, and data that were made with known values and noise."""
+
+import re
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fmu
+import package
+from building import build_systems
+
+TOLERATED = dict(rel=1e-8, abs=1e-9)
+OSCILLATOR = """<system name="Oscillator"><!-- kept -->
+  <parameter name="m" start="2" unit="kg" min="0"/><parameter name="k" start="50" unit="N/m" min="0"/><parameter name="d" start="1" unit="N.s/m" min="0"/>
+  <input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m" start="0.3"/>
+  <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
+  <experiment stopTime="4"/></system>"""
+BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
+  <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="0.5"/></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("fitted", {"Oscillator": OSCILLATOR, "Ball": BALL})
+
+
+@pytest.fixture(scope="module")
+def lagrange_fmu(tmp_path_factory):
+    folder = package.assemble(tmp_path_factory.mktemp("package"))
+    sys.path.insert(0, str(folder))
+    try:
+        import lagrange_fmu
+
+        yield lagrange_fmu
+    finally:
+        sys.path.remove(str(folder))
+        for name in [name for name in sys.modules if name.split(".")[0] == "lagrange_fmu"]:
+            del sys.modules[name]
+
+
+def oscillation(t, m, k, d, x0, F=0.0):
+    """Weakly damped, from rest at x0, with a constant force."""
+    a, shift = d / (2 * m), F / k
+    w = mpmath.sqrt(k / m - a * a)
+    return shift + (x0 - shift) * mpmath.exp(-a * t) * (mpmath.cos(w * t) + a / w * mpmath.sin(w * t))
+
+
+def test_derivatives_of_an_oscillation(lagrange_fmu):
+    """By parameters, start value and an input that stays."""
+    at = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
+    found = lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x", "der(v)"], list(at), [0, 0.7, 2, 4], {"F": 4.0})
+    with mpmath.workdps(40):
+        for i, t in enumerate(found.time):
+            for place, name in enumerate(at):
+                along = lambda value: oscillation(t, *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())])
+                assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), **TOLERATED)
+    # m a = F - k x - d v at the start
+    assert found.derivatives["der(v)", "k"][0] == pytest.approx(-0.3 / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["SimplePendulum", "PendulumCartesian"])
+def test_derivative_of_a_pendulum(lagrange_fmu, name):
+    """By its length, through a constraint too, which moves the start."""
+    g = fmu.start_values(name)["g"]
+    with mpmath.workdps(40):
+        if name == "SimplePendulum":
+            start, of, place = {"theta": 1.0}, "theta", lambda angle, l: angle
+        else:
+            start, of, place = {"x": 0.6, "y": -0.8}, "x", lambda angle, l: l * mpmath.sin(angle)
+        angle = mpmath.mpf(1) if name == "SimplePendulum" else mpmath.atan2(mpmath.mpf(3), 4)
+
+        def along(l):
+            k = mpmath.sin(angle / 2)
+            return place(2 * mpmath.asin(k * mpmath.ellipfun("cd", mpmath.sqrt(mpmath.mpf(g) / l) * 3, m=k * k)), l)
+
+        expected = float(mpmath.diff(along, 1))
+    found = lagrange_fmu.sensitivities(fmu.archive(name), [of], ["l"], [0, 3], start | {"l": 1.0})
+    assert found.derivatives[of, "l"][1] == pytest.approx(expected, rel=1e-7)
+
+
+def test_events_are_refused(lagrange_fmu):
+    """A derivative through an impact is another than what the equations between impacts say."""
+    fall = lagrange_fmu.sensitivities(fmu.archive("Ball"), ["h"], ["g"], [0, 0.4])
+    assert fall.derivatives["h", "g"][1] == pytest.approx(-(0.4**2) / 2, rel=1e-9)
+    with pytest.raises(lagrange_fmu.Problem, match="there is an event between .* and .* s"):
+        lagrange_fmu.sensitivities(fmu.archive("Ball"), ["h"], ["g"], [0, 1])
+
+
+def measured(generator, truth, F=0.0, noise=1e-3):
+    times = np.linspace(0, 4, 101)
+    values = np.array([float(oscillation(t, *(truth[name] for name in ("m", "k", "d", "x")), F)) for t in times])
+    return np.rec.fromarrays([times, values + noise * generator.standard_normal(len(times)), np.full(len(times), F)], names="time,x,F").view(np.ndarray)
+
+
+def test_fit(lagrange_fmu):
+    """
+    Values come back within what their deviations say: of 12 fits to data of a known noise, each value is mostly within two
+    standard deviations, and not too mostly.
+    """
+    truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
+    off = []
+    for seed in range(12):
+        generator = np.random.default_rng(seed)
+        found = lagrange_fmu.fit(fmu.archive("Oscillator"), [measured(generator, truth, F) for F in (0.0, 5.0)], list(truth))
+        off.append([(found.values[name] - truth[name]) / found.deviations[name] for name in truth])
+        assert found.rms["x"] == pytest.approx(1e-3, rel=0.2) and found.untold == []
+    off = np.array(off)
+    assert (abs(off) < 4).all() and 0.7 < off.std() < 1.3
+
+
+def test_inputs_with_kinks(lagrange_fmu):
+    """A force that rises and falls between the rows, which the motion of another solver answered."""
+    rows = 41
+    times = np.linspace(0, 4, rows)
+    force = np.interp(times, [0, 1, 1.5, 2.5, 4], [0, 6, -3, -3, 5])
+    rates = lambda t, state: [state[1], (np.interp(t, times, force) - 61 * state[0] - 0.8 * state[1]) / 2]
+    motion = solve_ivp(rates, (0, 4), [0.3, 0.0], t_eval=times, rtol=1e-9, atol=1e-10, max_step=0.02)
+    data = np.rec.fromarrays([times, motion.y[0], force], names="time,x,F").view(np.ndarray)
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d", "m"])
+    assert [found.values[name] for name in ("k", "d", "m")] == pytest.approx([61, 0.8, 2], rel=1e-4)
+
+
+def test_what_data_do_not_tell(lagrange_fmu):
+    """Without a force, mass, stiffness and damping are known up to a common factor alone."""
+    truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), measured(np.random.default_rng(1), truth), ["m", "k", "d", "x"])
+    assert [set(shares) for shares in found.untold] == [{"m", "k", "d"}]
+    assert np.isinf(found.deviations["m"]) and found.deviations["x"] < 1e-3
+    assert found.values["k"] / found.values["m"] == pytest.approx(61 / 1.7, rel=1e-3)
+
+
+def test_command(tmp_path):
+    """A page with a picture, and a system that lagc reads with the new values; comments stay."""
+    folder = package.assemble(tmp_path / "package")
+    truth = {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3}
+    data = measured(np.random.default_rng(2), truth)
+    np.savetxt(tmp_path / "data.csv", np.stack([data["time"], data["x"]], axis=1), delimiter=",", header="time,x", comments="")
+    result = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "k", "d", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert re.search(r"^k  (61\.0|60\.9)\d+ \+- 0\.0\d+$", result.stdout, re.M)
+    page = (tmp_path / "out" / "Oscillator-fit.html").read_text()
+    assert "data:image/png" in page and "95 % interval" in page
+    refused = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "kk", cwd=tmp_path)
+    assert refused.returncode == 1 and "'kk' is not a parameter, a start value or an input" in refused.stderr
+
+
+def test_the_fitted_system(lagrange_fmu, tmp_path):
+    from lagrange_fmu.fitting import Fit
+
+    (tmp_path / "system.xml").write_text(OSCILLATOR)
+    fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml")
+    fit.write_system(tmp_path / "fitted.xml")
+    text = (tmp_path / "fitted.xml").read_text()
+    assert "<!-- kept -->" in text
+    subprocess.run([fmu.LAGC, tmp_path / "fitted.xml", "-o", tmp_path / "out"], check=True)
+    starts = {v.get("name"): v[0].get("start") for v in ElementTree.parse(tmp_path / "out" / "modelDescription.xml").iterfind("ModelVariables/ScalarVariable")}
+    assert [starts[name] for name in ("k", "v", "x", "m")] == ["61.5", "-2", "0.25", "2"]
