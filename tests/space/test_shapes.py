@@ -49,10 +49,17 @@ HARD = f"""<system name="Hard">{HEAD}<parameter name="e" start="0.5" unit="1"/>{
   <shape name="block" in="a" type="box" sizeX="0.4" sizeY="0.6" sizeZ="0.2"/><shape name="floor" type="plane"/>
   <contact name="touch" between="block" and="floor" restitution="e"/><experiment stopTime="2" stepSize="0.01"/></system>"""
 
+THREE = """<system name="Three"><parameter name="k" start="1e4" unit="N/m"/><shape name="floor" type="plane"/>
+  <for index="i" from="1" to="3"><coordinate name="z[i]" velocity="v[i]" unit="m"/><particle name="p[i]" mass="1" z="z[i]"/>
+  <shape name="s[i]" in="p[i]" type="sphere" radius="0.1*i"/><contact name="c[i]" between="s[i]" and="floor" stiffness="k"/></for>
+  <gravity z="-9.81"/></system>"""
+TWICE = """<system name="Twice"><include file="../Three/system.xml" as="a"/><include file="../Three/system.xml" as="b"/>
+  <contact name="both" between="a.s[1]" and="b.s[2]" stiffness="1e3"/></system>"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD}
+    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Three": THREE, "Twice": TWICE}
     for first, second in PAIRS:
         parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
         texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
@@ -176,6 +183,14 @@ def test_ball_on_a_slope(mu):
         else:
             assert instance.get("der(vx)") == pytest.approx(g * (math.sin(slope) - mu * math.cos(slope)), rel=1e-6)
             assert instance.get("der(w)") == pytest.approx(mu * weight * r / (0.4 * m * r**2), rel=1e-3)
+
+
+def test_shapes_of_a_loop_and_of_included_files():
+    """Each by its own name."""
+    with Running("Twice", {f"a.z[{i}]": 0.05 for i in (1, 2, 3)} | {f"b.z[{i}]": 0.3 for i in (1, 2, 3)}) as instance:
+        assert [instance.get(f"a.c[{i}].force") for i in (1, 2, 3)] == pytest.approx([500, 1500, 2500])
+        assert [instance.get(f"b.c[{i}].force") for i in (1, 2, 3)] == pytest.approx([0, 0, 0], abs=1e-9)
+        assert instance.get("both.force") == pytest.approx(1e3 * (0.3 - 0.25))
 
 
 def test_a_block_that_stands():

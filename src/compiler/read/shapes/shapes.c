@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/context/includes.h"
 #include "read/names/similar.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
@@ -128,13 +127,11 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   shape->length = read_length(reader, node, "length", false);
 }
 
-const struct ContactShape *shape_of_attribute(const struct Reader *reader, xmlNodePtr node,
-                                              const char *attribute_name) {
-  char *name = attribute(node, attribute_name),
-       *full_name = name != NULL ? format_text("%s%s", reader->source->prefix, name) : NULL;
-  const struct ContactShape *shape = full_name != NULL ? find_shape(reader, full_name) : NULL;
+const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
+  char *name = reference_attribute(reader, node, attribute_name);
+  const struct ContactShape *shape = name != NULL ? find_shape(reader, name) : NULL;
   if (shape != NULL || name == NULL) return shape;
-  struct Similar similar = {.wanted = full_name};
+  struct Similar similar = {.wanted = name};
   for (size_t i = 0; i < reader->model->mechanism.shape_count; i++)
     similar_consider(&similar, reader->model->mechanism.shapes[i].name);
   if (similar.best != NULL)

@@ -10,4 +10,4 @@ void declare_shape(struct Reader *reader, xmlNodePtr node);
 void place_shape(struct Reader *reader, xmlNodePtr node);
 
 /* The shape that an attribute names; NULL after reporting that there is none. */
-const struct ContactShape *shape_of_attribute(const struct Reader *reader, xmlNodePtr node, const char *attribute);
+const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr node, const char *attribute);
