@@ -12,5 +12,8 @@ bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, 
 /* sources/buildDescription.xml, of an FMU that is complete in C. */
 bool fmi3_build_description_write(xmlBufferPtr buffer, const struct Program *program);
 
-/* terminalsAndIcons/terminalsAndIcons.xml */
+/* How many coordinates are terminals: those with one input that is the force along them. */
+size_t fmi3_terminal_count(const struct Program *program);
+
+/* terminalsAndIcons/terminalsAndIcons.xml, whose terminals are drawn by flange.png and flange.svg. */
 bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program);

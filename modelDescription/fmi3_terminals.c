@@ -1,3 +1,4 @@
+#include <math.h>
 #include <string.h>
 
 #include <libxml/xmlwriter.h>
@@ -78,17 +79,34 @@ static struct Members members_of(const struct Program *program, const int *force
   return are_of_one_size(position, members.velocity) && are_of_one_size(position, members.force) ? members : none;
 }
 
+/* The right edge of the icon, along which the terminals are. */
+struct Edge {
+  size_t count, place;
+};
+
+/* A flange is half outside of the icon. */
+static void write_place(xmlTextWriterPtr writer, const struct Edge *edge) {
+  double half = fmin(10.0, 80.0 / (double)edge->count);
+  double height = 100.0 - 200.0 * ((double)edge->place + 0.5) / (double)edge->count;
+  xmlTextWriterStartElement(writer, BAD_CAST "TerminalGraphicalRepresentation");
+  write_attribute(writer, "defaultConnectionColor", "26 95 180");
+  write_number(writer, "x1", 100.0 - half);
+  write_number(writer, "y1", height - half);
+  write_number(writer, "x2", 100.0 + half);
+  write_number(writer, "y2", height + half);
+  write_attribute(writer, "iconBaseName", "flange");
+  xmlTextWriterEndElement(writer);
+}
+
 /*
  * A force on a flange flows into the system: those of connected flanges add up to 0. A bus, since Modelica's connector has no velocity,
  * which dampers need from what moves them.
  */
-static bool write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
-                           bool is_open) {
+static void write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
+                           const struct Edge *edge) {
   const struct Flange *flange = flange_of(&program->model->coordinates.items[coordinate]);
   struct Members members = members_of(program, force, coordinate);
-  if (flange == NULL || members.position == NULL) return is_open;
   char *name = array_name(members.position), *description = array_description(members.position);
-  if (!is_open) xmlTextWriterStartElement(writer, BAD_CAST "Terminals");
   xmlTextWriterStartElement(writer, BAD_CAST "Terminal");
   write_attribute(writer, "name", name);
   write_attribute(writer, "matchingRule", "bus");
@@ -98,8 +116,13 @@ static bool write_terminal(xmlTextWriterPtr writer, const struct Program *progra
   write_member(writer, members.position, flange->position, "signal");
   write_member(writer, members.velocity, flange->velocity, "signal");
   write_member(writer, members.force, flange->force, "inflow");
+  write_place(writer, edge);
   xmlTextWriterEndElement(writer);
-  return true;
+}
+
+static bool has_terminal(const struct Program *program, const int *force, size_t coordinate) {
+  return flange_of(&program->model->coordinates.items[coordinate]) != NULL &&
+         members_of(program, force, coordinate).position != NULL;
 }
 
 /* terminalsAndIcons/icon.png fills the whole of the system's picture. */
@@ -116,15 +139,26 @@ static void write_icon(xmlTextWriterPtr writer) {
   xmlTextWriterEndElement(writer);
 }
 
+size_t fmi3_terminal_count(const struct Program *program) {
+  int *force = find_forces(program->model);
+  size_t count = 0;
+  for (size_t i = 0; i < program->model->coordinates.count; i++) count += has_terminal(program, force, i);
+  return count;
+}
+
 bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program) {
-  bool is_open = false;
   xmlTextWriterPtr writer = open_document(buffer, "fmiTerminalsAndIcons");
   if (writer == NULL) return false;
   write_attribute(writer, "fmiVersion", "3.0");
   write_icon(writer);
   int *force = find_forces(program->model);
-  for (size_t i = 0; i < program->model->coordinates.count; i++)
-    is_open = write_terminal(writer, program, force, i, is_open);
-  if (is_open) xmlTextWriterEndElement(writer);
+  struct Edge edge = {.count = fmi3_terminal_count(program)};
+  if (edge.count > 0) xmlTextWriterStartElement(writer, BAD_CAST "Terminals");
+  for (size_t i = 0; i < program->model->coordinates.count; i++) {
+    if (!has_terminal(program, force, i)) continue;
+    write_terminal(writer, program, force, i, &edge);
+    edge.place++;
+  }
+  if (edge.count > 0) xmlTextWriterEndElement(writer);
   return close_document(writer);
 }

@@ -7,6 +7,7 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "base/platform.h"
+#include "drawing/flange_drawing.h"
 #include "drawing/png.h"
 #include "drawing/svg.h"
 #include "drawing/system_drawing.h"
@@ -21,6 +22,8 @@ enum File {
   DESCRIPTION_OF_FMI3,
   TERMINALS,
   ICON,
+  FLANGE_ICON,
+  FLANGE_PICTURE,
   BUILD_DESCRIPTION,
   DOCUMENTATION,
   LICENSE,
@@ -69,6 +72,8 @@ static const char *const names[FILE_COUNT] = {
     [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
     [TERMINALS] = "fmi3/terminalsAndIcons.xml",
     [ICON] = "fmi3/icon.svg",
+    [FLANGE_ICON] = "fmi3/flange.svg",
+    [FLANGE_PICTURE] = "fmi3/flange.png",
     [BUILD_DESCRIPTION] = "fmi3/buildDescription.xml",
     [DOCUMENTATION] = "documentation/index.html",
     [LICENSE] = "documentation/licenses/license.txt",
@@ -136,11 +141,20 @@ static struct Content text_content(const char *text) {
 
 static bool write_buffers(const struct Program *program, const struct Summary *summary, const char *guid,
                           const struct Drawing *drawing, const xmlBufferPtr *buffers) {
+  struct Drawing flange = flange_drawing();
   return model_description_write(buffers[DESCRIPTION], program, guid) &&
          fmi3_description_write(buffers[DESCRIPTION_OF_FMI3], program, guid) &&
          fmi3_terminals_write(buffers[TERMINALS], program) &&
          fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) && write_icon(buffers[ICON], drawing) &&
+         write_icon(buffers[FLANGE_ICON], &flange) &&
          documentation_write(buffers[DOCUMENTATION], program, summary, drawing);
+}
+
+/* Its pictures are there where something is drawn by them. */
+static void add_flange(const struct Program *program, struct Content *contents) {
+  struct Drawing flange = flange_drawing();
+  contents[FLANGE_PICTURE].bytes = (const char *)png_of(&flange, &contents[FLANGE_PICTURE].length);
+  if (fmi3_terminal_count(program) == 0) contents[FLANGE_PICTURE].bytes = contents[FLANGE_ICON].bytes = NULL;
 }
 
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
@@ -165,6 +179,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   if (method != NULL && method->uses_library) contents[BUILD_DESCRIPTION].bytes = NULL;
   contents[LICENSE] = text_content(licenses);
   contents[CODE] = text_content(file);
+  add_flange(program, contents);
   contents[PICTURE].bytes = (const char *)png_of(&drawing, &contents[PICTURE].length);
   limit = graph_limit(program->model->graph);
   if (limit != NULL)

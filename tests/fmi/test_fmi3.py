@@ -461,13 +461,24 @@ def test_log(opened):
     assert [category for _, category, _ in loud.messages[count:]] == ["logEvents"]
 
 
+def test_terminals_are_drawn():
+    """Beside one another on the right edge, by pictures that are there; where there is no terminal there are none."""
+    folder = fmi3.unpacked("ParticleCartesian") / "terminalsAndIcons"
+    places = [{name: float(value) for name, value in place.items() if name[0] in "xy"} for place in etree.parse(folder / "terminalsAndIcons.xml").iter("TerminalGraphicalRepresentation")]
+    assert len(places) == 3 and all(place["x1"] < 100 < place["x2"] for place in places)
+    heights = sorted((place["y1"], place["y2"]) for place in places)
+    assert heights[0][0] > -100 and heights[-1][1] < 100 and all(below[1] < above[0] for below, above in zip(heights, heights[1:]))
+    assert (folder / "flange.png").read_bytes()[:4] == b"\x89PNG" and etree.parse(folder / "flange.svg").getroot().tag.endswith("svg")
+    assert not list((fmi3.unpacked("SimplePendulum") / "terminalsAndIcons").glob("flange.*"))
+
+
 def test_terminals(own_systems):
     """A flange where one input is the force along a coordinate, with the names of Modelica's connectors."""
     members, kinds = {}, {}
     for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "Levers"):
         root = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "terminalsAndIcons.xml")
         members[name] = {
-            terminal.get("name"): [(m.get("variableName"), m.get("memberName"), m.get("variableKind")) for m in terminal]
+            terminal.get("name"): [(m.get("variableName"), m.get("memberName"), m.get("variableKind")) for m in terminal.iter("TerminalMemberVariable")]
             for terminal in root.iter("Terminal")
         }
         kinds[name] = {terminal.get("terminalKind") for terminal in root.iter("Terminal")}

@@ -612,7 +612,7 @@ def names_of(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
-FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3/icon.svg", "fmi3/modelDescription.xml",
+FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3/flange.png", "fmi3/flange.svg", "fmi3/icon.svg", "fmi3/modelDescription.xml",
          "fmi3/terminalsAndIcons.xml", "model.png", "modelDescription.xml", "system.c"]
 
 

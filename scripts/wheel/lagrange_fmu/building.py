@@ -133,6 +133,7 @@ def write_descriptions(folder, name, fmi, content):
     if fmi == 3:
         files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
         files |= {"terminalsAndIcons/icon.svg": "fmi3/icon.svg", "terminalsAndIcons/icon.png": "model.png"}
+        files |= {f"terminalsAndIcons/{picture.name}": f"fmi3/{picture.name}" for picture in (folder / "fmi3").glob("flange.*")}
     else:
         files["model.png"] = "model.png"
     licenses = Path("documentation/licenses")

@@ -1,0 +1,23 @@
+#include "flange_drawing.h"
+
+/* Corners of a regular polygon that looks like a circle, by the sines of multiples of 15 degrees, which all machines round alike. */
+static const double sines[] = {
+    0.0, 0.25881904510252074, 0.5, 0.70710678118654757, 0.86602540378443860, 0.96592582628906831, 1.0};
+enum { QUARTER = 6, CORNERS = 4 * QUARTER };
+
+static double sine(int corner) {
+  int quarter = corner / QUARTER % 4, rest = corner % QUARTER;
+  double value = quarter % 2 == 0 ? sines[rest] : sines[QUARTER - rest];
+  return quarter < 2 ? value : -value;
+}
+
+struct Drawing flange_drawing(void) {
+  static const double centre = PICTURE_SIZE / 2.0, radius = 0.46 * PICTURE_SIZE;
+  struct Drawing drawing = {0};
+  struct Spot spots[CORNERS + 1];
+  for (int i = 0; i <= CORNERS; i++)
+    spots[i] = (struct Spot){centre + radius * sine(i + QUARTER), centre + radius * sine(i)};
+  append_shape(&drawing, SOLID, true, spots, CORNERS);
+  append_shape(&drawing, SIGNAL, false, spots, CORNERS + 1);
+  return drawing;
+}
