@@ -112,6 +112,14 @@ def test_templates(template, tmp_path):
     assert rows[-1, 0] == 1 and np.isfinite(rows).all() and np.ptp(rows[:, 1:], axis=0).max() > 0.1
 
 
+def test_a_live_page(tmp_path):
+    """Of a system bodies can be pulled, and it can be saved."""
+    succeed("new", "Mine", "--template", "cart", cwd=tmp_path)
+    succeed("live", "Mine.xml", cwd=tmp_path)
+    page = (tmp_path / "Mine.html").read_text()
+    assert '"bodies":{"cart":' in page and '"system":"' in page
+
+
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
 def test_it_is_the_fmu_of_the_tree(name, tmp_path):
     """But for the compiler of the binary."""
