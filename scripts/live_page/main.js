@@ -64,6 +64,7 @@ const answers = {
   },
   samples({ times, rows, isFresh }) {
     if (isFresh) for (const one of [history, sections]) one.cut(times[0]);
+    if (isFresh) sent = "";
     if (history.length > 0 && history.runs !== rows[0].length) history.clear();
     times.forEach((time, i) => history.add(time, rows[i]));
     viewed = null;

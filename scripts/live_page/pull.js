@@ -7,6 +7,7 @@ const SWINGS = 10; // in the experiment's time where there is no gravity, of all
 const DAMPING = 0.5;
 
 let held = null; // { i, body, local, plane, target } while something is pulled
+let sent = ""; // what the worker knows of that
 let thread = null; // that shows it
 
 const rayAt = (event) => {
@@ -64,6 +65,7 @@ function letGo() {
   if (!held) return;
   order("pull", { body: held.body, pointer: [0, 0, 0, 0, 0, 0, 0], stiffness: 0 });
   held = null;
+  sent = "";
   live.pulled = null;
   thread.visible = false;
   scene.controls.enabled = true;
@@ -74,7 +76,9 @@ function pullOn() {
   if (!held) return;
   const [stiffness, time] = springOf(), pointer = [...held.target.toArray(), ...held.local.toArray(), time];
   live.pulled = { body: held.body, pointer, stiffness };
-  order("pull", live.pulled);
+  const words = JSON.stringify(live.pulled);
+  if (words !== sent) order("pull", live.pulled);
+  sent = words;
   const sample = history.samples[history.length - 1][0];
   thread.geometry.setFromPoints([heldPoint(sample), held.target]);
   thread.visible = true;

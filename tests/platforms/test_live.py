@@ -90,7 +90,7 @@ def test_cost_of_a_step(browser, page_file, name):
         times = []
         for _ in range(12):
             page.click("#reset")
-            times.append((run_in_page(page, 10.0)[1], run_natively(name, 10.0)[1]))
+            times.append((run_in_page(page, 30.0)[1], run_natively(name, 30.0)[1]))
     assert min(there for there, _ in times) <= 1.5 * min(native for _, native in times)
 
 
@@ -185,7 +185,7 @@ def pull(page, name, off, by):
     page.mouse.move(x + off[0] + by[0], y + off[1] + by[1], steps=4)
     page.fill("#speed", "0.6")
     energy = page.evaluate("live.names.indexOf('kineticEnergy')")
-    page.wait_for_function(f"live.history.time(live.history.length - 1) > 2 && {LAST}[{energy}] < 1e-13", timeout=20000)
+    page.wait_for_function(f"live.history.time(live.history.length - 1) > 2 && {LAST}[{energy}] < 1e-11", timeout=60000)
     return SimpleNamespace(**dict(zip(page.evaluate("live.names"), page.evaluate(LAST)))), page.evaluate("live.pulled")
 
 
@@ -202,7 +202,7 @@ def test_pulling_a_particle(browser, page_file):
         along = (math.cos(at.theta), math.sin(at.theta))
         moment = stiffness * ((x - math.sin(at.theta)) * along[0] + (y + math.cos(at.theta)) * along[1])
         assert held == [0, 0, 0] and abs(moment) > 1
-        assert moment == pytest.approx(9.81 * math.sin(at.theta), rel=1e-5)
+        assert moment == pytest.approx(9.81 * math.sin(at.theta), rel=1e-4)
         page.mouse.up()
         page.wait_for_function("live.pulled === null")
         page.click("#play")
@@ -231,7 +231,7 @@ def test_pulling_a_point_of_a_body(browser, page_file):
     weights = -rho * g * (a * a / 2 * math.cos(at.theta) + b * moves[1] + c * c / 2 * math.cos(at.psi) * psi_dot)
     spring = stiffness * sum((pointer - place - off) * speed for pointer, place, off, speed in zip((x, y), middle, lever, held_moves))
     assert abs(weights) > 1
-    assert spring == pytest.approx(-weights, rel=1e-5)
+    assert spring == pytest.approx(-weights, rel=1e-4)
 
 
 def test_equations_and_system(browser, page_file, tmp_path):
