@@ -56,10 +56,16 @@ THREE = """<system name="Three"><parameter name="k" start="1e4" unit="N/m"/><sha
 TWICE = """<system name="Twice"><include file="../Three/system.xml" as="a"/><include file="../Three/system.xml" as="b"/>
   <contact name="both" between="a.s[1]" and="b.s[2]" stiffness="1e3"/></system>"""
 
+LEVER = """<system name="Lever"><coordinate name="z" velocity="v" unit="m"/><coordinate name="turn" velocity="w" unit="rad"/>
+  <frame name="f"><translate z="z"/><rotate axis="x" angle="turn"/></frame><body name="b" in="f" mass="2" y="0.3" Ixx="0.1"/>
+  <particle name="p" in="f" mass="1" y="0.45"/><shape name="floor" type="plane"/>
+  <shape name="s" in="b" type="sphere" radius="0.4" y="0.05"/><shape name="q" in="p" type="sphere" radius="0.4" y="-0.2"/>
+  <contact name="one" between="s" and="floor" stiffness="1e4"/><contact name="two" between="q" and="floor" stiffness="1e4"/></system>"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Three": THREE, "Twice": TWICE}
+    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Three": THREE, "Twice": TWICE, "Lever": LEVER}
     for first, second in PAIRS:
         parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
         texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
@@ -193,6 +199,15 @@ def test_shapes_of_a_loop_and_of_included_files():
         assert instance.get("both.force") == pytest.approx(1e3 * (0.3 - 0.25))
 
 
+def test_where_shapes_of_bodies_are():
+    """At the centre of mass, shifted along the axes of the frame."""
+    values = {"turn": 0.7, "z": 0.1}
+    with Running("Lever", values) as instance:
+        # The body is 0.3 along the frame's y, its shape 0.05 beyond, the particle's 0.2 before it.
+        heights = [0.1 + length * math.sin(0.7) for length in (0.35, 0.25)]
+        assert [instance.get(f"{name}.force") for name in ("one", "two")] == pytest.approx([1e4 * (0.4 - height) for height in heights])
+
+
 def test_a_block_that_stands():
     """Dropped flat, with damping, it rests on four corners which bear its weight, and does not turn."""
     with Running("Stand", {"az": 0.11, "c": 5.0, "mu": 0.5}) as instance:
@@ -235,6 +250,9 @@ def test_hard_contacts():
         ('<contact between="floor" and="floor2" stiffness="k"/>', "there is no <contact> between such shapes as 'floor' and 'floor2'"),
         ('<shape name="s" type="sphere"/>', "the sphere 's' has no radius"),
         ('<shape name="s" type="sphere" radius="r" sizeX="r"/>', "is a sphere, which has no sizeX"),
+        ('<contact between="skin" and="skin" stiffness="k"/>', "a <contact> of 'skin' with itself"),
+        ('<contact between="skin" and="floor" stiffness="k" friction="mu" creep="0"/>', "the creep of a <contact> is 0"),
+        ('<shape name="s" type="sphere" radius="r" axis="x"/>', "is a sphere, which has no axis"),
         ('<shape name="s" in="bal" type="sphere" radius="r"/>', "there is nothing named 'bal' for this <shape>"),
         ('<contact gap="z"/>', "a <contact> needs a name and a gap, or shapes"),
 

@@ -48,6 +48,10 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   shapes[0] = shape_of_attribute(reader, node, "between");
   shapes[1] = shape_of_attribute(reader, node, "and");
   if (shapes[0] == NULL || shapes[1] == NULL) return false;
+  if (shapes[0] == shapes[1]) {
+    report_at(reader, node, "a <contact> of '%s' with itself; expected two shapes", shapes[0]->name);
+    return false;
+  }
   if (count_touches(shapes[0], shapes[1]) > 0) return true;
   report_at(reader, node,
             "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or capsule as one of them, "
@@ -167,6 +171,8 @@ void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
                     .damping = read_law_attribute(reader, node, "damping", "s/m", ZERO),
                     .friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
   law.creep = read_law_attribute(reader, node, "creep", "m/s", graph_constant(graph, usual_creep));
+  if (law.creep == ZERO)
+    report_at(reader, node, "the creep of a <contact> is 0; expected a speed above 0, such as 1e-4 m/s");
   if (!read_contact_of_shapes(reader, node, &contact)) return;
   reader->model->forces.any = true;
   Node sum = ZERO;

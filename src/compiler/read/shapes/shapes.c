@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/names/similar.h"
 #include "read/space/bodies.h"
@@ -58,6 +59,8 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
       report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", type_names[shape->type], shape->name,
                 measure->name, measure->name);
   }
+  if (has_attribute(node, "axis") && (shape->type == SHAPE_SPHERE || shape->type == SHAPE_BOX))
+    report_at(reader, node, "the shape '%s' is a %s, which has no axis", shape->name, type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
 }
@@ -67,7 +70,8 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
   if (find_shape(reader, name) != NULL) report_at(reader, node, "a shape named '%s' is already there", name);
-  struct ContactShape shape = {.name = name, .type = type_of(node), .particle = NO_PARTICLE, .axis = 2};
+  struct ContactShape shape = {
+      .name = name, .type = type_of(node), .particle = NO_PARTICLE, .axis = 2, .offset = {{ZERO, ZERO, ZERO}}};
   check_measures(reader, node, &shape);
   for (int i = 0; i < 3; i++) shape.size.along[i] = has_attribute(node, measures[2 + i].name) ? ONE : ZERO;
   reader->present->number = mechanism->shape_count;
@@ -87,11 +91,14 @@ static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name
 static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   if (!has_attribute(node, "in")) return;
   char *name = reference_attribute(reader, node, "in");
-  const struct ReferenceFrame *frame = name != NULL ? find_frame(reader, name) : NULL;
-  const struct Body *body = name != NULL && frame == NULL ? find_body(reader, name) : NULL;
+  struct SpatialPoint point;
+  bool is_spatial_point = name != NULL && find_spatial_point(reader, name, &point);
+  const struct Body *body = name != NULL && !is_spatial_point ? find_body(reader, name) : NULL;
   shape->in = name;
-  if (frame != NULL) shape->frame = (size_t)(frame - reader->model->mechanism.frames);
-  else if (body != NULL) shape->particle = (size_t)(body - reader->model->mechanism.bodies);
+  if (is_spatial_point) {
+    shape->frame = point.frame;
+    shape->offset = vector_without_displacements(reader, xmlGetLineNo(node), name, point.offset);
+  } else if (body != NULL) shape->particle = (size_t)(body - reader->model->mechanism.bodies);
   else if (name != NULL)
     report_at(reader, node, "there is nothing named '%s' for this <shape>; expected a <frame>, <body> or <particle>",
               name);
@@ -120,7 +127,8 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   turn_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;
-    shape->offset.along[i] = read_length(reader, node, axes[i], true);
+    Node shift = read_length(reader, node, axes[i], true);
+    shape->offset.along[i] = add(reader->model->graph, shape->offset.along[i], shift);
     shape->size.along[i] = read_length(reader, node, measures[2 + i].name, false);
   }
   shape->radius = read_length(reader, node, "radius", false);
