@@ -197,6 +197,7 @@ def test_pulling_a_particle(browser, page_file):
     with opened(browser, page_file("SimplePendulum")) as page:
         before, _ = run_in_page(page, 2.0)
         page.click("#reset")
+        page.wait_for_function("live.history.length === 1 && live.history.time(0) === 0")  # else the bob is not yet where it is grasped
         at, pulled = pull(page, "bob", (0, 0), (90, -50))
         (x, y, _, *held), stiffness = pulled["pointer"][:6], pulled["stiffness"]
         along = (math.cos(at.theta), math.sin(at.theta))
