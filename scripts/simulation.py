@@ -1,7 +1,10 @@
 """Simulating an FMU with FMPy; a CSV, a plot and an animation of its motion. Also a module of the wheel."""
 
 import argparse
+import re
 import sys
+import textwrap
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -22,7 +25,9 @@ from .variables import settable, start_values, why_not
 EVENTS = "events"  # the FMU's variable that counts them
 ENERGIES = ("kineticEnergy", "potentialEnergy", "totalEnergy")
 FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at most
+LEVEL = 1e-6  # of its size: what changes by less is drawn as if it did not
 MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
+WIDEST_TITLE = 75  # letters
 
 
 @dataclass
@@ -101,17 +106,38 @@ def simulate(fmu, start, output=None, input=None, **options):
     return Motion(fmu, description, tree, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
 
 
-def panels_of(description, result):
-    """(unit, names) of what is drawn together: outputs of one unit, unless one of them would be a flat line beside the other; all but zero goes with any."""
-    unit_of = {variable.name: variable.unit or "1" for variable in description.modelVariables}
+def crowds_of(names):
+    """"x[]" for each of x[1], x[2], ..., where they are too many to be told apart by names; "" for all else."""
+    of = {name: re.sub(r"\[[^]]*\]", "[]", name) for name in names}
+    members = Counter(of.values())
+    return {name: crowd if members[crowd] > MOST_NAMES + 1 else "" for name, crowd in of.items()}
+
+
+def units_of(description):
+    return {variable.name: variable.unit or "1" for variable in description.modelVariables}
+
+
+def sizes_of(unit_of, result):
+    """The largest value of each; 0 where that is a rounding error beside others of the unit."""
     size = {name: np.nanmax(abs(result[name])) for name in result.dtype.names[1:]}
     most = {unit: max(size[name] for name in size if unit_of[name] == unit) for unit in map(unit_of.get, size)}
-    size = {name: value if value > 1e-9 * most[unit_of[name]] else 0.0 for name, value in size.items()}
+    return {name: value if value > 1e-9 * most[unit_of[name]] else 0.0 for name, value in size.items()}
+
+
+def panels_of(description, result):
+    """
+    (unit, names) of what is drawn together: outputs of one unit, unless one of them would be a flat line beside the other; all but zero goes
+    with any. What is too many of a kind has a panel of its own.
+    """
+    unit_of = units_of(description)
+    size = sizes_of(unit_of, result)
+    crowd = crowds_of(size)
     panels = []
-    for name in result.dtype.names[1:]:
+    for name in size:
         for unit, names in panels:
             sizes = [size[other] for other in (*names, name) if size[other] > 0]
-            if unit == unit_of[name] and (not sizes or max(sizes) <= FLAT * min(sizes)):
+            fits = crowd[name] or not sizes or max(sizes) <= FLAT * min(sizes)
+            if unit == unit_of[name] and crowd[names[0]] == crowd[name] and fits:
                 names.append(name)
                 break
         else:
@@ -126,26 +152,44 @@ def event_times(values):
     return values["time"][1:][np.diff(values[EVENTS]) > 0]
 
 
+def draw(axis, result, names, size):
+    """The curves, whose largest value is `size`, with names that the legend shows: of many of a kind the first and the last, whose colors run from dark to bright; else as many as can be told apart."""
+    from matplotlib import colormaps
+
+    crowd, all_named = any(crowds_of(names).values()), len(names) <= MOST_NAMES + 1
+    for i, name in enumerate(names):
+        named = all_named or (i in (0, len(names) - 1) if crowd else i < MOST_NAMES)
+        color = colormaps["viridis"](0.9 * i / (len(names) - 1)) if crowd else f"C{i}" if named else "#bbb"
+        axis.plot(result["time"], result[name], linewidth=1.2, color=color, label=name if named else "_", zorder=2 if named else 1.5)
+        if crowd and i == 0:
+            axis.plot([], [], " ", label=f"and {len(names) - 2} between")
+    if not crowd and not all_named:
+        axis.plot([], [], " ", label=f"and {len(names) - MOST_NAMES} others")
+    low, high = (limit([limit(result[name]) for name in names]) for limit in (np.nanmin, np.nanmax))
+    if size == 0 or high - low < LEVEL * size:
+        axis.set_ylim(low - (size or 1) / 2, high + (size or 1) / 2)
+
+
 def figure_of(description, result, events=()):
     """A panel for outputs of one unit and size, their names beside it; dotted lines are events."""
     from matplotlib.figure import Figure
 
-    panels = panels_of(description, result)
+    panels, sizes = panels_of(description, result), sizes_of(units_of(description), result)
     figure = Figure(figsize=(9, 1.2 + 1.9 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for (unit, names), axis in zip(panels, axes):
         for time in events if len(events) <= MOST_EVENTS else []:
             axis.axvline(time, color="#999", linestyle=":", linewidth=0.8, zorder=0)
-        for i, name in enumerate(names):
-            axis.plot(result["time"], result[name], linewidth=1.2, label=name if i < MOST_NAMES or len(names) == MOST_NAMES + 1 else "_")
-        if len(names) > MOST_NAMES + 1:
-            axis.plot([], [], " ", label=f"and {len(names) - MOST_NAMES} others")
+        draw(axis, result, names, max(map(sizes.get, names)))
         axis.set_ylabel(f"[{unit}]")
+        axis.ticklabel_format(useOffset=False)
         axis.grid(alpha=0.3)
         axis.legend(loc="upper left", bbox_to_anchor=(1, 1.03), fontsize="small", frameon=False)
     words = "events are dotted" if len(events) <= MOST_EVENTS else "events are too many to be marked"
-    axes[0].set_title((description.description or description.modelName) + (f"\n{words}" if len(events) else ""))
+    title = textwrap.fill(description.description or description.modelName, WIDEST_TITLE)
+    axes[0].set_title(title + (f"\n{words}" if len(events) else ""))
     axes[-1].set_xlabel("time [s]")
+    figure.align_ylabels()
     return figure
 
 

@@ -44,3 +44,33 @@ def test_names_stand_beside_the_curves(name):
     for axes in figure.axes:
         legend = axes.get_legend().get_window_extent()
         assert legend.x0 >= axes.get_window_extent().x1 - 1 and legend.x1 <= figure.bbox.x1 and len(axes.get_legend().get_texts()) <= 9
+
+
+def figure(name, **options):
+    motion = simulate(fmu.archive(name), {}, **options)
+    drawn = figure_of(motion.description, motion.outputs)
+    drawn.savefig("/dev/null", format="png")
+    return drawn
+
+
+def test_many_of_a_kind_have_a_panel_of_their_own():
+    """A rope's 200 heights are not spread over several panels by their size; the names of the first and the last tell what the colours mean."""
+    panel_of = {names[0]: names for names in panels("Rope")}
+    assert panel_of["x[1]"] == [f"x[{i}]" for i in range(1, 201)] and panel_of["y[1]"] == [f"y[{i}]" for i in range(1, 201)]
+    legends = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in figure("Rope", stop_time=0.1).axes]
+    assert ["y[1]", "and 198 between", "y[200]"] in legends
+
+
+def test_what_hardly_changes_is_level():
+    """The spin of a gyrocompass, 2000 rad/s to some 1e-9 of it, has ticks to be read. The couplers of equal rods do not turn: their rounding errors are not drawn large."""
+    spin = figure("Gyrocompass").axes[-1]
+    low, high = spin.get_ylim()
+    assert low < 1999 and high > 2001 and spin.yaxis.get_major_formatter().get_offset() == ""
+    low, high = figure("NFourBar").axes[1].get_ylim()
+    assert low < -0.1 and high > 0.1
+
+
+def test_a_long_title_is_within_the_picture():
+    drawn = figure("FlyballGovernor", stop_time=0.1)
+    title = drawn.axes[0].title.get_window_extent()
+    assert title.x0 >= 0 and title.x1 <= drawn.bbox.x1
