@@ -113,8 +113,9 @@ def test_templates(template, tmp_path):
 
 
 def test_a_live_page(tmp_path):
-    """Of a system bodies can be pulled, and it can be saved."""
+    """Of a system bodies can be pulled, and it can be saved; the page compiles by itself, also where the FMU was built before."""
     succeed("new", "Mine", "--template", "cart", cwd=tmp_path)
+    succeed("build", "Mine.xml", cwd=tmp_path)
     succeed("live", "Mine.xml", cwd=tmp_path)
     page = (tmp_path / "Mine.html").read_text()
     assert '"bodies":{"cart":' in page and '"system":"' in page

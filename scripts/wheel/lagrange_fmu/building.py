@@ -91,7 +91,7 @@ def take_or_compile(key, folder, what, compile_library):
     """What was compiled before is taken from the cache, else compiled into the folder and kept; what: how its message begins."""
     if caching.take(key, folder):
         return
-    os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(caching.folder() / "zig"))
+    caching.keep_what_zig_compiles()
     try:
         compile_library()
     except Failure as failure:

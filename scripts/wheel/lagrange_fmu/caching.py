@@ -43,6 +43,11 @@ def folder():
     return path
 
 
+def keep_what_zig_compiles():
+    """Of the platforms' C libraries in this folder too, where zig needs no home of the user."""
+    os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder() / "zig"))
+
+
 def _locked(file):
     """Takes the lock if it is free, and says whether it was; the end of the process frees it."""
     try:

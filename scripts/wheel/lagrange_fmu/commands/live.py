@@ -11,10 +11,12 @@ def arguments(parser):
 
 
 def run(arguments):
-    from ..live_page.page import write_page
+    from .. import caching
     from ..building import origin_of
+    from ..live_page.page import write_page
     from ..running import fmu_of, is_fmu
 
+    caching.keep_what_zig_compiles()
     with fmu_of(arguments.system) as fmu:
         origin = None if is_fmu(arguments.system) else origin_of(arguments.system)
         print(write_page(fmu, arguments.output or Path(f"{fmu.stem}.html"), origin).resolve())
