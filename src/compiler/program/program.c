@@ -77,13 +77,14 @@ static size_t count_of(const struct Routine *routine) {
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
-  program->is_table = form == TABLES || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
-  program->series_is_table = form == TABLES || (program->is_table && length > SERIES_STATEMENT_LIMIT);
+  bool all = form == TABLES || form == ALL_TABLES;
+  program->switches_are_table = form == ALL_TABLES;
+  program->is_table = all || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
+  program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
   program->series_is_unrolled = series != NULL && program->equations->method->series == ALL_TERMS &&
                                 program->blocks.count == 0 && series->recurrences <= UNROLLED_RECURRENCES;
   program->derivatives_are_table =
-      form == TABLES ||
-      (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
+      all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
 }
 
 static void choose_parts_of_runtime(struct Program *program) {

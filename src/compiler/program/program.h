@@ -6,8 +6,11 @@
 #include "program/generated_functions.h"
 #include "program/series/series_program.h"
 
-/* How the instructions are written; BY_SIZE: small systems as statements, large ones as tables. */
-enum CodeForm { BY_SIZE, STATEMENTS, TABLES };
+/*
+ * How the instructions are written; BY_SIZE: small systems as statements, large ones as tables; ALL_TABLES: what switches
+ * too, for a program that carries them out itself.
+ */
+enum CodeForm { BY_SIZE, STATEMENTS, TABLES, ALL_TABLES };
 
 struct Program {
   const struct Model *model;
@@ -25,6 +28,7 @@ struct Program {
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */
   bool derivatives_are_table, series_is_table;
+  bool switches_are_table; /* so are the functions of struct SwitchTable */
   bool series_is_unrolled; /* the orders of series() get code of their own */
   const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */
   struct StepWork work;    /* where there is a solver */

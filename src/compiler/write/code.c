@@ -97,7 +97,7 @@ static void write_blocks(FILE *file, const struct Program *program) {
 }
 
 /* The functions of one routine that struct Lagrangian holds, as far as the system has them. */
-static void write_routines(FILE *file, const struct Program *program, const struct TableContext *tables) {
+static void write_routines(FILE *file, const struct Program *program, const struct Encoding *tables) {
   for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
@@ -117,7 +117,7 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 }
 
 static void write_as_tables(FILE *file, const struct Program *program) {
-  struct TableContext *tables = table_context_create(program);
+  struct Encoding *tables = encoding_create(program);
   instruction_tables_shared(file, tables);
   write_routines(file, program, tables);
   if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
@@ -125,7 +125,7 @@ static void write_as_tables(FILE *file, const struct Program *program) {
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);
   instruction_tables_results(file, tables);
   switching_write(file, program);
-  description_write(file, program, instruction_tables_work_count(tables));
+  description_write(file, program, encoding_work_count(tables));
 }
 
 void code_write(FILE *file, const struct Program *program) {

@@ -1,4 +1,4 @@
-#include "write/schedule.h"
+#include "program/tables/schedule.h"
 
 #include <stdlib.h>
 

@@ -1,0 +1,139 @@
+#include "program/tables/encoding.h"
+
+#include "algebra/functions.h"
+#include "base/memory.h"
+#include "program/tables/schedule.h"
+
+static void add_number(struct Encoding *encoding, Node node) {
+  if (encoding->number[node] > 0) return;
+  append_node(&encoding->numbers, node);
+  encoding->number[node] = encoding->numbers.count;
+}
+
+/* Whether it is written as a table where the program is. */
+static bool is_in_tables(const struct Program *program, enum FunctionName name) {
+  if (name == FUNCTION_START || name == FUNCTION_SERIES) return program->series_is_table;
+  return program->switches_are_table || generated_functions[name].group != IN_SWITCHES;
+}
+
+/* Notes the numbers and functions that a routine uses. */
+static void note(void *target, enum FunctionName name, const struct Routine *routine) {
+  struct Encoding *encoding = target;
+  if (!is_in_tables(encoding->program, name)) return;
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (instruction->opcode == CALL || instruction->opcode == CALL_OF_TWO)
+      encoding->function[instruction->function] = 1;
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+      if (space_of(instruction->operands[j]) == SPACE_NUMBER)
+        add_number(encoding, (Node)index_in(instruction->operands[j]));
+  }
+}
+
+static void note_limit(struct Encoding *encoding, const struct SeriesProgram *series) {
+  for (size_t i = 0; series != NULL && i < series->limit.count; i++) {
+    const struct LimitCheck *check = &series->limit.items[i];
+    if (limit_facts(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
+      add_number(encoding, (Node)index_in(check->exponent));
+  }
+}
+
+/* Those of prepare() stand behind what it computes, and statements have theirs. */
+static void find_most_locals(void *target, enum FunctionName name, const struct Routine *routine) {
+  struct Encoding *encoding = target;
+  const struct Program *program = encoding->program;
+  bool has_own =
+      name == FUNCTION_PREPARE || (!program->switches_are_table && generated_functions[name].group == IN_SWITCHES);
+  if (!has_own && routine->local_count > encoding->local_count) encoding->local_count = routine->local_count;
+}
+
+struct Encoding *encoding_create(const struct Program *program) {
+  struct Encoding *encoding = allocate(1, sizeof *encoding);
+  *encoding = (struct Encoding){.program = program, .number = allocate(program->model->graph->count, sizeof(size_t))};
+  program_visit(program, note, encoding);
+  program_visit(program, find_most_locals, encoding);
+  if (program->series_is_table) note_limit(encoding, program->series);
+  if (program->switches_are_table) note_limit(encoding, program->watched_series);
+  size_t count[3] = {0};
+  for (enum Operation function = 0; function < OPERATION_COUNT; function++)
+    if (encoding->function[function] > 0) encoding->function[function] = ++count[operation_arity(function)];
+  return encoding;
+}
+
+size_t encoding_work_count(const struct Encoding *encoding) {
+  const struct Program *program = encoding->program;
+  return encoding->local_count + program->blocks.mass_count + program->blocks.side_count +
+         row_count(program->equations);
+}
+
+/* The index of a place in its space, as tables count it. */
+static uint32_t index_of(const struct Encoding *encoding, Place place) {
+  enum Space space = space_of(place);
+  size_t index = index_in(place);
+  if (space == SPACE_NUMBER) return (uint32_t)encoding->number[index] - 1;
+  return (uint32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
+}
+
+static void append_word(struct Words *words, uint32_t word) {
+  words->items = make_room(words->items, words->count, sizeof *words->items);
+  words->items[words->count++] = word;
+}
+
+/* The instructions first .. end - 1 of the schedule, which are one run. */
+static void append_run(struct Words *words, const struct Encoding *encoding, const struct Routine *routine,
+                       const size_t *schedule, size_t first, size_t end) {
+  const struct Instruction *instructions = routine->instructions;
+  enum Opcode opcode = instructions[schedule[first]].opcode;
+  append_word(words, opcode);
+  append_word(words, (uint32_t)(end - first));
+  append_word(words, spaces_of(&instructions[schedule[first]]));
+  if (opcode == CALL || opcode == CALL_OF_TWO)
+    append_word(words, (uint32_t)encoding->function[instructions[schedule[first]].function] - 1);
+  for (size_t i = first; i < end; i++) {
+    const struct Instruction *instruction = &instructions[schedule[i]];
+    append_word(words, opcode_has_result(opcode) ? index_of(encoding, instruction->result) : instruction->result);
+    for (int j = 0; j < opcode_arity(opcode); j++) append_word(words, index_of(encoding, instruction->operands[j]));
+  }
+}
+
+void encode(const struct Encoding *encoding, const struct Routine *routine, struct Words *words) {
+  size_t *schedule = schedule_create(routine, &encoding->program->blocks);
+  for (size_t first = 0, end = 0; first < routine->count; first = end) {
+    const struct Instruction *instruction = &routine->instructions[schedule[first]];
+    while (end < routine->count && same_run(instruction, &routine->instructions[schedule[end]])) end++;
+    append_run(words, encoding, routine, schedule, first, end);
+  }
+  append_word(words, END);
+}
+
+struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines, const size_t *leader,
+                                size_t count) {
+  struct RoutineTables tables = {.start = allocate(count, sizeof *tables.start),
+                                 .place = allocate(count, sizeof *tables.place)};
+  for (size_t i = 0; i < count; i++) {
+    tables.start[i] = leader[i] < i ? tables.start[leader[i]] : tables.words.count;
+    tables.place[i] = i - leader[i];
+    if (tables.place[i] > tables.largest_place) tables.largest_place = tables.place[i];
+    if (routines[i] == NULL) continue;
+    encode(encoding, routines[i], &tables.words);
+    tables.operation_count += routines[i]->operation_count;
+  }
+  append_word(&tables.words, END);
+  return tables;
+}
+
+static Place encoded(const struct Encoding *encoding, Place place) {
+  return place_in(space_of(place), index_of(encoding, place));
+}
+
+struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check) {
+  const struct LimitFacts *facts = limit_facts(check->rule);
+  return (struct LimitCheck){.rule = check->rule,
+                             .row = encoded(encoding, check->row),
+                             .other_row = facts->has_two_rows ? encoded(encoding, check->other_row) : 0,
+                             .function = facts->has_function ? check->function : NULL,
+                             .share = check->share,
+                             .exponent = facts->has_exponent ? encoded(encoding, check->exponent) : 0,
+                             .is_gated = check->is_gated,
+                             .opener = check->is_gated ? encoded(encoding, check->opener) : 0};
+}
