@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/formula.h"
+#include "base/memory.h"
 
 void write_c_number(FILE *file, double value) {
   if (isnan(value)) fputs("NAN", file);
@@ -26,4 +27,10 @@ void write_sizes(FILE *file, const char *type, const char *name, const size_t *s
   fprintf(file, "static const %s %s[] = {", type, name);
   for (size_t i = 0; i < count; i++) fprintf(file, "%s%zu", i == 0 ? "" : i % 16 == 0 ? ",\n    " : ", ", sizes[i]);
   fputs(count == 0 ? "0};\n" : "};\n", file);
+}
+
+void write_whole_numbers(FILE *file, const char *name, const int *numbers, size_t count) {
+  size_t *sizes = allocate(count, sizeof *sizes);
+  for (size_t i = 0; i < count; i++) sizes[i] = (size_t)numbers[i];
+  write_sizes(file, "int", name, sizes, count);
 }

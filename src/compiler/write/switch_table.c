@@ -1,129 +1,122 @@
 #include "write/switch_table.h"
 
+#include "program/facts/switch_facts.h"
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
 
-static int mode_index(const struct Program *program, Node mode) {
-  return graph_symbol_of(program->model->graph, mode)->index;
+static const char *name_of(bool truth) {
+  return truth ? "true" : "false";
 }
 
-static void write_branches(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  if (switching->branch_count == 0) return;
-  fputs("static const struct BranchFacts branch_facts[] = {", file);
-  for (size_t i = 0; i < switching->branch_count; i++) {
-    const struct Branch *branch = switching->branches[i];
-    fprintf(file, "{%d, ", mode_index(program, branch->mode));
-    write_c_string(file, branch->function);
-    fprintf(file, ", %ld, %s, %s}, ", branch->line, branch->is_side ? "true" : "false",
-            switching->holds_energy[i] ? "true" : "false");
-  }
-  fputs("};\n\n", file);
-}
-
-static void write_name(FILE *file, const struct Program *program, size_t constraint) {
-  write_c_string(file, program->model->constraints.items[constraint].name);
+/* A string at the end of an element of an array. */
+static void write_name(FILE *file, const char *name) {
+  write_c_string(file, name);
   fputs("}, ", file);
 }
 
-static void write_contact_facts(FILE *file, const struct Program *program, const struct Contact *contact) {
-  fprintf(file, "{%d, %zu, ", mode_index(program, contact->mode), contact->constraint);
-  write_name(file, program, contact->constraint);
-}
-
-static void write_friction_facts(FILE *file, const struct Program *program, const struct Friction *friction) {
-  fprintf(file, "{%d, %d, %zu, ", mode_index(program, friction->mode), mode_index(program, friction->told),
-          friction->constraint);
-  write_name(file, program, friction->constraint);
-}
-
-static void write_contacts(FILE *file, const struct Program *program) {
-  const struct Switches *switches = &program->model->switches;
-  if (switches->contact_count > 0) fputs("extern const struct ContactLaws contact_laws;\n\n", file);
-  if (switches->contact_count > 0) fputs("static const struct ContactFacts contact_facts[] = {", file);
-  for (size_t i = 0; i < switches->contact_count; i++) write_contact_facts(file, program, &switches->contacts[i]);
-  if (switches->contact_count > 0) fputs("};\n\n", file);
-  if (switches->friction_count > 0) fputs("extern const struct FrictionLaws friction_laws;\n\n", file);
-  if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
-  for (size_t i = 0; i < switches->friction_count; i++) write_friction_facts(file, program, &switches->frictions[i]);
-  if (switches->friction_count > 0) fputs("};\n\n", file);
-}
-
-static void write_rests(FILE *file, const struct Program *program) {
-  const struct Switches *switches = &program->model->switches;
-  const bool *rests = program->equations->switching->rests;
-  if (rests == NULL) return;
-  fputs("static const bool rests[] = {", file);
-  for (size_t i = 0; i < switches->friction_count * switches->contact_count; i++)
-    fputs(rests[i] ? "true, " : "false, ", file);
+static void write_branches(FILE *file, const struct SwitchTable *facts) {
+  if (facts->branch_count == 0) return;
+  fputs("static const struct BranchFacts branch_facts[] = {", file);
+  for (size_t i = 0; i < facts->branch_count; i++) {
+    const struct BranchFacts *branch = &facts->branches[i];
+    fprintf(file, "{%zu, ", branch->mode);
+    write_c_string(file, branch->function);
+    fprintf(file, ", %ld, %s, %s}, ", branch->line, name_of(branch->is_side), name_of(branch->holds_energy));
+  }
   fputs("};\n\n", file);
 }
 
-static void write_assignments(FILE *file, const struct Program *program, const struct Event *event) {
-  for (size_t i = 0; i < event->assignment_count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(program->model->graph, event->assignments[i].symbol);
-    size_t first = symbol->kind == VELOCITY ? program->equations->count : 0;
-    fprintf(file, "{%s, %zu}, ", symbol->kind == MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
-            first + (size_t)symbol->index);
+static void write_contacts(FILE *file, const struct SwitchTable *facts) {
+  if (facts->contact_count == 0) return;
+  fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactFacts contact_facts[] = {", file);
+  for (size_t i = 0; i < facts->contact_count; i++) {
+    fprintf(file, "{%zu, %zu, ", facts->contacts[i].mode, facts->contacts[i].constraint);
+    write_name(file, facts->contacts[i].name);
   }
+  fputs("};\n\n", file);
 }
 
-static void write_events(FILE *file, const struct Program *program) {
+static void write_frictions(FILE *file, const struct SwitchTable *facts) {
+  if (facts->friction_count == 0) return;
+  fputs("extern const struct FrictionLaws friction_laws;\n\nstatic const struct FrictionFacts friction_facts[] = {",
+        file);
+  for (size_t i = 0; i < facts->friction_count; i++) {
+    const struct FrictionFacts *friction = &facts->frictions[i];
+    fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->told, friction->constraint);
+    write_name(file, friction->name);
+  }
+  fputs("};\n\n", file);
+}
+
+static void write_rests(FILE *file, const struct SwitchTable *facts) {
+  if (facts->rests_on == NULL) return;
+  fputs("static const bool rests[] = {", file);
+  for (size_t i = 0; i < facts->friction_count * facts->contact_count; i++)
+    fprintf(file, "%s, ", name_of(facts->rests_on[i]));
+  fputs("};\n\n", file);
+}
+
+static void write_event(FILE *file, const struct EventFacts *event) {
   static const char *const passages[] = {[PASSAGE_HOLDS] = "PASSAGE_HOLDS",
                                          [PASSAGE_RISES] = "PASSAGE_RISES",
                                          [PASSAGE_FALLS] = "PASSAGE_FALLS",
                                          [PASSAGE_BOTH] = "PASSAGE_BOTH"};
-  const struct Switches *switches = &program->model->switches;
-  if (switches->event_count == 0) return;
+  fprintf(file, "{%s, %zu, %s, %zu, %zu, ", passages[event->passage], event->side, name_of(event->is_of_contacts),
+          event->first_assignment, event->assignment_count);
+  write_name(file, event->when);
+}
+
+static void write_events(FILE *file, const struct SwitchTable *facts) {
+  if (facts->event_count == 0) return;
   fputs("static const struct AssignmentFacts assignment_facts[] = {", file);
-  for (size_t i = 0; i < switches->event_count; i++) write_assignments(file, program, &switches->events[i]);
+  for (size_t i = 0; i < facts->assignment_count; i++)
+    fprintf(file, "{%s, %zu}, ", facts->assignments[i].kind == VARIABLE_MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
+            facts->assignments[i].index);
   fputs("};\n\nstatic const struct EventFacts event_facts[] = {", file);
-  size_t assignment = 0;
-  for (size_t i = 0; i < switches->event_count; i++) {
-    const struct Event *event = &switches->events[i];
-    int side = event->side != ZERO ? mode_index(program, event->side) : 0;
-    fprintf(file, "{%s, %d, %s, %zu, %zu, ", passages[event->passage], side, event->is_of_contacts ? "true" : "false",
-            assignment, event->assignment_count);
-    write_c_string(file, event->text);
-    fputs("}, ", file);
-    assignment += event->assignment_count;
-  }
+  for (size_t i = 0; i < facts->event_count; i++) write_event(file, &facts->events[i]);
   fputs("};\n\n", file);
 }
 
-void switching_write(FILE *file, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  if (switching == NULL) return;
-  const struct Switches *switches = &program->model->switches;
-  fputs("extern const struct EventLaws event_laws;\n\n", file);
-  for (enum FunctionName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
-    statements_function(file, program, i, "", program->routines[i]);
-  if (program->watched_series != NULL) statements_watched_limit(file, program);
-  write_branches(file, program);
-  write_contacts(file, program);
-  write_rests(file, program);
-  write_events(file, program);
+static void write_flag(FILE *file, const char *name, bool is_set) {
+  if (is_set) fprintf(file, "    .%s = true,\n", name);
+}
+
+static void write_table(FILE *file, const struct Program *program, const struct SwitchTable *facts) {
   fprintf(file,
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
           "    .assignment_count = %zu,\n    .energy_count = %zu,\n",
-          switches->mode_count, switching->branch_count, switches->contact_count, switches->friction_count,
-          switches->event_count, switching->assignment_count, switching->energy_count);
+          facts->mode_count, facts->branch_count, facts->contact_count, facts->friction_count, facts->event_count,
+          facts->assignment_count, facts->energy_count);
   write_fields(file, program, IN_SWITCHES, IN_SWITCHES);
-  if (switching->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (facts->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
   if (program->watched_series != NULL)
     fprintf(file,
             "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n",
-            program->watched_series->row_count, program->watched_series->acceleration_row,
-            program->watched_series->acceleration_count);
-  if (switching->friction_varies) fputs("    .friction_varies = true,\n", file);
-  if (switching->feels_forces) fputs("    .feels_forces = true,\n", file);
-  if (switching->has_sides) fputs("    .has_sides = true,\n", file);
-  if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
-  if (switching->rests != NULL) fputs("    .rests_on = rests,\n", file);
-  if (switches->friction_count > 0)
+            facts->watched_rows, facts->watched_acceleration_row, facts->watched_acceleration_count);
+  write_flag(file, "friction_varies", facts->friction_varies);
+  write_flag(file, "feels_forces", facts->feels_forces);
+  write_flag(file, "has_sides", facts->has_sides);
+  if (facts->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
+  if (facts->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
+  if (facts->friction_count > 0)
     fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
-  if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
+  if (facts->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
   fputs("};\n\n", file);
+}
+
+void switching_write(FILE *file, const struct Program *program) {
+  if (program->equations->switching == NULL) return;
+  struct SwitchTable facts = switch_facts_of(program);
+  fputs("extern const struct EventLaws event_laws;\n\n", file);
+  for (enum FunctionName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
+    statements_function(file, program, i, "", program->routines[i]);
+  if (program->watched_series != NULL) statements_watched_limit(file, program);
+  write_branches(file, &facts);
+  write_contacts(file, &facts);
+  write_frictions(file, &facts);
+  write_rests(file, &facts);
+  write_events(file, &facts);
+  write_table(file, program, &facts);
 }

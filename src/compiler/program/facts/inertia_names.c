@@ -1,10 +1,11 @@
-#include "write/inertia_names.h"
+#include "program/facts/inertia_names.h"
 
 #include "base/memory.h"
 #include "interface/symbol_names.h"
 
 /* The elimination of a row rests on the rows of the block up to it. */
-static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates, char **texts) {
+static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates,
+                       const char **texts) {
   struct SymbolNames names = {0};
   for (size_t i = 0; i < block->count; i++) {
     if (block->coordinates[i] >= coordinates) continue;
@@ -13,13 +14,11 @@ static void name_block(const struct Graph *graph, const struct InertiaBlock *blo
   }
 }
 
-void inertia_names_write(FILE *file, const struct Program *program) {
+const char *const *inertia_names_of(const struct Program *program) {
   const struct Inertia *inertia = program->equations->inertia;
   size_t n = program->equations->count;
-  if (n == 0) return;
-  char **texts = allocate(n, sizeof *texts);
+  if (n == 0) return NULL;
+  const char **texts = allocate(n, sizeof *texts);
   for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], n, texts);
-  fputs("static const char *const inertia_depends_on[] = {\n", file);
-  for (size_t i = 0; i < n; i++) fprintf(file, "    \"%s\",\n", texts[i]);
-  fputs("};\n\n", file);
+  return texts;
 }

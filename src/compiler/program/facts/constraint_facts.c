@@ -1,0 +1,60 @@
+#include "program/facts/constraint_facts.h"
+
+#include "algebra/cone.h"
+#include "base/memory.h"
+
+/* Marks the inputs that the constraint holds, or whose derivatives it holds. Returns their names, NULL for none. */
+static char *mark_inputs(const struct Model *model, Node constraint, bool *is_guide) {
+  const struct Graph *graph = model->graph;
+  struct Cone *cone = graph->cone;
+  char *names = NULL;
+  cone_collect(cone, graph, &constraint, 1, NULL);
+  for (size_t i = 0; i < model->inputs.count; i++) {
+    if (!cone_has(cone, model->inputs.items[i].node)) continue;
+    size_t input = i;
+    while (is_input_rate(model, input)) input--;
+    is_guide[input] = true;
+    char *before = names;
+    names =
+        format_text("%s%s%s", before != NULL ? before : "", before != NULL ? ", " : "", model->inputs.items[i].name);
+  }
+  return names;
+}
+
+static bool has_inputs(const struct Model *model) {
+  bool has = false;
+  for (size_t j = 0; j < model->constraints.count; j++)
+    has |= graph_depends_on(model->graph, model->constraints.items[j].node, INPUT);
+  return has;
+}
+
+static void add_inputs(struct ConstraintTable *facts, const struct Model *model) {
+  bool *is_guide = allocate(model->inputs.count, sizeof *is_guide);
+  const char **inputs = allocate(model->constraints.count, sizeof *inputs);
+  struct Guide *guides = allocate(model->inputs.count, sizeof *guides);
+  for (size_t j = 0; j < model->constraints.count; j++)
+    inputs[j] = mark_inputs(model, model->constraints.items[j].node, is_guide);
+  for (size_t i = 0; i < model->inputs.count; i++)
+    if (is_guide[i]) guides[facts->guide_count++] = (struct Guide){i, input_rate_count(model, i)};
+  facts->inputs = inputs;
+  facts->guides = guides;
+}
+
+static const bool *fixed_coordinates(const struct VariableList *coordinates) {
+  bool *is_fixed = allocate(coordinates->count, sizeof *is_fixed);
+  for (size_t i = 0; i < coordinates->count; i++) is_fixed[i] = coordinates->items[i].is_fixed;
+  return is_fixed;
+}
+
+struct ConstraintTable constraint_facts_of(const struct Program *program) {
+  const struct Model *model = program->model;
+  struct ConstraintTable facts = {.count = model->constraints.count};
+  if (facts.count == 0) return facts;
+  const char **names = allocate(facts.count, sizeof *names);
+  for (size_t i = 0; i < facts.count; i++) names[i] = model->constraints.items[i].name;
+  facts.names = names;
+  if (has_inputs(model)) add_inputs(&facts, model);
+  if (has_function(program, FUNCTION_START_POSITIONS))
+    facts.coordinate_is_fixed = fixed_coordinates(&model->coordinates);
+  return facts;
+}

@@ -1,0 +1,98 @@
+#include "program/facts/switch_facts.h"
+
+#include "base/memory.h"
+
+static size_t mode_index(const struct Program *program, Node mode) {
+  return (size_t)graph_symbol_of(program->model->graph, mode)->index;
+}
+
+static const char *name_of(const struct Program *program, size_t constraint) {
+  return program->model->constraints.items[constraint].name;
+}
+
+static const struct BranchFacts *branches_of(const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->equations->switching;
+  struct BranchFacts *facts = allocate(switching->branch_count, sizeof *facts);
+  for (size_t i = 0; i < switching->branch_count; i++) {
+    const struct Branch *branch = switching->branches[i];
+    facts[i] = (struct BranchFacts){mode_index(program, branch->mode), branch->function, branch->line, branch->is_side,
+                                    switching->holds_energy[i]};
+  }
+  return facts;
+}
+
+static const struct ContactFacts *contacts_of(const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  struct ContactFacts *facts = allocate(switches->contact_count, sizeof *facts);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const struct Contact *contact = &switches->contacts[i];
+    facts[i] = (struct ContactFacts){mode_index(program, contact->mode), contact->constraint,
+                                     name_of(program, contact->constraint)};
+  }
+  return facts;
+}
+
+static const struct FrictionFacts *frictions_of(const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  struct FrictionFacts *facts = allocate(switches->friction_count, sizeof *facts);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    facts[i] = (struct FrictionFacts){mode_index(program, friction->mode), mode_index(program, friction->told),
+                                      friction->constraint, name_of(program, friction->constraint)};
+  }
+  return facts;
+}
+
+static struct AssignmentFacts assignment_of(const struct Program *program, Node assigned) {
+  const struct Symbol *symbol = graph_symbol_of(program->model->graph, assigned);
+  size_t first = symbol->kind == VELOCITY ? program->equations->count : 0;
+  return (struct AssignmentFacts){symbol->kind == MODE ? VARIABLE_MODE : VARIABLE_STATE, first + (size_t)symbol->index};
+}
+
+/* The events and, one after the other, what they assign. */
+static void add_events(struct SwitchTable *facts, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  struct EventFacts *events = allocate(facts->event_count, sizeof *events);
+  struct AssignmentFacts *assignments = allocate(facts->assignment_count, sizeof *assignments);
+  size_t assignment = 0;
+  for (size_t i = 0; i < facts->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    events[i] = (struct EventFacts){.passage = event->passage,
+                                    .side = event->side != ZERO ? mode_index(program, event->side) : 0,
+                                    .is_of_contacts = event->is_of_contacts,
+                                    .first_assignment = assignment,
+                                    .assignment_count = event->assignment_count,
+                                    .when = event->text};
+    for (size_t k = 0; k < event->assignment_count; k++)
+      assignments[assignment++] = assignment_of(program, event->assignments[k].symbol);
+  }
+  facts->events = events;
+  facts->assignments = assignments;
+}
+
+struct SwitchTable switch_facts_of(const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->equations->switching;
+  const struct Switches *switches = &program->model->switches;
+  if (switching == NULL) return (struct SwitchTable){0};
+  struct SwitchTable facts = {.mode_count = switches->mode_count,
+                              .branch_count = switching->branch_count,
+                              .contact_count = switches->contact_count,
+                              .friction_count = switches->friction_count,
+                              .event_count = switches->event_count,
+                              .assignment_count = switching->assignment_count,
+                              .energy_count = switching->energy_count,
+                              .feels_forces = switching->feels_forces,
+                              .friction_varies = switching->friction_varies,
+                              .has_sides = switching->has_sides,
+                              .rests_on = switching->rests};
+  if (facts.branch_count > 0) facts.branches = branches_of(program);
+  if (facts.contact_count > 0) facts.contacts = contacts_of(program);
+  if (facts.friction_count > 0) facts.frictions = frictions_of(program);
+  if (facts.event_count > 0) add_events(&facts, program);
+  if (program->watched_series != NULL) {
+    facts.watched_rows = program->watched_series->row_count;
+    facts.watched_acceleration_row = program->watched_series->acceleration_row;
+    facts.watched_acceleration_count = program->watched_series->acceleration_count;
+  }
+  return facts;
+}
