@@ -1,12 +1,23 @@
-/* What a page needs beside the functions of FMI: an instance with callbacks, and what the FMU has said. FMU_SOURCE is the FMU's one file. */
+/*
+ * What a page needs beside the functions of FMI: an instance with callbacks, and what the FMU has said. FMU_SOURCE is the FMU's one
+ * file; without it the functions are elsewhere.
+ */
+#ifdef FMU_SOURCE
 #include FMU_SOURCE
+#else
+#include "fmi2.h"
+#endif
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __wasm__
 #define EXPORT(name) __attribute__((export_name(name)))
+#else
+#define EXPORT(name) __attribute__((visibility("default")))
+#endif
 
 enum { ROOM = 4000 };
 

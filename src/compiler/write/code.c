@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "program/facts/block_facts.h"
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
@@ -71,16 +72,10 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("\n", file);
 }
 
-/* The numbers of a block's coordinates, from 1 on, and negative ones of its constraints, from -1 on; see also oblique.h. */
 static void write_numbers(FILE *file, const char *name, const struct InertiaBlock *block, size_t coordinates) {
+  struct BlockNumbers numbers = block_numbers_of(block, coordinates);
   fprintf(file, "static const int %s[] = {", name);
-  for (size_t i = 0; i < block->count; i++) {
-    size_t row = block->coordinates[i];
-    if (row < coordinates) fprintf(file, "%zu, ", row + 1);
-    else fprintf(file, "-%zu, ", row - coordinates + 1);
-  }
-  if (block->force_count > 0) fprintf(file, "%zu, ", block->force_count);
-  for (size_t k = 0; k < block->force_count; k++) fprintf(file, "%zu, ", block->forces[k]);
+  for (size_t i = 0; i < numbers.count; i++) fprintf(file, "%d, ", numbers.items[i]);
   fputs("};\n\n", file);
 }
 

@@ -1,0 +1,155 @@
+#include "assembly.h"
+
+#include <string.h>
+
+#include "algebra/functions.h"
+#include "base/memory.h"
+#include "events/settlement.h"
+#include "instance/event_laws.h"
+#include "instance/projection.h"
+#include "instance/solver.h"
+#include "interpreter.h"
+#include "library_functions.h"
+#include "oblique.h"
+#include "program/facts/block_facts.h"
+#include "program/facts/facts.h"
+#include "program/facts/switch_facts.h"
+#include "saddle.h"
+#include "support/lu.h"
+
+extern const struct Solver solver_taylor, solver_radau, solver_auto, solver_exact;
+extern const struct ContactLaws contact_laws;
+extern const struct FrictionLaws friction_laws;
+
+static const struct {
+  const char *name;
+  const struct Solver *solver;
+} solvers[] = {{"taylor", &solver_taylor}, {"radau", &solver_radau}, {"auto", &solver_auto}, {"exact", &solver_exact}};
+
+/* NULL where it is SUNDIALS'. */
+static const struct Solver *solver_named(const char *name) {
+  for (size_t i = 0; i < sizeof solvers / sizeof *solvers; i++)
+    if (strcmp(solvers[i].name, name) == 0) return solvers[i].solver;
+  return NULL;
+}
+
+static const uint32_t *code_of(const struct Encoding *encoding, const struct Routine *routine) {
+  struct Words words = {0};
+  if (routine == NULL) return NULL;
+  encode(encoding, routine, &words);
+  return words.items;
+}
+
+static struct Limits limits_in(const struct Encoding *encoding, const struct SeriesProgram *series) {
+  struct Limits limits = {.checks = allocate(series->limit.count, sizeof *limits.checks), .count = series->limit.count};
+  for (size_t i = 0; i < limits.count; i++) limits.checks[i] = encoded_check(encoding, &series->limit.items[i]);
+  return limits;
+}
+
+static void add_series(const struct Encoding *encoding, enum FunctionName first, enum FunctionName order,
+                       const struct SeriesProgram *series) {
+  if (series == NULL) return;
+  interpreter.code[first] = code_of(encoding, series->start);
+  interpreter.order[order] = code_of(encoding, series->order);
+}
+
+static const struct BlockTable *blocks_of(const struct Program *program) {
+  struct BlockTable *tables = allocate(program->blocks.count, sizeof *tables);
+  for (size_t i = 0; i < program->blocks.count; i++) {
+    const struct LoopedBlock *looped = &program->blocks.items[i];
+    const struct InertiaBlock *block = looped->block;
+    struct BlockTable *table = &tables[i];
+    *table = (struct BlockTable){.count = block->count,
+                                 .first_mass = looped->first_mass,
+                                 .first_side = looped->first_side,
+                                 .coordinate = block_numbers_of(block, program->equations->count).items};
+    if (!block_is_full(block)) {
+      table->start = block->start;
+      table->column = block->column;
+    }
+    if (block->force_count > 0) {
+      table->factor = oblique_factor;
+      table->solve_obliquely = oblique_solve;
+    } else if (block->constraint_count > 0) {
+      table->factor = saddle_factor;
+      table->solve = saddle_solve;
+    }
+    if (table->factor != NULL) table->least_forces = saddle_least_forces;
+  }
+  return tables;
+}
+
+static void add_shared_tables(const struct Encoding *encoding) {
+  const struct Program *program = encoding->program;
+  double *numbers = allocate(encoding->numbers.count, sizeof *numbers);
+  FunctionOfOne **of_one = allocate(OPERATION_COUNT, sizeof *of_one);
+  FunctionOfTwo **of_two = allocate(OPERATION_COUNT, sizeof *of_two);
+  for (size_t i = 0; i < encoding->numbers.count; i++)
+    numbers[i] = graph_value(program->model->graph, encoding->numbers.nodes[i]);
+  for (enum Operation function = 0; function < OPERATION_COUNT; function++) {
+    size_t place = encoding->function[function];
+    if (place > 0 && operation_arity(function) == 1) of_one[place - 1] = function_of_one(function_in_c(function));
+    if (place > 0 && operation_arity(function) == 2) of_two[place - 1] = function_of_two(function_in_c(function));
+  }
+  interpreter.tables = (struct InstructionTables){numbers,
+                                                  of_one,
+                                                  of_two,
+                                                  blocks_of(program),
+                                                  encoding->local_count,
+                                                  program->blocks.mass_count,
+                                                  program->blocks.side_count};
+}
+
+static void add_results(const struct Encoding *encoding) {
+  const struct Program *program = encoding->program;
+  size_t count = program->interface->result_count, *alone = allocate(count, sizeof *alone);
+  for (size_t i = 0; i < count; i++) alone[i] = i;
+  interpreter.results = encode_all(encoding, program->result, program->leader, count);
+  interpreter.results_along = encode_all(encoding, program->result_along, alone, count);
+  interpreter.values = allocate(interpreter.results.largest_place + 1, sizeof(double));
+}
+
+static void fill_interpreter(const struct Encoding *encoding) {
+  const struct Program *program = encoding->program;
+  interpreter.coordinate_count = program->equations->count;
+  interpreter.prepared_count = program->prepared->count;
+  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++) interpreter.code[i] = code_of(encoding, program->routines[i]);
+  add_series(encoding, FUNCTION_START, FUNCTION_SERIES, program->series);
+  add_series(encoding, FUNCTION_OUTPUT_SERIES, FUNCTION_OUTPUT_SERIES, program->output_series);
+  add_series(encoding, FUNCTION_WATCHED_LIMIT, FUNCTION_WATCHED_LIMIT, program->watched_series);
+  if (program->series != NULL) {
+    interpreter.mass_row = program->series->mass_row;
+    interpreter.limits = limits_in(encoding, program->series);
+  }
+  if (program->watched_series != NULL) interpreter.watched_limits = limits_in(encoding, program->watched_series);
+  add_shared_tables(encoding);
+  add_results(encoding);
+}
+
+static struct SwitchTable *switches_of(const struct Program *program) {
+  if (program->equations->switching == NULL) return NULL;
+  struct SwitchTable *switches = allocate(1, sizeof *switches);
+  *switches = switch_facts_of(program);
+  if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
+  if (switches->friction_count > 0) switches->friction_laws = &friction_laws;
+  return switches;
+}
+
+const char *assemble(const struct Program *program, const char *guid) {
+  const struct Solver *solver = program->solver != NULL ? solver_named(program->solver) : NULL;
+  if (program->solver != NULL && solver == NULL) return program->equations->method->name;
+  struct Encoding *encoding = encoding_create(program);
+  struct Lagrangian *system = allocate(1, sizeof *system);
+  struct SwitchTable *switches = switches_of(program);
+  *system = facts_of(program, encoding_work_count(encoding));
+  system->guid = guid;
+  system->solver = solver;
+  system->switches = switches;
+  system->event_laws = switches != NULL ? &event_laws : NULL;
+  system->constraints.projection = has_function(program, FUNCTION_ACCELERATIONS) ? &projection : NULL;
+  if (program->lu != NULL) system->implicit.lu = strcmp(program->lu, "lu_sparse") == 0 ? &lu_sparse : &lu_dense;
+  set_functions(system, switches, program);
+  fill_interpreter(encoding);
+  system_in_memory = system;
+  return NULL;
+}
