@@ -63,7 +63,9 @@ void write_plain_lines(void) {
 
 #else
 
+#ifndef __wasi__
 #include <sys/resource.h>
+#endif
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 enum { HAS_SANITIZER = 1 };
@@ -104,12 +106,19 @@ bool is_absolute(const char *path) {
   return *path == '/';
 }
 
+#ifdef __wasi__
+/* Its module has a limit of its own. */
+void limit_memory(size_t bytes) {
+  (void)bytes;
+}
+#else
 void limit_memory(size_t bytes) {
   struct rlimit limit;
   if (HAS_SANITIZER || getrlimit(RLIMIT_AS, &limit) != 0) return;
   if (limit.rlim_cur > bytes) limit.rlim_cur = bytes;
   setrlimit(RLIMIT_AS, &limit);
 }
+#endif
 
 void write_plain_lines(void) {
 }
