@@ -18,6 +18,11 @@ async function unpacked(text) {
   return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 
+// Of the text itself, or of one that was packed.
+async function textOf({ text, packed }) {
+  return text ?? new TextDecoder().decode(await unpacked(packed));
+}
+
 async function load(text) {
   const script = document.createElement("script");
   script.src = URL.createObjectURL(new Blob([await unpacked(text)], { type: "text/javascript" }));

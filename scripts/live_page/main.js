@@ -6,8 +6,15 @@ const GHOST = 1e-9; // by which its start differs
 const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max"];
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
-const { description } = data;
-const shownVariables = data.shown.map((place) => description.variables[place]);
+const { recording, laboratory } = data;
+const parsed = async (content) => new DOMParser().parseFromString(await textOf(content), "text/xml");
+const file = await parsed(data.modelDescription);
+const description = descriptionOf(file), sceneParts = sceneOf(file);
+for (const variable of description.variables) if (variable.name in (data.start ?? {})) variable.start = data.start[variable.name];
+const pulls = data.pulled && sceneParts.length > 0 ? pullsOf(await parsed(data.pulled), description) : null;
+const shownOnes = shownPlaces(description, sceneParts, recording?.names);
+const shownVariables = shownOnes.map((place) => description.variables[place]);
+const shownWindow = recording ? recording.duration : Math.min(WINDOW, description.duration);
 const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
 const history = new History(shownVariables.length);
 const sections = new History(shownVariables.length); // a sample at the end of each period
@@ -15,8 +22,7 @@ const controls = new Map(); // by the place of the variable
 const plots = [];
 const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests, and the curious
 let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
-const { recording } = data;
-const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? data.window : description.duration))));
+const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
 let resetDue = null; // the timer of a reset that waits for more to be set
 
@@ -96,7 +102,7 @@ const answers = {
 
 // For a view of all of these samples.
 function buildScene(samples) {
-  if (!data.hasScene) return;
+  if (!scene) return;
   scene.build(samples);
   $("turning").parentElement.hidden = !scene.plane;
   $("forcesChoice").hidden = scene.forces.length === 0;
@@ -149,7 +155,7 @@ function set(place, value) {
 }
 
 function addPlots() {
-  for (const { places, across } of data.plots) {
+  for (const { places, across } of firstPlots(shownVariables)) {
     const plot = new Plot(history, sections, shownVariables, places, across);
     plots.push(plot);
     $("plots").append(plot.element);
@@ -192,7 +198,7 @@ function frame(now) {
       if (at === history.length - 1) pullOn();
       scene.draw(history, at);
     }
-    const first = history.placeOf(history.time(history.length - 1) - data.window);
+    const first = history.placeOf(history.time(history.length - 1) - shownWindow);
     for (const plot of plots) plot.draw(first, history.length, at);
   }
   requestAnimationFrame(frame);
@@ -262,9 +268,10 @@ live.run = (until) =>
   });
 
 async function playRecording() {
-  const numbers = new Float64Array(await unpacked(recording.rows)), { width } = recording;
+  const numbers = new Float64Array(await unpacked(recording.rows)), width = 1 + recording.names.length;
   history.most = numbers.length / width;
-  for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [numbers.subarray(i + 1, i + width)]);
+  const columns = live.names.map((name) => 1 + recording.names.indexOf(name));
+  for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [Float64Array.from(columns, (column) => numbers[i + column])]);
   buildScene(history.samples.map((runs) => runs[0]));
   $("past").max = history.length - 1;
   viewFrom(0);
@@ -292,8 +299,8 @@ async function runFmu() {
   worker = new Worker(URL.createObjectURL(new Blob([await unpacked(data.worker)], { type: "text/javascript" })));
   worker.onmessage = (event) => answers[event.data.name](event.data);
   setSpeed();
-  const [wasm, pulledWasm] = apart(await unpacked(data.wasm));
-  worker.postMessage({ name: "begin", wasm, pulledWasm, pulls: data.pulls, description, shown: data.shown, set: settingsOfAddress() });
+  const modules = laboratory ? { laboratory: { ...laboratory, bytes: window.parent.laboratoryBytes } } : { modules: apart(await unpacked(data.wasm)) };
+  worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownOnes, set: settingsOfAddress() });
   await started;
 }
 
@@ -304,13 +311,13 @@ async function begin() {
   addKeys();
   addVideo();
   addSystem();
-  if (data.hasScene) {
+  if (sceneParts.length > 0) {
     await load(data.renderer);
-    scene = live.scene = new Scene($("scene"), data.scene, (name) => columnOf.get(name) ?? -1, valueOf);
+    scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf);
     addPulling();
     scene.wished = { trails: true, names: false, turning: false, forces: true };
   } else $("view").remove();
-  document.body.classList.toggle("plain", !data.hasScene);
+  document.body.classList.toggle("plain", sceneParts.length === 0);
   document.body.classList.toggle("recorded", Boolean(recording));
   for (const name of ["link", "ghost", "periodChoice"]) $(name).hidden ||= Boolean(recording);
   await (recording ? playRecording() : runFmu());

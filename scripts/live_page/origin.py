@@ -8,6 +8,9 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 
 
+PULL_OF = "pull.of."  # with which the names of inputs begin that lagc --pull adds for bodies
+
+
 class Origin(NamedTuple):
     system: Path  # its file: a system, or the URDF of a robot
     lagc: Path
@@ -16,7 +19,7 @@ class Origin(NamedTuple):
 
 def pulled_system(origin, source, folder):
     """
-    modelDescription.xml as a tree, and the one file of C, of the system whose bodies can be pulled, solved by the method of this
+    modelDescription.xml in bytes, and the one file of C, of the system whose bodies can be pulled, solved by the method of this
     source of its FMU. None where lagc refuses: a method for linear systems alone takes no such force.
     """
     method = re.search(r"\.solver = &solver_([a-z]+)", Path(source).read_text(encoding="utf-8"))
@@ -25,7 +28,12 @@ def pulled_system(origin, source, folder):
     if lagc.returncode != 0:
         return None
     folder = Path(folder)
-    tree = ElementTree.parse(folder / "modelDescription.xml").getroot()
+    description = (folder / "modelDescription.xml").read_bytes()
     pulled = folder / "pulled.c"
-    pulled.write_text(origin.one_file(folder / "system.c", tree.get("modelName")), encoding="utf-8")
-    return tree, pulled
+    pulled.write_text(origin.one_file(folder / "system.c", ElementTree.fromstring(description).get("modelName")), encoding="utf-8")
+    return description, pulled
+
+
+def can_be_pulled(description):
+    """Whether that modelDescription.xml has inputs that pull bodies."""
+    return any(variable.get("name").startswith(PULL_OF) for variable in ElementTree.fromstring(description).find("ModelVariables"))

@@ -8,12 +8,13 @@ import re
 import tempfile
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
 from ..problem import Problem
-from .description import description_of, first_plots, pulls_of, read_tree, scene_of, shown_variables
-from .origin import pulled_system
+from .description import scene_of
+from .origin import can_be_pulled, pulled_system
 from .wasm import compile_to_wasm
 
 HERE = Path(__file__).resolve().parent
@@ -21,9 +22,8 @@ HERE = Path(__file__).resolve().parent
 THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
 THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
-SCRIPTS = ("history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "main.js")
+SCRIPTS = ("description.js", "history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "main.js")
 WORKER = ("fmu.js", "sides.js", "worker.js")
-WINDOW = 20.0  # s that plots show, or the experiment where that is shorter
 MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a simulation that is played
 SHORTEST, LONGEST = 2.0, 60.0  # s that are played as they are; others take
 PLAYED = 10.0  # s
@@ -81,72 +81,84 @@ def one_source(fmu, folder):
         return archive.extract(names[0], folder)
 
 
-def _page(description, scene, shown, window, content):
-    """The page as text; content: what it runs or plays."""
-    data = {
-        "description": description,
-        "scene": scene,
-        "hasScene": bool(scene),
-        "shown": shown,
-        "plots": first_plots(description, shown),
-        "window": window,
-        "renderer": renderer() if scene else "",
-        "licenses": licenses(bool(scene), "wasm" in content),
-        "script": _packed(f"(() => {{\n{_script(SCRIPTS)}\n}})();\n".encode()),
-        **content,
-    }
-    parts = {
-        "TITLE": html.escape(description["title"]),
-        "STYLE": (HERE / "page.css").read_text(encoding="utf-8"),
-        "DATA": json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
-        "SCRIPT": (HERE / "begin.js").read_text(encoding="utf-8"),
-    }
-    return re.sub("@(TITLE|STYLE|DATA|SCRIPT)@", lambda part: parts[part[1]], (HERE / "page.html").read_text(encoding="utf-8"))
+def _text(content):
+    """A text of the page, in bytes, packed; begin.js has it back."""
+    return {"packed": _packed(content)}
 
 
-def _modules(source, origin, folder, description):
+def _common(has_scene, has_fmu):
+    """What pages of all systems have."""
+    return {
+        "renderer": renderer() if has_scene else "",
+        "licenses": licenses(has_scene, has_fmu),
+        "script": _packed(f"(async () => {{\n{_script(SCRIPTS)}\n}})();\n".encode()),
+    }
+
+
+def _filled(template, **parts):
+    """The text of a file in which names between @ stand for parts."""
+    return re.sub("@([A-Z]+)@", lambda part: parts[part[1]], (HERE / template).read_text(encoding="utf-8"))
+
+
+def _json(data):
+    return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _page(title, data):
+    """The page as text; data: what it runs or plays, and _common()."""
+    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "begin.js"))
+    return _filled("page.html", TITLE=html.escape(title), STYLE=style, DATA=data if isinstance(data, str) else _json(data), SCRIPT=script)
+
+
+def _title(tree):
+    return tree.get("description") or tree.get("modelName")
+
+
+def _modules(source, pulled):
     """The FMU in WebAssembly, and where bodies can be pulled what runs then."""
-    modules, found = [compile_to_wasm(source)], origin and pulled_system(origin, source, folder)
-    pulls = pulls_of(found[0], description) if found else None
-    if pulls:
-        modules.append(compile_to_wasm(found[1]))
-    return {"pulls": pulls, **_interleaved(modules)}
+    return _interleaved([compile_to_wasm(one) for one in (source, pulled) if one])
 
 
 def page_of(fmu, origin=None):
     """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text; where its Origin is known, bodies can be pulled and the system is there to be saved."""
-    tree = read_tree(fmu)
+    with zipfile.ZipFile(fmu) as archive:
+        description, equations = (archive.read(name) for name in ("modelDescription.xml", "documentation/index.html"))
+    tree = ElementTree.fromstring(description)
     if tree.get("fmiVersion") != "2.0":
         raise Problem(f"{Path(fmu).name} is of FMI {tree.get('fmiVersion')}; expected the one of FMI 2.0")
-    description, scene = description_of(tree), scene_of(tree)
-    with zipfile.ZipFile(fmu) as archive:
-        content = {"worker": _packed(_script(WORKER).encode()), "equations": _packed(archive.read("documentation/index.html"))}
+    has_scene = bool(scene_of(tree))
+    data = {"modelDescription": _text(description), "equations": _text(equations), "worker": _packed(_script(WORKER).encode()), **_common(has_scene, has_fmu=True)}
     with tempfile.TemporaryDirectory() as folder:
-        content |= _modules(one_source(fmu, folder), origin if scene else None, folder, description)
+        source = one_source(fmu, folder)
+        found, pulled = pulled_system(origin, source, folder) if origin and has_scene else None, None
+        if found and can_be_pulled(found[0]):
+            data["pulled"], pulled = _text(found[0]), found[1]
+        data |= _modules(source, pulled)
     if origin:
-        content["system"] = Path(origin.system).read_text(encoding="utf-8")
-    return _page(description, scene, shown_variables(tree, description, scene), min(WINDOW, description["duration"]), content)
+        data["system"] = Path(origin.system).read_text(encoding="utf-8")
+    return _page(_title(tree), data)
 
 
-def recording_of(result, names):
-    """Rows of a simulation's result, a structured array, as the page reads them: the time and these variables, as many as it can show."""
+def recording_of(result):
+    """Rows of a simulation's result, a structured array, as the page reads them: the time and all variables, as many rows as it can show."""
+    names = [name for name in result.dtype.names if name != "time"]
     count = max(2, min(MOST_ROWS, len(result), MOST_NUMBERS // (len(names) + 1)))
     rows = np.unique(np.linspace(0, len(result) - 1, count).round().astype(int))
     numbers = np.stack([result[name][rows] for name in ("time", *names)], axis=1)
     duration = float(result["time"][-1] - result["time"][0])
     speed = 1.0 if SHORTEST <= duration <= LONGEST or duration == 0.0 else duration / PLAYED
-    return {"rows": _packed(numbers.astype("<f8").tobytes()), "width": len(names) + 1, "speed": speed}
+    return {"rows": _packed(numbers.astype("<f8").tobytes()), "names": names, "duration": duration, "speed": speed}
 
 
 def page_of_motion(tree, result, start):
     """The page that plays the result of simulating an FMU, whose modelDescription.xml is the tree, from these start values of all that have one, as text."""
-    description, scene = description_of(tree), scene_of(tree)
-    for variable in description["variables"]:
-        if variable["name"] in start:
-            variable["start"] = float(start[variable["name"]])
-    shown = [place for place in shown_variables(tree, description, scene) if description["variables"][place]["name"] in result.dtype.names]
-    recording = recording_of(result, [description["variables"][place]["name"] for place in shown])
-    return _page(description, scene, shown, float(result["time"][-1] - result["time"][0]), {"recording": recording})
+    data = {
+        "modelDescription": _text(ElementTree.tostring(tree)),
+        "recording": recording_of(result),
+        "start": {name: float(value) for name, value in start.items()},
+        **_common(bool(scene_of(tree)), has_fmu=False),
+    }
+    return _page(_title(tree), data)
 
 
 def write_page(fmu, path, origin=None):

@@ -19,7 +19,7 @@ const rayAt = (event) => {
 
 // [place among the things, point in space] of what can be pulled there.
 function hitAt(event, sample) {
-  const canBe = (i) => i !== undefined && data.pulls.bodies[scene.things[i].name] !== undefined, found = [];
+  const canBe = (i) => i !== undefined && pulls.bodies[scene.things[i].name] !== undefined, found = [];
   const ray = rayAt(event), look = (object, i) => canBe(i) && ray.intersectObject(object, true).slice(0, 1).forEach(({ distance, point }) => found.push([distance, i, point]));
   scene.objects.forEach((object, i) => look(object, i));
   for (const { holder, mesh } of scene.rods) look(mesh, scene.byName.get(holder.of ?? holder.to));
@@ -85,7 +85,7 @@ function pullOn() {
 }
 
 function addPulling() {
-  if (!data.hasScene || !data.pulls) return;
+  if (!pulls) return;
   const canvas = scene.renderer.domElement;
   thread = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xd9342b }));
   thread.frustumCulled = false;

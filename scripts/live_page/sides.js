@@ -2,10 +2,9 @@
 "use strict";
 
 class Side {
-  // description: of the variables with their references there; shown: the places of those that are told of.
-  constructor(bytes, description, shown) {
-    this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
-    this.wasm._initialize();
+  // wasm: the functions of FMI and of driver.c; description: of the variables with their references there; shown: the places of those that are told of.
+  constructor(wasm, description, shown) {
+    this.wasm = wasm;
     this.description = description;
     this.shown = shown;
     this.references = shown.map((place) => description.variables[place].reference);

@@ -23,7 +23,7 @@ function systemNow() {
 function addSystem() {
   $("equations").hidden = !data.equations;
   $("equations").addEventListener("click", async () => {
-    $("equationsShown").querySelector("iframe").srcdoc ||= new TextDecoder().decode(await unpacked(data.equations));
+    $("equationsShown").querySelector("iframe").srcdoc ||= await textOf(data.equations);
     $("equationsShown").showModal();
   });
   $("system").hidden = !data.system || !data.system.includes("<system");

@@ -5,7 +5,7 @@ const FRAMES_A_SECOND = 30;
 
 function addVideo() {
   const button = $("video");
-  button.hidden = !data.hasScene || !window.MediaRecorder;
+  button.hidden = sceneParts.length === 0 || !window.MediaRecorder;
   let recorder = null;
   button.addEventListener("click", () => {
     if (recorder) return recorder.stop();

@@ -7,7 +7,7 @@ const SAMPLES = 16; // at most, of a tick
 const SAVED = 600; // states to go back to
 const PREVIEW = 150; // ms, in which what there will be to see is looked at
 
-let description, pulls, pulledWasm;
+let description, pulls, wasmOf; // wasmOf(isPulled): the functions of a module of its own
 let shipped, pulled = null, side; // the FMU as it is, the one whose bodies can be pulled, and which of them runs
 let values = [new Map(), new Map()]; // what was set, by the place of the variable; of each FMU
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
@@ -122,7 +122,7 @@ function startAnew() {
 function goOnPulled() {
   if (side !== shipped) return;
   const variables = description.variables.map((variable, place) => ({ ...variable, reference: pulls.references[place] }));
-  pulled ||= new Side(pulledWasm, { ...description, guid: pulls.guid, variables }, shipped.shown);
+  pulled ||= new Side(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
   while (pulled.fmus.length < shipped.fmus.length) pulled.add();
   pulled.fmus.length = shipped.fmus.length;
   pulled.fmus.forEach((fmu, i) => fmu.start([...values[i], ...shipped.statesOf(shipped.fmus[i])], time));
@@ -130,10 +130,18 @@ function goOnPulled() {
   side = pulled;
 }
 
+// What an FMU's module offers.
+function instanceOf(bytes) {
+  const wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
+  wasm._initialize();
+  return wasm;
+}
+
 const orders = {
   begin(message) {
-    ({ description, pulls, pulledWasm } = message);
-    side = shipped = new Side(message.wasm, description, message.shown);
+    ({ description, pulls } = message);
+    wasmOf = message.laboratory ? (isPulled) => derivedIn(message.laboratory, isPulled) : (isPulled) => instanceOf(message.modules[Number(isPulled)]);
+    side = shipped = new Side(wasmOf(false), description, message.shown);
     shipped.add();
     orders.reset(message);
     preview();

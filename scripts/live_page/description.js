@@ -1,0 +1,106 @@
+// What the page has to know of an FMU, from its modelDescription.xml.
+"use strict";
+
+// The types of FMI 2.0, and what those of FMI 3.0 are called there.
+const TYPES = { Real: "Real", Integer: "Integer", Boolean: "Boolean", Float64: "Real", Int32: "Integer", Int64: "Integer" };
+const PULL = "pull."; // with which the names of inputs begin that lagc --pull adds
+const MANY = 400; // of more continuous variables than that, only what tells of the motion is shown
+const POSITIONS = ["x", "y", "z", "angle", ...[1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => `R${i}${j}`))];
+const EXPERIMENT = { startTime: 0, stopTime: 10 }; // where the author gives none
+const WINDOW = 20; // s that plots show, or the experiment where that is shorter
+
+const attributesOf = (element) => Object.fromEntries([...element.attributes].map(({ name, value }) => [name, value]));
+
+// The attributes of each variable, with its type; FMI 2.0 has them on two elements, FMI 3.0 on one.
+function variablesIn(file) {
+  const parts = (variable) => [variable, ...variable.children].filter((part) => part.tagName in TYPES);
+  return [...file.querySelector("ModelVariables").children].flatMap((variable) =>
+    parts(variable).map((part) => ({ ...attributesOf(variable), ...attributesOf(part), type: TYPES[part.tagName] })),
+  );
+}
+
+const numberOf = (text) => (text === "true" ? 1 : text === "false" ? 0 : Number(text));
+
+// How the page lets it be set: as an input, a parameter, a start value; null where it is only seen.
+function roleOf({ causality, variability, initial, type }) {
+  if (causality === "input" || causality === "parameter") return causality;
+  const isState = ["output", "local"].includes(causality) && variability === "continuous" && ["exact", "approx"].includes(initial);
+  return isState && type === "Real" ? "start" : null;
+}
+
+function variableOf(attributes) {
+  const known = { name: attributes.name, reference: Number(attributes.valueReference), type: attributes.type };
+  const role = roleOf(attributes);
+  if (role) Object.assign(known, { role, start: numberOf(attributes.start ?? "0") });
+  known.isOutput = attributes.causality === "output";
+  known.isMoving = attributes.variability === "continuous" && !["independent", "parameter"].includes(attributes.causality);
+  known.isFixed = attributes.variability === "fixed";
+  for (const name of ["min", "max"]) if (name in attributes) known[name] = Number(attributes[name]);
+  for (const name of ["unit", "description"]) if (attributes[name]) known[name] = attributes[name];
+  return known;
+}
+
+// Names, the experiment, and the variables, each with how it may be set.
+function descriptionOf(file) {
+  const root = file.documentElement, experiment = file.querySelector("DefaultExperiment");
+  const given = (name, otherwise) => (experiment?.hasAttribute(name) ? Number(experiment.getAttribute(name)) : otherwise);
+  const startTime = given("startTime", EXPERIMENT.startTime), duration = given("stopTime", EXPERIMENT.stopTime) - startTime;
+  return {
+    name: root.getAttribute("modelName"),
+    guid: root.getAttribute("guid"),
+    startTime,
+    duration,
+    stepSize: given("stepSize", duration / 1000),
+    variables: variablesIn(file).map(variableOf),
+  };
+}
+
+// Of the FMU whose bodies can be pulled: the references of all variables of the description, and of what pulls; null where nothing moves.
+function pullsOf(file, description) {
+  const references = new Map(variablesIn(file).map((variable) => [variable.name, Number(variable.valueReference)]));
+  const inputs = new Map([...references].filter(([name]) => name.startsWith(PULL)).map(([name, reference]) => [name.slice(PULL.length), reference]));
+  const bodies = Object.fromEntries([...inputs].filter(([name]) => name.startsWith("of.")).map(([name, reference]) => [name.slice("of.".length), reference]));
+  if (Object.keys(bodies).length === 0) return null;
+  return {
+    guid: file.documentElement.getAttribute("guid"),
+    references: description.variables.map((variable) => references.get(variable.name)),
+    pointer: ["x", "y", "z", "u", "v", "w", "time"].map((name) => inputs.get(name)),
+    bodies,
+  };
+}
+
+// The elements of <scene>, see modelDescription/scene.h: their attributes, with the tag.
+function sceneOf(file) {
+  const places = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
+  return [...file.querySelectorAll(places.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
+}
+
+// The names of those that may tell where things are, and by what forces they are held; an FMU has some of them.
+function variablesOfScene(scene) {
+  const positions = scene.filter((thing) => "name" in thing).flatMap((thing) => POSITIONS.map((component) => `${thing.name}.${component}`));
+  return new Set([...positions, ...scene.flatMap((thing) => ["force", "force1", "force2"].filter((name) => name in thing).map((name) => thing[name]))]);
+}
+
+// The places of those that can be plotted, and of those that tell where things are; of these names alone where they are given.
+function shownPlaces(description, scene, names) {
+  const places = [...description.variables.keys()].filter((place) => description.variables[place].isMoving && description.variables[place].type === "Real");
+  const ofScene = variablesOfScene(scene);
+  const tells = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
+  const few = places.length > MANY ? places.filter((place) => tells(description.variables[place])) : places;
+  return names ? few.filter((place) => names.includes(description.variables[place].name)) : few;
+}
+
+// What is drawn at first: coordinates by their units, their velocities, energies, and the first coordinate against its velocity.
+function firstPlots(variables) {
+  const columns = [...variables.keys()];
+  const states = columns.filter((k) => variables[k].role === "start"), velocities = states.filter((k) => variables[k].unit?.endsWith("/s"));
+  const coordinates = states.filter((k) => !velocities.includes(k));
+  const outputs = columns.filter((k) => !variables[k].role);
+  const first = [coordinates, states, outputs].find((some) => some.length > 0) ?? [];
+  const sameUnit = first.filter((k) => variables[k].unit === variables[first[0]].unit).slice(0, 6);
+  const energies = ["kineticEnergy", "potentialEnergy", "totalEnergy", "energy"].map((name) => variables.findIndex((variable) => variable.name === name)).filter((k) => k >= 0);
+  const plots = [{ places: sameUnit, across: -1 }];
+  if (coordinates.length > 0 && velocities.length > 0) plots.push({ places: [velocities[0]], across: coordinates[0] });
+  if (energies.length > 0) plots.push({ places: energies, across: -1 });
+  return plots;
+}
