@@ -1,17 +1,18 @@
-"""Writes the page in which an FMU runs: live.py FMU [PAGE] [--system FILE --build FOLDER]"""
+"""Writes the page in which an FMU runs: live.py FMU [PAGE] [--system FILE --build FOLDER [--edit]]"""
 
 import argparse
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from scripts.live_page.editor import write_editor
 from scripts.live_page.origin import Origin
 from scripts.live_page.page import write_page
 from scripts.one_file import one_file
 from scripts.problem import Problem
 
-
 ROOT = Path(__file__).resolve().parent.parent
+LABORATORY = ROOT / "build" / "laboratory" / "laboratory.wasm"  # of scripts/build-laboratory
 
 
 def origin_in(build, system):
@@ -25,10 +26,14 @@ def main():
     parser.add_argument("page", type=Path, nargs="?")
     parser.add_argument("--system", type=Path, help="the file that the FMU was made of: then its bodies can be pulled, and it can be saved")
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="the build folder that made it")
+    parser.add_argument("--edit", action="store_true", help="the system can be changed in the page")
     arguments = parser.parse_args()
+    if arguments.edit and not arguments.system:
+        parser.error("--edit needs --system")
     origin = origin_in(arguments.build, arguments.system) if arguments.system else None
     try:
-        path = write_page(arguments.fmu, arguments.page or Path("build/live") / f"{arguments.fmu.stem}.html", origin)
+        page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}.html"
+        path = write_editor(arguments.system, LABORATORY, page) if arguments.edit else write_page(arguments.fmu, page, origin)
     except Problem as problem:
         sys.exit(f"scripts/live: {problem}")
     print(path.resolve())

@@ -1,23 +1,6 @@
 // The scripts of the page are packed in it.
 "use strict";
 
-// Of five letters of base 85 four bytes, the first the largest.
-function bytesOf(text) {
-  const letters = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~", values = {};
-  [...letters].forEach((letter, value) => (values[letter] = value));
-  const groups = Math.ceil(text.length / 5), whole = text.padEnd(5 * groups, "~"), view = new DataView(new ArrayBuffer(4 * groups));
-  for (let i = 0; i < groups; i++) {
-    let number = 0;
-    for (let k = 0; k < 5; k++) number = 85 * number + values[whole[5 * i + k]];
-    view.setUint32(4 * i, number);
-  }
-  return new Uint8Array(view.buffer, 0, 4 * groups - (whole.length - text.length));
-}
-
-async function unpacked(text) {
-  return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-}
-
 // Of the text itself, or of one that was packed.
 async function textOf({ text, packed }) {
   return text ?? new TextDecoder().decode(await unpacked(packed));

@@ -43,9 +43,18 @@ class Laboratory {
     return new DataView(this.wasm.memory.buffer);
   }
 
-  // The name of a file in the folder, without what stands before it.
+  // A path in the folder, as the names of files are.
   nameAt(place, length) {
-    return new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, place, length)).replace(/^(\.?\/)+/, "");
+    const parts = [];
+    for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, place, length)).split("/")) {
+      if (part === "..") parts.pop();
+      else if (part !== "" && part !== ".") parts.push(part);
+    }
+    return parts.join("/");
+  }
+
+  isFolder(name) {
+    return name === "" || [...this.files.keys()].some((file) => file.startsWith(`${name}/`));
   }
 
   // The pieces of memory of a list of those.
@@ -105,7 +114,7 @@ class Laboratory {
 
   tellOfFile(folder, flags, path, length, place) {
     const name = this.nameAt(path, length), content = this.files.get(name);
-    if (!content && name !== "" && name !== ".") return NO_ENTRY;
+    if (!content && !this.isFolder(name)) return NO_ENTRY;
     new Uint8Array(this.wasm.memory.buffer).fill(0, place, place + 64);
     this.view().setUint8(place + 16, content ? REGULAR_FILE : DIRECTORY);
     this.view().setBigUint64(place + 32, BigInt(content ? content.length : 0), true);

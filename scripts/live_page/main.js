@@ -304,7 +304,15 @@ async function runFmu() {
   await started;
 }
 
+// Of a system that was derived in the browser.
+function showTitle() {
+  const title = file.documentElement.getAttribute("description") || description.name;
+  document.title = title;
+  document.querySelector("h1").textContent = title;
+}
+
 async function begin() {
+  if (laboratory) showTitle();
   if (!recording) addControls();
   addPlots();
   addActions();
@@ -323,6 +331,7 @@ async function begin() {
   await (recording ? playRecording() : runFmu());
   requestAnimationFrame(frame);
   document.body.dataset.ready = "true";
+  if (data.plays) play();
 }
 
 live.started = begin();

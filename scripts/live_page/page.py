@@ -23,14 +23,15 @@ THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
 THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
 SCRIPTS = ("description.js", "history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "main.js")
-WORKER = ("fmu.js", "sides.js", "worker.js")
+BEGIN = ("unpacking.js", "begin.js")
+COMMON_WORKER = ("fmu.js", "sides.js", "worker.js")
 MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a simulation that is played
 SHORTEST, LONGEST = 2.0, 60.0  # s that are played as they are; others take
 PLAYED = 10.0  # s
 PIECE = 8192  # bytes of WebAssembly
 
 
-def _packed(content):
+def packed(content):
     """By gzip, in letters of base 85, of which "<" would end scripts of a page; begin.js unpacks it."""
     return base64.b85encode(gzip.compress(content, 9, mtime=0)).decode().replace("<", ",")
 
@@ -42,10 +43,10 @@ def _interleaved(modules):
     """
     count = -(-len(modules[0]) // PIECE)
     pieces = (module[len(module) * i // count : len(module) * (i + 1) // count] for i in range(count) for module in modules)
-    return {"wasm": _packed(b"".join(pieces)), "lengths": [len(module) for module in modules], "pieces": count}
+    return {"wasm": packed(b"".join(pieces)), "lengths": [len(module) for module in modules], "pieces": count}
 
 
-def _script(names):
+def script_of(names):
     return "\n".join((HERE / name).read_text(encoding="utf-8") for name in names)
 
 
@@ -53,7 +54,7 @@ def renderer():
     """three.js, packed."""
     if THREE is None:
         raise Problem("there is no three.js, which draws the page; install Debian's package libjs-three")
-    return _packed("\n".join((THREE / name).read_text(encoding="utf-8") for name in THREE_FILES).encode())
+    return packed("\n".join((THREE / name).read_text(encoding="utf-8") for name in THREE_FILES).encode())
 
 
 def licenses(has_scene, has_fmu):
@@ -83,31 +84,31 @@ def one_source(fmu, folder):
 
 def _text(content):
     """A text of the page, in bytes, packed; begin.js has it back."""
-    return {"packed": _packed(content)}
+    return {"packed": packed(content)}
 
 
-def _common(has_scene, has_fmu):
+def common(has_scene, has_fmu):
     """What pages of all systems have."""
     return {
         "renderer": renderer() if has_scene else "",
         "licenses": licenses(has_scene, has_fmu),
-        "script": _packed(f"(async () => {{\n{_script(SCRIPTS)}\n}})();\n".encode()),
+        "script": packed(f"(async () => {{\n{script_of(SCRIPTS)}\n}})();\n".encode()),
     }
 
 
-def _filled(template, **parts):
+def filled(template, **parts):
     """The text of a file in which names between @ stand for parts."""
     return re.sub("@([A-Z]+)@", lambda part: parts[part[1]], (HERE / template).read_text(encoding="utf-8"))
 
 
-def _json(data):
+def json_of(data):
     return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _page(title, data):
-    """The page as text; data: what it runs or plays, and _common()."""
-    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "begin.js"))
-    return _filled("page.html", TITLE=html.escape(title), STYLE=style, DATA=data if isinstance(data, str) else _json(data), SCRIPT=script)
+def page_of_data(title, data):
+    """The page as text; data: what it runs or plays, and common(); or a text that stands for them."""
+    style, content = (HERE / "page.css").read_text(encoding="utf-8"), data if isinstance(data, str) else json_of(data)
+    return filled("page.html", TITLE=html.escape(title), STYLE=style, DATA=content, SCRIPT=script_of(BEGIN))
 
 
 def _title(tree):
@@ -127,7 +128,7 @@ def page_of(fmu, origin=None):
     if tree.get("fmiVersion") != "2.0":
         raise Problem(f"{Path(fmu).name} is of FMI {tree.get('fmiVersion')}; expected the one of FMI 2.0")
     has_scene = bool(scene_of(tree))
-    data = {"modelDescription": _text(description), "equations": _text(equations), "worker": _packed(_script(WORKER).encode()), **_common(has_scene, has_fmu=True)}
+    data = {"modelDescription": _text(description), "equations": _text(equations), "worker": packed(script_of(COMMON_WORKER).encode()), **common(has_scene, has_fmu=True)}
     with tempfile.TemporaryDirectory() as folder:
         source = one_source(fmu, folder)
         found, pulled = pulled_system(origin, source, folder) if origin and has_scene else None, None
@@ -136,7 +137,7 @@ def page_of(fmu, origin=None):
         data |= _modules(source, pulled)
     if origin:
         data["system"] = Path(origin.system).read_text(encoding="utf-8")
-    return _page(_title(tree), data)
+    return page_of_data(_title(tree), data)
 
 
 def recording_of(result):
@@ -147,7 +148,7 @@ def recording_of(result):
     numbers = np.stack([result[name][rows] for name in ("time", *names)], axis=1)
     duration = float(result["time"][-1] - result["time"][0])
     speed = 1.0 if SHORTEST <= duration <= LONGEST or duration == 0.0 else duration / PLAYED
-    return {"rows": _packed(numbers.astype("<f8").tobytes()), "names": names, "duration": duration, "speed": speed}
+    return {"rows": packed(numbers.astype("<f8").tobytes()), "names": names, "duration": duration, "speed": speed}
 
 
 def page_of_motion(tree, result, start):
@@ -156,9 +157,9 @@ def page_of_motion(tree, result, start):
         "modelDescription": _text(ElementTree.tostring(tree)),
         "recording": recording_of(result),
         "start": {name: float(value) for name, value in start.items()},
-        **_common(bool(scene_of(tree)), has_fmu=False),
+        **common(bool(scene_of(tree)), has_fmu=False),
     }
-    return _page(_title(tree), data)
+    return page_of_data(_title(tree), data)
 
 
 def write_page(fmu, path, origin=None):

@@ -1,0 +1,191 @@
+// A system is written beside the page in which it runs: derived at each pause in typing, run when it is wished.
+"use strict";
+
+const PAUSE = 300; // ms without a key, after which the text is looked at
+const SLOW = 15; // s, after which a system is taken for too large to be derived while one types
+const snapshot = `<!doctype html>\n${document.documentElement.outerHTML}`; // for a page to keep, before anything is changed
+const $ = (id) => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+const bench = (window.bench = { run, runs: 0 }); // for tests, and the curious
+let files = { ...data.files }, file = data.file, opened = data.file;
+let checker = null, number = 0, derived = null; // the latest question to the checker, and the result of the latest text that is right
+let wishesToRun = true, plays = false, timer = null, slow = null;
+
+// Of a path as lagc tells it, the one among the files.
+function nameOf(path) {
+  const parts = [];
+  for (const part of path.split("/")) {
+    if (part === "..") parts.pop();
+    else if (part) parts.push(part);
+  }
+  return parts.join("/");
+}
+
+// A message as lagc writes it: of which file and line, and whether it is a warning.
+function messageOf(line) {
+  const found = /^(.*?):(?:(\d+):)? (warning: )?(.*)$/.exec(line), name = nameOf(found?.[1] ?? "");
+  return name in files ? { name, line: Number(found[2] ?? 0), isWarning: Boolean(found[3]), words: found[4] } : { name: file, line: 0, isWarning: false, words: line };
+}
+
+function goTo({ name, line }) {
+  openFile(name);
+  const starts = [0, ...[...$("source").value.matchAll(/\n/g)].map((end) => end.index + 1)], at = starts[line - 1] ?? 0;
+  $("source").focus();
+  $("source").setSelectionRange(at, (starts[line] ?? $("source").value.length + 1) - 1);
+  $("source").scrollTop = Math.max(0, (line - 5) * 19);
+}
+
+function tell(messages) {
+  const items = messages.map((message) => {
+    const button = document.createElement("button"), item = document.createElement("li");
+    const place = `${message.name === file ? "" : `${message.name}, `}${message.line > 0 ? `line ${message.line}: ` : ""}`;
+    button.textContent = `${place}${message.isWarning ? "warning: " : ""}${message.words}`;
+    button.classList.toggle("warning", message.isWarning);
+    button.addEventListener("click", () => goTo(message));
+    item.append(button);
+    return item;
+  });
+  $("said").replaceChildren(...items);
+  showLines(new Set(messages.filter(({ name, isWarning }) => name === opened && !isWarning).map(({ line }) => line)));
+}
+
+function showLines(wrong = new Set()) {
+  const count = $("source").value.split("\n").length;
+  const marks = Array.from({ length: count }, (_, i) => (wrong.has(i + 1) ? `<span class="wrong">${i + 1}</span>` : i + 1));
+  $("lines").innerHTML = `${marks.join("\n")}\n`;
+  $("lines").scrollTop = $("source").scrollTop;
+}
+
+function showState(words, kind = "") {
+  $("state").textContent = words;
+  $("state").className = kind;
+}
+
+function answer({ data: { number: answered, said, result, milliseconds } }) {
+  clearTimeout(slow);
+  if (answered !== number) return;
+  tell(said.split("\n").filter((line) => line).map(messageOf));
+  derived = result ?? null;
+  showState(result ? `derived in ${Math.round(milliseconds)} ms` : "not yet right", result ? "right" : "wrong");
+  if (result && wishesToRun) show();
+}
+
+async function startChecker() {
+  const source = new TextDecoder().decode(await unpacked(data.checker));
+  checker?.terminate();
+  checker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
+  checker.onmessage = answer;
+  checker.postMessage({ bytes: window.laboratoryBytes });
+}
+
+function check() {
+  number++;
+  clearTimeout(timer);
+  clearTimeout(slow);
+  showState("deriving …");
+  checker.postMessage({ files, file, number });
+  slow = setTimeout(() => {
+    showState(`not derived within ${SLOW} s`, "wrong");
+    startChecker();
+  }, 1000 * SLOW);
+}
+
+// The page of the system that was derived last, in place of the one before.
+function show() {
+  wishesToRun = false;
+  const { modelDescription, equations, pulled } = derived;
+  const inner = { ...data.common, plays, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file } };
+  $("page").srcdoc = pageText.replace("@DATA@", () => JSON.stringify(inner).replaceAll("<", "\\u003c"));
+  bench.runs++;
+  plays = true; // what was changed is wished to be seen
+}
+
+function run() {
+  wishesToRun = true;
+  check();
+}
+
+function openFile(name) {
+  opened = name;
+  $("files").value = name;
+  $("source").value = files[name];
+  showLines();
+}
+
+function offerFiles() {
+  $("files").replaceChildren(...Object.keys(files).map((name) => new Option(name, name)));
+  $("files").hidden = Object.keys(files).length < 2;
+  openFile(file);
+}
+
+function save(name, content, type) {
+  const link = Object.assign(document.createElement("a"), { download: name, href: URL.createObjectURL(new Blob([content], { type })) });
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+// This page with the files as they are now.
+function pageNow() {
+  const now = JSON.stringify({ ...data, files, file }).replaceAll("<", "\\u003c");
+  return snapshot.replace(/(<script id="data" type="application\/json">)[^]*?(<\/script>)/, (all, begin, end) => begin + now + end);
+}
+
+function typed() {
+  files = { ...files, [opened]: $("source").value };
+  showLines();
+  clearTimeout(timer);
+  timer = setTimeout(check, PAUSE);
+}
+
+// Two spaces for a tab, and the indentation of a line for the next.
+function typeSpaces(event) {
+  const source = $("source"), before = source.value.slice(0, source.selectionStart);
+  if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) run();
+  else if (event.key === "Tab" && !event.shiftKey) document.execCommand("insertText", false, "  ");
+  else if (event.key === "Enter") document.execCommand("insertText", false, `\n${/[ \t]*(?=[^\n]*$)/.exec(before.slice(before.lastIndexOf("\n") + 1))[0]}`);
+  else return;
+  event.preventDefault();
+}
+
+function offerExamples() {
+  const names = Object.keys(data.examples ?? {});
+  $("examples").hidden = names.length === 0;
+  $("examples").replaceChildren(new Option("another system …", ""), ...names.map((name) => new Option(name, name)));
+  $("examples").addEventListener("change", () => {
+    const chosen = data.examples[$("examples").value];
+    if (!chosen) return;
+    ({ file } = chosen);
+    files = { ...chosen.files };
+    offerFiles();
+    run();
+  });
+}
+
+function addActions() {
+  $("run").addEventListener("click", run);
+  $("source").addEventListener("input", typed);
+  $("source").addEventListener("keydown", typeSpaces);
+  $("source").addEventListener("scroll", () => ($("lines").scrollTop = $("source").scrollTop));
+  $("files").addEventListener("change", () => openFile($("files").value));
+  $("saveFile").addEventListener("click", () => save(opened.split("/").pop(), files[opened], "text/xml"));
+  $("savePage").addEventListener("click", () => save(`${file.split("/").at(-2) ?? "system"}.html`, pageNow(), "text/html"));
+  $("divider").addEventListener("pointerdown", (event) => $("divider").setPointerCapture(event.pointerId));
+  $("divider").addEventListener("pointermove", (event) => {
+    if (!$("divider").hasPointerCapture(event.pointerId)) return;
+    document.body.style.setProperty("--share", `${Math.max(200, Math.min(innerWidth - 300, event.clientX))}px`);
+  });
+}
+
+let pageText;
+
+async function begin() {
+  pageText = new TextDecoder().decode(await unpacked(data.page));
+  window.laboratoryBytes = await unpacked(data.laboratory);
+  offerExamples();
+  offerFiles();
+  addActions();
+  await startChecker();
+  run();
+}
+
+bench.started = begin();

@@ -1,0 +1,218 @@
+"""Systems that are derived and solved without a compiler: by the module itself, and in the page in which they are written."""
+
+import contextlib
+import functools
+import subprocess
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import wasmtime
+
+import fmu
+from building import ROOT
+from driven_chromium import chromium
+from scripts.live import LABORATORY
+from scripts.live_page.editor import editor_of, files_of
+
+STEPS = 100
+DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "MotorPendulum", "SimplePendulumLinear", "StickSlip"]
+ALL = sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
+
+
+@functools.cache
+def module():
+    """lagc and the runtime in WebAssembly."""
+    subprocess.run([ROOT / "scripts" / "build-laboratory"], check=True)
+    engine = wasmtime.Engine()
+    return engine, wasmtime.Module.from_file(engine, str(LABORATORY))
+
+
+class Laboratory:
+    """A module of its own, with the files of a folder."""
+
+    def __init__(self, folder, errors):
+        engine, compiled = module()
+        self.store, linker = wasmtime.Store(engine), wasmtime.Linker(engine)
+        linker.define_wasi()
+        settings = wasmtime.WasiConfig()
+        settings.preopen_dir(str(folder), "/")
+        settings.stderr_file = str(errors)
+        self.store.set_wasi(settings)
+        self.exports = linker.instantiate(self.store, compiled).exports(self.store)
+        self.call("_initialize")
+
+    def call(self, name, *arguments):
+        return self.exports[name](self.store, *arguments)
+
+    def place(self, content):
+        place = self.call("allocate", len(content) + 1)
+        self.exports["memory"].write(self.store, content + b"\0", place)
+        return place
+
+    def text(self, place):
+        memory = self.exports["memory"].read(self.store, place, self.exports["memory"].data_len(self.store))
+        return memory[: memory.index(0)].decode()
+
+    def derive(self, path, is_pulled=False):
+        return self.call("derive", self.place(f"/{path}".encode()), int(is_pulled)) == 0
+
+    def description(self):
+        return ElementTree.fromstring(self.text(self.call("model_description")))
+
+    def states_after(self, steps, step, references):
+        instance = self.call("instantiate", self.place(self.description().get("guid").encode()))
+        assert instance != 0, self.text(self.call("messages"))
+        for name, arguments in (("SetupExperiment", (0, 0.0, 0.0, 0, 0.0)), ("EnterInitializationMode", ()), ("ExitInitializationMode", ())):
+            assert self.call(f"fmi2{name}", instance, *arguments) <= 1
+        for i in range(steps):
+            assert self.call("fmi2DoStep", instance, i * step, step, 0) == 0, self.text(self.call("messages"))
+        asked, values = self.place(np.array(references, "<u4").tobytes()), self.call("allocate", 8 * len(references))
+        assert self.call("fmi2GetReal", instance, asked, len(references), values) == 0
+        return np.frombuffer(self.exports["memory"].read(self.store, values, values + 8 * len(references)), "<f8")
+
+
+def native_states(name, steps, step):
+    instance = fmu.Instance(name, logging=False)
+    with contextlib.ExitStack() as stack:
+        stack.callback(instance.free)
+        instance.initialize({})
+        for i in range(steps):
+            instance.fmu.doStep(i * step, step)
+        return np.array(instance.fmu.getReal(instance.vr(*fmu.states_of(name))))
+
+
+def method_of(name):
+    solver = ElementTree.parse(ROOT / "fmu" / name / "system.xml").find("solver")
+    return solver.get("method") if solver is not None else "auto"
+
+
+@pytest.mark.parametrize("name", [name if name in DAILY else pytest.param(name, marks=pytest.mark.release) for name in ALL])
+def test_it_is_the_fmu(name, tmp_path):
+    """Of the tree, which a compiler has made of C: the tables, where they are, and the functions that read them are the laboratory's own."""
+    laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
+    if method_of(name) in ("erk", "bdf"):
+        assert not laboratory.derive(f"{name}/system.xml")
+        assert f"the method '{method_of(name)}' is not to be had here; expected <solver method=\"auto\"/>" in (tmp_path / "errors").read_text()
+        return
+    assert laboratory.derive(f"{name}/system.xml"), (tmp_path / "errors").read_text()
+    step, states = float(fmu.description(name).defaultExperiment.stepSize), fmu.states_of(name)
+    references = {variable.get("name"): int(variable.get("valueReference")) for variable in laboratory.description().find("ModelVariables")}
+    found = laboratory.states_after(STEPS, step, [references[state] for state in states])
+    np.testing.assert_allclose(found, native_states(name, STEPS, step), rtol=1e-9, atol=1e-9)
+
+
+def test_mistakes(tmp_path):
+    (tmp_path / "system.xml").write_text('<system name="Wrong">\n  <coordinate name="x"/>\n  <kinetic>m*v^2</kinetic>\n</system>\n')
+    assert not Laboratory(tmp_path, tmp_path / "errors").derive("system.xml")
+    assert (tmp_path / "errors").read_text().startswith("/system.xml:2: ")
+    assert not Laboratory(tmp_path, tmp_path / "none").derive("nothing.xml")
+    assert "nothing.xml" in (tmp_path / "none").read_text()
+
+
+def test_pulled(tmp_path):
+    """It has the inputs of lagc --pull where they are asked for, and not otherwise."""
+    for is_pulled in (False, True):
+        laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
+        assert laboratory.derive("DoublePendulum/system.xml", is_pulled)
+        names = {variable.get("name") for variable in laboratory.description().find("ModelVariables")}
+        assert ("pull.of.upper" in names) == is_pulled
+
+
+def test_files_that_others_name(tmp_path):
+    """Come along, by paths that lead from one to the other."""
+    found = files_of(ROOT / "fmu" / "MotorPendulum" / "system.xml")
+    assert sorted(found["files"]) == ["Motor/system.xml", "MotorPendulum/system.xml"] and found["file"] == "MotorPendulum/system.xml"
+    robot = tmp_path / "robots" / "arm.urdf"
+    robot.parent.mkdir()
+    robot.write_text('<robot name="arm"><link name="base"/></robot>')
+    assert files_of(robot) == {"files": {"robots/arm.urdf": robot.read_text()}, "file": "robots/arm.urdf"}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
+@contextlib.contextmanager
+def editor(browser, file):
+    """The page, and the one in it when it runs; at its end it must not have complained."""
+    page, complaints = browser.new_page(viewport={"width": 1500, "height": 800}), []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    page.goto(file.as_uri())
+    page.wait_for_function("window.bench && bench.runs > 0")
+    page.frame_locator("#page").locator("body[data-ready]").wait_for(timeout=60000)
+    yield page
+    page.close()
+    assert complaints == []
+
+
+def run_in(page, until):
+    """The states of the system in the page, behind steps of the author's length."""
+    frame = page.query_selector("#page").content_frame()
+    frame.evaluate("document.getElementById('play').textContent === 'Pause' && document.getElementById('play').click()")
+    frame.evaluate("document.getElementById('reset').click()")
+    values = frame.evaluate("until => live.run(until).then((ran) => Array.from(ran.values))", until)
+    return dict(zip(frame.evaluate("live.names"), values))
+
+
+def run_anew(page, text):
+    """With this text in place of the one that is there."""
+    runs = page.evaluate("bench.runs")
+    page.locator("#source").fill(text)
+    page.locator("#source").press("Control+Enter")
+    page.wait_for_function(f"bench.runs === {runs + 1}")
+    page.frame_locator("#page").locator("body[data-ready]").wait_for(timeout=60000)
+
+
+def write_page(tmp_path, name):
+    module()
+    file = tmp_path / f"{name}.html"
+    file.write_text(editor_of(ROOT / "fmu" / name / "system.xml", LABORATORY), encoding="utf-8")
+    assert len(file.read_text()) < 900_000
+    return file
+
+
+def test_a_system_is_changed_in_the_page(browser, tmp_path):
+    """A mistake is told where it is; what is right runs, and is kept in a page of its own. A mass on a spring tells a closed form."""
+    spring = """<system name="Spring" description="A mass on a spring">
+  <parameter name="m" start="2" unit="kg"/>
+  <parameter name="k" start="8" unit="N/m"/>
+  <coordinate name="x" velocity="v" unit="m" start="0.3"/>
+  <kinetic>m*v^2/2</kinetic>
+  <potential>k*x^2/2</potential>
+  <experiment stopTime="3" stepSize="0.01"/>
+</system>
+"""
+    with editor(browser, write_page(tmp_path, "DoublePendulum")) as page:
+        assert page.frame_locator("#page").locator("h1").inner_text() == "Two point masses on two massless rods"
+        page.locator("#source").fill(spring.replace("k*x^2/2", "k*y^2/2"))
+        page.wait_for_function("document.getElementById('state').textContent === 'not yet right'")
+        assert page.locator("#said").inner_text().startswith("line 6: the potential: unknown name 'y'")
+        assert page.locator("#lines .wrong").inner_text() == "6" and page.evaluate("bench.runs") == 1
+        page.locator("#said button").click()
+        assert page.evaluate("(({ value, selectionStart, selectionEnd }) => value.slice(selectionStart, selectionEnd))(document.getElementById('source'))") == "  <potential>k*y^2/2</potential>"
+        run_anew(page, spring)
+        assert page.locator("#said").inner_text() == "" and page.locator("#lines .wrong").count() == 0
+        assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
+        with page.expect_download() as download:
+            page.locator("#savePage").click()
+        download.value.save_as(tmp_path / "kept.html")
+    with editor(browser, tmp_path / "kept.html") as page:
+        assert page.locator("#source").input_value() == spring
+        assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
+
+
+def test_several_files(browser, tmp_path):
+    with editor(browser, write_page(tmp_path, "MotorPendulum")) as page:
+        assert page.locator("#files option").all_inner_texts() == ["MotorPendulum/system.xml", "Motor/system.xml"]
+        step, states = float(fmu.description("MotorPendulum").defaultExperiment.stepSize), fmu.states_of("MotorPendulum")
+        found, expected = run_in(page, STEPS * step), native_states("MotorPendulum", STEPS, step)
+        np.testing.assert_allclose([found[state] for state in states], expected, rtol=1e-9, atol=1e-12)
+        page.locator("#files").select_option("Motor/system.xml")
+        page.locator("#source").fill("<system")
+        page.wait_for_function("document.getElementById('state').textContent === 'not yet right'")
+        assert page.locator("#said").inner_text().startswith("Motor/system.xml, line 1: <system> is not closed")
+        assert page.locator("#lines .wrong").inner_text() == "1"
