@@ -2,6 +2,7 @@
 
 import html
 import json
+import re
 import shutil
 import sys
 import zipfile
@@ -14,8 +15,9 @@ from mkdocs.config import load_config
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
-from scripts.live import origin_in
+from scripts.live import LABORATORY, origin_in
 from scripts.live_page.description import read_tree
+from scripts.live_page.editor import files_of, write_editor
 from scripts.live_page.page import write_page
 from scripts.problem import Problem
 
@@ -38,6 +40,7 @@ READ = {
         "Changes": "CHANGELOG.md",
     },
 }
+FIRST = "DoublePendulum"  # in the laboratory
 BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "fmu/StateFeedback/system.xml")  # that pages refer to
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
@@ -80,6 +83,18 @@ def write_system(archive):
     return f'<div><a href="systems/{name}/{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
 
 
+def write_laboratory(names):
+    """The page in which all systems can be changed whose methods it has."""
+    sources = {name: ROOT / "fmu" / name / "system.xml" for name in names}
+    has_method = {name: not re.search(r"""method *= *["'](erk|bdf)["']""", source.read_text(encoding="utf-8")) for name, source in sources.items() if source.exists()}
+    chosen = [name for name, has in has_method.items() if has]
+    if not chosen:
+        return ""
+    first = FIRST if FIRST in chosen else chosen[0]
+    write_editor(sources[first], LABORATORY, PAGES / "laboratory.html", {name: files_of(sources[name]) for name in chosen})
+    return 'In the [laboratory](laboratory.html) you change them, or write your own: it derives the equations in your browser.\n'
+
+
 def slug(text, separator):
     """A heading's anchor, which the theme does not find where it begins with a digit."""
     word = toc.slugify(text, separator)
@@ -108,7 +123,8 @@ def main():
         shutil.copy(ROOT / place, PAGES / place)
     with ThreadPoolExecutor() as pool:
         cards = list(pool.map(write_system, archives))
-    words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page.\n"
+    words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page. "
+    words += write_laboratory([archive.stem for archive in archives])
     (PAGES / "gallery.md").write_text(f'# Gallery\n\n{words}\n<div class="systems">\n{"".join(cards)}\n</div>\n', encoding="utf-8")
     (PAGES / "style.css").write_text(STYLE)
     navigation = [{title: [{t: p} for t, p in page.items()] if isinstance(page, dict) else page} for title, page in READ.items()]

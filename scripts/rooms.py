@@ -1,5 +1,5 @@
 """
-The rooms of lagc and of what is linked into FMUs: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
+The rooms of lagc, with the laboratory above it, and of what is linked into FMUs: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
 Prints what is otherwise; no output where all is well.
 """
 
@@ -49,8 +49,9 @@ LAGC = House(
     modelDescription/drawing
     modelDescription/page
     src/compiler
+    src/laboratory
     """.split(),
-    ["src/compiler", "modelDescription"],
+    ["src/compiler", "modelDescription", "src/laboratory"],
 )
 RUNTIME = House(
     """

@@ -6,8 +6,10 @@ import re
 from pathlib import Path
 
 from ..problem import Problem
-from .page import COMMON_WORKER, common, filled, json_of, packed, page_of_data, script_of
+from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
 
+HERE = Path(__file__).resolve().parent
+LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, in the tree
 STYLE, SCRIPTS = "editor.css", ("unpacking.js", "editor.js")
 CHECKER = ("laboratory.js", "checker.js")
 WORKER = (*COMMON_WORKER[:-1], "laboratory.js", COMMON_WORKER[-1])
@@ -34,6 +36,14 @@ def files_of(system):
     return {"files": texts, "file": next(iter(texts))}
 
 
+def _licenses():
+    """What is in the page, and on what terms: as in pages of FMUs, and libxml2."""
+    file = next((path for path in LIBXML2_LICENSES if path.exists()), None)
+    if file is None:
+        raise Problem("the license of libxml2, which is in the page, is not there; see scripts/libxml2")
+    return f"{licenses(has_scene=True, has_fmu=True)}\n\nlibxml2:\n\n{file.read_text(encoding='utf-8')}"
+
+
 def editor_of(system, laboratory, examples=None):
     """The page as text. laboratory: the module laboratory.wasm; examples: further systems to choose, as files_of() by name."""
     if not Path(laboratory).exists():
@@ -43,11 +53,11 @@ def editor_of(system, laboratory, examples=None):
         "examples": examples or {},
         "laboratory": packed(Path(laboratory).read_bytes()),
         "checker": packed(script_of(CHECKER).encode()),
-        "common": {"worker": packed(script_of(WORKER).encode()), **common(has_scene=True, has_fmu=True)},
+        "common": {"worker": packed(script_of(WORKER).encode()), **common(has_scene=True, has_fmu=True), "licenses": _licenses()},
         "page": packed(page_of_data("A system", "@DATA@").encode()),
     }
     title = f"{Path(data['file']).parent.name or Path(data['file']).stem}, to be written"
-    style = (Path(__file__).parent / STYLE).read_text(encoding="utf-8")
+    style = (HERE / STYLE).read_text(encoding="utf-8")
     return filled("editor.html", TITLE=html.escape(title), STYLE=style, DATA=json_of(data), SCRIPT=script_of(SCRIPTS))
 
 
