@@ -37,8 +37,10 @@ void series_limit_positive(struct SeriesLimit *limit, const double *u, const cha
 
 /*
  * u^n; share of u_0 is what changes the power by e^5: 1 - e^(-5/|n|) for a negative n, e^(5/n) - 1 for a positive one.
- * Roots are all powers with n > 0 that are not whole.
+ * Roots are all powers with n > 0 that are not whole. Whole powers up to HIGHEST_WIDE_POWER hide nothing: their hills are about
+ * as wide as those of u, which the series of u knows.
  */
+enum { HIGHEST_WIDE_POWER = 4 };
 void series_limit_quotient(struct SeriesLimit *limit, const double *u, double share);
 void series_limit_root(struct SeriesLimit *limit, const double *u, double share);
 void series_limit_whole_power(struct SeriesLimit *limit, const double *u, double share);

@@ -41,7 +41,8 @@ void page_equation(const struct Page *page, const char *left, Node right) {
     xmlTextWriterEndElement(page->writer);
     write_text(page, "as text", text);
   } else {
-    char *summary = format_text("%.40s%s = ... is a long formula", left, strlen(left) > 40 ? "..." : "");
+    char *summary = strlen(left) > 40 ? copy_text("a long equation; click to see it")
+                                      : format_text("%s = ..., a long equation; click to see it", left);
     write_text(page, summary, text);
   }
   xmlTextWriterEndElement(page->writer);

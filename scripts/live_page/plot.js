@@ -93,7 +93,7 @@ class Plot {
     pen.font = "11px system-ui, sans-serif";
     const { across } = this, draw = history === this.section ? this.drawPoints : this.drawLine, column = (place, run) => (i) => history.value(i, place, run);
     const horizontal = across < 0 ? (i) => history.time(i) : column(across, 0);
-    const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + 1e-9)] : this.rangeOf(first, last, horizontal);
+    const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : this.rangeOf(first, last, horizontal);
     const ranges = this.places.map((place) => this.rangeOf(first, last, column(place, 0)));
     const range = ranges.length ? [Math.min(...ranges.map((one) => one[0])), Math.max(...ranges.map((one) => one[1]))] : [0, 1];
     const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => shown(tick));

@@ -8,6 +8,8 @@ static const double exponent_range = 5.0;
 static const double exponential_end = -700.0, tanh_end = 20.0;
 /* The share of the way to a singular point that one step may go. */
 static const double approach = 0.99;
+/* A base so small has powers above the wide ones that matter to nothing; its turning points are rounding. */
+static const double negligible_base = 1e-50;
 static const double pi = 3.14159265358979323846;
 
 enum { TRIALS = 400, REFINEMENTS = 4 };
@@ -110,15 +112,16 @@ void series_limit_root(struct SeriesLimit *limit, const double *u, double share)
 }
 
 void series_limit_whole_power(struct SeriesLimit *limit, const double *u, double share) {
-  if (limit->surrounds) shorten(limit, u, power_fits_around, share * fabs(u[0]), "a power");
-  else if (!limit->crosses) shorten(limit, u, power_fits, share * fabs(u[0]), "a power");
+  double bound = fmax(share * fabs(u[0]), negligible_base);
+  if (limit->surrounds) shorten(limit, u, power_fits_around, bound, "a power");
+  else if (!limit->crosses) shorten(limit, u, power_fits, bound, "a power");
 }
 
 void series_limit_power(struct SeriesLimit *limit, const double *u, double exponent) {
   double share = series_limit_share(exponent);
   if (exponent < 0.0) series_limit_quotient(limit, u, share);
   else if (exponent != floor(exponent)) series_limit_root(limit, u, share);
-  else if (exponent > 3.0) series_limit_whole_power(limit, u, share);
+  else if (exponent > HIGHEST_WIDE_POWER) series_limit_whole_power(limit, u, share);
 }
 
 /* Away from 0 without a turning point, or not as far as 0. */

@@ -1,4 +1,4 @@
-"""Tells what is wrong with a system, or that it is right."""
+"""Tells what is wrong in the file of a system, or that it is right; start values are tried by run."""
 
 from ..building import check
 from .words_of_systems import SYSTEM

@@ -113,7 +113,7 @@ static void check_division(struct CheckList *list, Node numerator, Node denomina
 static void check_number_power(struct CheckList *list, Node base, double exponent) {
   base = bare_base(list->builder, base, &exponent);
   bool is_whole = exponent == floor(exponent);
-  if (is_whole && exponent > 0.0 && exponent <= 3.0) return;
+  if (is_whole && exponent > 0.0 && exponent <= HIGHEST_WIDE_POWER) return;
   enum LimitRule rule = exponent < 0.0 ? LIMIT_QUOTIENT : is_whole ? LIMIT_WHOLE_POWER : LIMIT_ROOT;
   append(list, (struct Check){.rule = rule, .rows = {base}, .share = series_limit_share(exponent)});
 }

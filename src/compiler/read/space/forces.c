@@ -111,7 +111,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
   struct Vector force = read_components(reader, node, "N");
   if (body == NULL && !find_spatial_point(reader, name, &point)) {
-    report_unknown_body(reader, node, name, "particle or body");
+    report_unknown_body(reader, node, name, "particle, body, point or frame");
     return;
   }
   if (frame == NULL) return;

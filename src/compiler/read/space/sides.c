@@ -2,8 +2,20 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/names/similar.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
+
+/* What was meant by a name that nothing has. */
+static const char *meant_side(const struct Reader *reader, const char *name) {
+  struct Similar similar = {.wanted = name};
+  similar_consider_all(&similar, reader->bodies);
+  similar_consider_all(&similar, reader->spatial_points);
+  for (size_t i = 1; i < reader->model->mechanism.frame_count; i++)
+    similar_consider(&similar, reader->model->mechanism.frames[i].name);
+  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
+                              : "expected a <frame>, <body>, <point> or <particle>, or base";
+}
 
 bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
   char *full_name = reference_attribute(reader, node, name);
@@ -19,9 +31,8 @@ bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *nam
   } else if (body != NULL) {
     for (int axis = 0; axis < 3; axis++) side->position.along[axis] = body->displaced[axis];
   } else {
-    report_at(reader, node,
-              "there is nothing named '%s' for this <%s>; expected a <frame>, <body>, <point> or <particle>, or base",
-              attribute(node, name), (const char *)node->name);
+    report_at(reader, node, "there is nothing named '%s' for this <%s>; %s", attribute(node, name),
+              (const char *)node->name, meant_side(reader, full_name));
     return false;
   }
   side->rotation = frame->pose.rotation;
