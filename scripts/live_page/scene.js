@@ -5,6 +5,9 @@ const AXES = ["x", "y", "z"];
 const TRAIL = 240; // samples
 const TRAILS = 8; // at most
 
+// It turns about one axis alone: only that moment of inertia is given.
+const isPlanarBody = (thing) => thing.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in thing);
+
 class Scene {
   // things: the elements of <scene>; column(name): the place of a variable in a sample, -1 for none; value(formula): of parameters.
   constructor(container, things, column, value) {
@@ -138,7 +141,7 @@ class Scene {
 
   solidOf(thing) {
     if (this.hasShape(thing)) return null;
-    if (thing.tag !== "body" || (thing.inertia !== undefined && this.isJointed(thing.name))) return null;
+    if (thing.tag !== "body" || (isPlanarBody(thing) && this.isLink(thing))) return null;
     const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
     if (thing.inertia !== undefined) {
       const moment = entry("inertia");
@@ -150,6 +153,11 @@ class Scene {
     // Only its shape is known: of a size to be seen.
     const solid = solidOf(1, tensor);
     return solid && solidOf((sizeOf(solid) / (0.1 * this.span)) ** 2, tensor);
+  }
+
+  // A body that rods show: from joint to joint, or from the origin of its frame to itself.
+  isLink(thing) {
+    return this.isJointed(thing.name) || this.holders.some(({ tag, from, to }) => tag === "rod" && from === thing.in && to === thing.name);
   }
 
   isJointed(name) {

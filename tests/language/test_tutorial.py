@@ -75,7 +75,7 @@ def test_parameters_and_output(open_fmu):
 
 def test_mistake_in_a_unit(tmp_path):
     (tmp_path / "system.xml").write_text(SYSTEMS["NamedPendulum"].replace("m*g*bob.y", "m*bob.y"))
-    message = re.search(r"\n    (unit mismatch.*)\n", STEPS[2]).group(1)
+    message = re.search(r"\n    lagrange-fmu: \S+:\d+: (unit mismatch.*)\n", STEPS[2]).group(1)
     assert message in lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
 
 
