@@ -1,0 +1,129 @@
+"""What scripts/realtime prints: the times of single communication steps of 1 ms."""
+
+import csv
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from fmpy import extract, platform, read_model_description, sharedLibraryExtension
+from fmpy.fmi2 import FMU2Slave
+
+from fmu import ROOT, archive, unpacked
+
+PROGRAM = ROOT / "build" / "bin" / "realtime"
+STEP, RUNS = 1e-3, 3
+LONGEST = 60.0  # s of the clock for a run
+TRACED = 2000  # steps under strace
+COLUMNS = ("system", "steps", "median", "99.9 %", "longest", "longest as seen", "allocations", "system calls")
+PYTHON_PENDULUM = '''
+from math import sin
+
+from pythonfmu import Fmi2Causality, Fmi2Slave, Real
+
+
+class PythonPendulum(Fmi2Slave):
+    def __init__(self, **options):
+        super().__init__(**options)
+        self.theta, self.omega = 1.0, 0.0
+        self.register_variable(Real("theta", causality=Fmi2Causality.output))
+
+    def do_step(self, time, step):
+        def slope(theta, omega):
+            return omega, -9.81 * sin(theta)
+
+        q, v = self.theta, self.omega
+        k1 = slope(q, v)
+        k2 = slope(q + step / 2 * k1[0], v + step / 2 * k1[1])
+        k3 = slope(q + step / 2 * k2[0], v + step / 2 * k2[1])
+        k4 = slope(q + step * k3[0], v + step * k3[1])
+        self.theta += step / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0])
+        self.omega += step / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1])
+        return True
+'''
+
+
+def words_for(folder, description, count, runs):
+    library = folder / "binaries" / platform / f"{description.coSimulation.modelIdentifier}{sharedLibraryExtension}"
+    return [str(word) for word in (PROGRAM, library, description.guid, (folder / "resources").as_uri(), STEP, count, runs, LONGEST)]
+
+
+def system_calls(words):
+    """Between the two calls of getppid, in some steps; None without strace, or where it may not watch."""
+    if not shutil.which("strace"):
+        return None
+    with tempfile.NamedTemporaryFile("r") as log:
+        if subprocess.run(["strace", "-f", "-o", log.name, *words], capture_output=True).returncode != 0:
+            return None
+        found = re.search(r"getppid\(\).*?\n(.*?)[^\n]*getppid\(\)", log.read(), re.S)
+        return len(found[1].splitlines()) if found else None
+
+
+def measure(name, folder, description, count):
+    result = subprocess.run(words_for(folder, description, count, RUNS), capture_output=True, text=True)
+    if result.returncode != 0:
+        return {"system": name}
+    steps, *times, allocations = result.stdout.strip().split(",")
+    calls = system_calls(words_for(folder, description, min(TRACED, int(steps)), 1))
+    times = [f"{float(time) / 1e3:.3g}" for time in times]
+    return dict(zip(COLUMNS, (name, steps, *times, allocations, "" if calls is None else calls)))
+
+
+def python_pendulum(folder, count):
+    """An FMU as PythonFMU makes it, with Runge and Kutta's method in Python; its interpreter is this one, so that FMPy calls it."""
+    source = Path(folder) / "python_pendulum.py"
+    source.write_text(PYTHON_PENDULUM)
+    subprocess.run([sys.executable, "-m", "pythonfmu", "build", "-f", source, "-d", folder], check=True, capture_output=True)
+    file = Path(folder) / "PythonPendulum.fmu"
+    description = read_model_description(file)
+    instance = FMU2Slave(guid=description.guid, unzipDirectory=extract(file, Path(folder) / "unpacked"), modelIdentifier=description.coSimulation.modelIdentifier)
+    least = np.full(count, np.inf)
+    longest = 0.0
+    for _ in range(RUNS):
+        instance.instantiate()
+        instance.setupExperiment(startTime=0.0)
+        instance.enterInitializationMode()
+        instance.exitInitializationMode()
+        taken = np.empty(count)
+        for i in range(count):
+            before = time.perf_counter()
+            instance.doStep(i * STEP, STEP)
+            taken[i] = time.perf_counter() - before
+        least, longest = np.minimum(least, taken), max(longest, taken.max())
+        instance.freeInstance()
+    times = [np.median(least), np.sort(least)[count - 1 - count // 1000], least.max(), longest]
+    return dict(zip(COLUMNS, ("pendulum by PythonFMU", count, *(f"{1e6 * one:.3g}" for one in times), "", "")))
+
+
+def show(row):
+    print(f"{row['system']:34}" + "".join(f"{row.get(column, '-'):>16}" for column in COLUMNS[1:]), flush=True)
+
+
+def main():
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 600.0
+    count = round(seconds / STEP)
+    names = sys.argv[2:] or sorted(path.stem for path in (ROOT / "build" / "fmu").glob("*.fmu"))
+    print("times in us; the longest leaves out what else the machine did: of each step the fastest of", RUNS, "runs counts")
+    show(dict(zip(COLUMNS, COLUMNS)))
+    rows = []
+    for name in names:
+        rows.append(measure(name, unpacked(name), read_model_description(archive(name)), count))
+        show(rows[-1])
+    with tempfile.TemporaryDirectory() as folder:
+        rows.append(python_pendulum(folder, count))
+        show(rows[-1])
+    path = ROOT / "build" / "results" / "realtime.csv"
+    path.parent.mkdir(exist_ok=True)
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    print(f"CSV        {path}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,24 @@
+"""The times of single communication steps."""
+
+import subprocess
+
+from fmpy import read_model_description
+
+import realtime
+from fmu import archive, unpacked
+
+
+def test_times_of_steps():
+    """Of a system with impacts: all steps are there, and the times are in order."""
+    row = realtime.measure("BouncingBall", unpacked("BouncingBall"), read_model_description(archive("BouncingBall")), 3000)
+    assert row["steps"] == "3000"
+    times = [float(row[name]) for name in ("median", "99.9 %", "longest", "longest as seen")]
+    assert 0 < times[0] < times[-1] and times == sorted(times)
+    assert row["system calls"] in (0, "")
+
+
+def test_an_fmu_that_stops():
+    """What is no library is refused; no time is invented for it."""
+    words = realtime.words_for(unpacked("BouncingBall"), read_model_description(archive("BouncingBall")), 10, 1)
+    words[1] = "/nonexistent.so"
+    assert subprocess.run(words, capture_output=True).returncode != 0
