@@ -1,33 +1,61 @@
-"""scripts/optimize: a swing-up through the FMU, held against the cart's equations as they stand in textbooks."""
+"""scripts/optimize: motions in least time through FMUs, held against equations as they stand in textbooks."""
 
 import numpy as np
-import optimize
 import pytest
+from optimization.collocation import least_time, play_back
+from optimization.tasks import ARM, CART, DOUBLE_PENDULUM
 from scipy.integrate import solve_ivp
 
 import fmu
+from building import ROOT, build_systems
 
 pytestmark = pytest.mark.release
 
-M, m, l, g = 1.0, 0.1, 0.5, 9.81
 
-
-def rates(time, state, force):
+def cart(time, state, force):
+    M, m, l, g = 1.0, 0.1, 0.5, 9.81
     _, theta, v, omega = state
     sine, cosine, mass = np.sin(theta), np.cos(theta), M + m * np.sin(theta) ** 2
     return [v, omega, (force + m * l * omega**2 * sine - m * g * sine * cosine) / mass,
             ((M + m) * g * sine - force * cosine - m * l * omega**2 * sine * cosine) / (l * mass)]  # fmt: skip
 
 
-def test_it_stands_in_the_end():
-    """By the FMU that plays the forces back, and by SciPy; nothing leaves its bounds, and the force is at one of them most of the time, as it has to be in the least one."""
-    unpacked = fmu.unpacked("InvertedPendulumCart")
-    motion = optimize.swing_up(unpacked)
-    played = optimize.play_back(unpacked, motion)
-    assert abs(played - motion.states).max() < 1e-6
-    state = np.array([0, np.pi, 0, 0])
-    for start, end, force in zip(motion.times, motion.times[1:], motion.forces):
-        state = solve_ivp(rates, (start, end), state, "DOP853", args=(force,), rtol=1e-12, atol=1e-12).y[:, -1]
-    assert abs(state).max() < 1e-6
-    assert abs(motion.forces).max() <= optimize.FORCE + 1e-6 and abs(motion.states[:, 0]).max() <= optimize.TRACK + 1e-6
-    assert np.count_nonzero(abs(motion.forces) > 0.99 * optimize.FORCE) > 0.7 * len(motion.forces)
+def double_pendulum(time, state, torque):
+    """Two uniform rods, by Lagrange's equations with the angles from hanging."""
+    m, l, g, b1, b2 = 1.0, 0.5, 9.81, 0.05, 0.02
+    first, second, w1, w2 = state
+    across = m * l**2 / 2 * np.cos(first - second)
+    mass = np.array([[m * l**2 * 4 / 3, across], [across, m * l**2 / 3]])
+    turning = m * l**2 / 2 * np.sin(first - second)
+    forces = [torque - turning * w2**2 - 1.5 * m * g * l * np.sin(first) - b1 * w1 + b2 * (w2 - w1),
+              turning * w1**2 - 0.5 * m * g * l * np.sin(second) - b2 * (w2 - w1)]  # fmt: skip
+    return [w1, w2, *np.linalg.solve(mass, forces)]
+
+
+def check(task, unpacked):
+    """The co-simulation FMU plays it back, all bounds hold, and it rests in the end."""
+    motion = least_time(unpacked, task)
+    assert abs(play_back(unpacked, task, motion) - motion.states).max() < 1e-6
+    assert (abs(motion.inputs) <= task.strength * (1 + 1e-7)).all()
+    assert all(abs(motion.states[:, row]).max() <= bound + 1e-6 for row, bound in task.reach.items())
+    np.testing.assert_allclose(motion.states[[0, -1]], [task.start, task.end], atol=1e-8)
+    return motion, abs(motion.inputs) > 0.99 * task.strength
+
+
+@pytest.mark.parametrize("task, rates", [(CART, cart), (DOUBLE_PENDULUM, double_pendulum)], ids=["cart", "double pendulum"])
+def test_it_stands_in_the_end(task, rates):
+    """By SciPy too. The input is at one of its bounds most of the time, as it has to be in the least one."""
+    if task is DOUBLE_PENDULUM:
+        build_systems("optimization", {task.fmu: (ROOT / "scripts" / "optimization" / task.fmu / "system.xml").read_text()})
+    motion, at_bound = check(task, fmu.unpacked(task.fmu))
+    state = task.start
+    for start, end, inputs in zip(motion.times, motion.times[1:], motion.inputs):
+        state = solve_ivp(rates, (start, end), state, "DOP853", args=(inputs[0],), rtol=1e-12, atol=1e-12).y[:, -1]
+    assert abs(state - task.end).max() < 1e-5
+    assert np.count_nonzero(at_bound) > 0.7 * len(motion.inputs)
+
+
+def test_an_arm():
+    """Six joints: at each time some motor gives all that it has."""
+    motion, at_bound = check(ARM, fmu.unpacked("RobotArm"))
+    assert motion.times[-1] < 1.0 and np.count_nonzero(at_bound.any(axis=1)) > 0.8 * len(motion.inputs)

@@ -1,0 +1,52 @@
+"""What is to be done in least time."""
+
+import numpy as np
+
+from optimization.collocation import Task
+
+# The pendulum swings up from hanging at rest to standing at rest in the same place; 15 N, a track of 0.8 m.
+CART = Task(
+    fmu="InvertedPendulumCart",
+    states=["x", "theta", "v", "omega"],
+    inputs=["F"],
+    start=np.array([0.0, np.pi, 0.0, 0.0]),
+    end=np.zeros(4),
+    strength=np.array([15.0]),
+    reach={0: 0.4},
+    duration=2.0,
+    swings=1.0,
+    intervals=40,
+    points=6,
+    has_hessian=True,
+)
+# Both rods from hanging to standing, by a motor that could not hold them level.
+DOUBLE_PENDULUM = Task(
+    fmu="DrivenDoublePendulum",
+    states=["theta1", "theta2", "omega1", "omega2"],
+    inputs=["tau"],
+    start=np.zeros(4),
+    end=np.array([np.pi, np.pi, 0.0, 0.0]),
+    strength=np.array([8.0]),
+    reach={},
+    duration=2.0,
+    swings=1.0,
+    intervals=60,
+    points=6,
+    has_hessian=True,
+)
+# From pose to pose with the torques that the motors of a PUMA 560 have at their joints (Corke: Robotics, Vision and Control).
+ARM = Task(
+    fmu="RobotArm",
+    states=[f"{name}[{i}]" for name in "qw" for i in range(1, 7)],
+    inputs=[f"tau[{i}]" for i in range(1, 7)],
+    start=np.array([0.0, -0.5, 0.5, 0.0, 0.3, 0.0, *6 * [0.0]]),
+    end=np.array([1.5, 0.4, -0.5, 1.0, -0.3, 1.5, *6 * [0.0]]),
+    strength=np.array([97.6, 186.4, 89.4, 24.2, 20.1, 21.3]),
+    reach={},
+    duration=1.0,
+    swings=1.0,
+    intervals=20,
+    points=4,
+    has_hessian=False,
+)
+TASKS = {"cart": CART, "double-pendulum": DOUBLE_PENDULUM, "arm": ARM}
