@@ -1,4 +1,4 @@
-"""What scripts/optimize prints: motions in least time, each with a CSV and a plot."""
+"""What scripts/optimize prints: motions in least time and controllers in closed loop, each with a CSV and a plot."""
 
 import csv
 import sys
@@ -8,15 +8,18 @@ from pathlib import Path
 
 import fmpy
 import matplotlib
+import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from optimization.closed_loop import CONTROLLERS, DELAY, NOISE, PERIOD, TRACK, plant_of, run
 from optimization.collocation import least_time, play_back
-from optimization.tasks import TASKS
+from optimization.tasks import CART, TASKS
 
 BUILD = Path(__file__).resolve().parent.parent.parent / "build"
 FOLDER = BUILD / "results"
+CONTROL = "control"  # the task that is none of those in least time
 COLORS = plt.rcParams["axes.prop_cycle"].by_key()["color"]
 
 
@@ -52,23 +55,64 @@ def plot(path, task, motion, played):
     plt.close(figure)
 
 
+def find_fastest(name, unpacked):
+    task, begin = TASKS[name], time.perf_counter()
+    motion = least_time(unpacked, task)
+    seconds, played = time.perf_counter() - begin, play_back(unpacked, task, motion)
+    csv_path, plot_path = (FOLDER / f"fastest-{name}.{kind}" for kind in ("csv", "png"))
+    write_csv(csv_path, task, motion, played)
+    plot(plot_path, task, motion, played)
+    print(f"{task.fmu}: {motion.times[-1]:.6g} s; {motion.iterations} iterations of IPOPT in {seconds:.3g} s")
+    print(f"  the co-simulation FMU plays it back to {abs(played - motion.states).max():.1g}\n  CSV   {csv_path}\n  plot  {plot_path}")
+
+
+def plot_runs(path, runs):
+    figure, panels = plt.subplots(3, sharex=True, figsize=(8, 7), layout="constrained")
+    for color, (name, found) in zip(COLORS, runs.items()):
+        for axes, values in zip(panels, (found.states[:, 0], found.states[:, 1], found.forces)):
+            axes.plot(found.times, values, color=color, label=name, linewidth=1)
+    for bound in (-TRACK, TRACK):
+        panels[0].axhline(bound, color="#888", linestyle="--", linewidth=1)
+    for axes, label in zip(panels, ("x [m]", "theta [rad]", "F [N]")):
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.3)
+    panels[0].set_title(f"The cart at {1 / PERIOD:g} Hz; measured to {NOISE[0] * 1e3:g} mm and {NOISE[1] * 1e3:g} mrad, {DELAY} periods late")
+    panels[0].legend(frameon=False)
+    panels[-1].set_xlabel("time [s]")
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
+def control(unpacked):
+    """All controllers, on the same noise."""
+    plant = plant_of(unpacked)
+    runs = {name: run(unpacked, plant, controller(plant)) for name, controller in CONTROLLERS.items()}
+    csv_path, plot_path = (FOLDER / f"closed-loop.{kind}" for kind in ("csv", "png"))
+    columns = [f"{name} {variable}" for name in runs for variable in (*CART.states, "F")]
+    rows = np.column_stack([next(iter(runs.values())).times, *(np.column_stack([found.states, found.forces]) for found in runs.values())])
+    np.savetxt(csv_path, rows, delimiter=",", header=",".join(["time", *columns]), comments="", fmt="%.9g")
+    plot_runs(plot_path, runs)
+    for name, found in runs.items():
+        middle, late = 1e6 * np.quantile(found.seconds, (0.5, 0.999))
+        print(f"{name}: x reaches {abs(found.states[:, 0]).max():.3g} m of {TRACK:g} m; in the last second theta stays within {abs(found.states[-round(1 / PERIOD):, 1]).max():.2g} rad")
+        print(f"  observer and controller take {middle:.3g} us of a period's {1e6 * PERIOD:g}, in 99.9 % at most {late:.3g} us")
+    print(f"  CSV   {csv_path}\n  plot  {plot_path}")
+
+
 def main():
-    names = sys.argv[1:] or list(TASKS)
+    names = sys.argv[1:] or [*TASKS, CONTROL]
     for name in names:
-        if name not in TASKS:
-            sys.exit(f"scripts/optimize: there is no task '{name}'; expected {', '.join(TASKS)}")
+        if name not in (*TASKS, CONTROL):
+            sys.exit(f"scripts/optimize: there is no task '{name}'; expected {', '.join(TASKS)} or {CONTROL}")
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name in names:
-        task, begin = TASKS[name], time.perf_counter()
         with tempfile.TemporaryDirectory() as unpacked:
-            fmpy.extract(str(archive(task)), unpacked)
-            motion = least_time(unpacked, task)
-            played = play_back(unpacked, task, motion)
-        csv_path, plot_path = (FOLDER / f"fastest-{name}.{kind}" for kind in ("csv", "png"))
-        write_csv(csv_path, task, motion, played)
-        plot(plot_path, task, motion, played)
-        print(f"{task.fmu}: {motion.times[-1]:.6g} s; {motion.iterations} iterations of IPOPT in {time.perf_counter() - begin:.3g} s")
-        print(f"  the co-simulation FMU plays it back to {abs(played - motion.states).max():.1g}\n  CSV   {csv_path}\n  plot  {plot_path}", flush=True)
+            fmpy.extract(str(archive(TASKS.get(name, CART))), unpacked)
+            if name == CONTROL:
+                control(unpacked)
+            else:
+                find_fastest(name, unpacked)
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from optimization.closed_loop import CONTROLLERS, TRACK, plant_of, run
 from optimization.collocation import least_time, play_back
 from optimization.tasks import ARM, CART, DOUBLE_PENDULUM
 from scipy.integrate import solve_ivp
@@ -59,3 +60,17 @@ def test_an_arm():
     """Six joints: at each time some motor gives all that it has."""
     motion, at_bound = check(ARM, fmu.unpacked("RobotArm"))
     assert motion.times[-1] < 1.0 and np.count_nonzero(at_bound.any(axis=1)) > 0.8 * len(motion.inputs)
+
+
+def test_controllers():
+    """Through noise and delay both let it stand; the one that looks ahead stays on its track, which the other leaves."""
+    unpacked = fmu.unpacked("InvertedPendulumCart")
+    plant = plant_of(unpacked)
+    # The linearization, of which the states follow without a force from M, m, l as in textbooks.
+    np.testing.assert_allclose((plant.a[2:4, 1] / 1e-3)[:2], [-0.1 * 9.81, 1.1 * 9.81 / 0.5], rtol=1e-4)
+    reached = {}
+    for name, controller in CONTROLLERS.items():
+        found = run(unpacked, plant, controller(plant), seed=3)
+        assert abs(found.states[-1000:, 1]).max() < 5e-3 and abs(found.states[-1000:, 0]).max() < 5e-3
+        reached[name] = abs(found.states[:, 0]).max()
+    assert reached["LQR"] > TRACK + 0.02 and reached["MPC"] < TRACK + 0.01

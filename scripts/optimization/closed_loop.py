@@ -1,0 +1,169 @@
+"""
+The cart's pendulum, held upright by a controller at 1 kHz through the co-simulation FMU: its places are measured with noise, its force acts after a
+delay, and is bounded. The controllers know the FMU's linearization alone.
+"""
+
+import time
+from typing import NamedTuple
+
+import casadi
+import fmpy
+import numpy as np
+from fmpy.fmi2 import FMU2Slave
+from optimization.collocation import slopes_of
+from optimization.tasks import CART
+from scipy.linalg import expm, solve_discrete_are
+
+PERIOD = 1e-3  # s
+DELAY = 3  # periods
+NOISE = np.array([5e-4, 2e-3])  # standard deviations of the measured x (m) and theta (rad)
+FORCE, TRACK = CART.strength[0], 0.28  # N and m
+START = np.array([0.2, 0.1, 0.0, 0.0])
+WEIGHTS, EFFORT = np.diag([20.0, 10.0, 1.0, 1.0]), 0.02
+LEAVING = 1e3  # the cost of leaving the track by 1 m, squared, in units of that of forces
+BLOCKS, BLOCK = 20, 40  # of the prediction: so many forces, each for so many periods
+
+
+class Plant(NamedTuple):
+    """x' = a x + b F over a period, with the forces that are on their way as further states; the last of them acts."""
+
+    a: np.ndarray
+    b: np.ndarray
+
+
+def plant_of(unpacked):
+    slopes = slopes_of(unpacked, CART)
+    states, force = casadi.MX.sym("x", 4), casadi.MX.sym("F")
+    matrix = casadi.Function("matrix", [states, force], [casadi.horzcat(casadi.jacobian(slopes(states, force), states), casadi.jacobian(slopes(states, force), force))])
+    continuous = np.zeros((5, 5))
+    continuous[:4] = matrix(np.zeros(4), 0.0)
+    discrete = expm(PERIOD * continuous)[:4]
+    count = 4 + DELAY
+    a, b = np.zeros((count, count)), np.zeros((count, 1))
+    a[:4, :4], a[:4, 4] = discrete[:, :4], discrete[:, 4]
+    a[range(4, count - 1), range(5, count)] = 1.0
+    b[count - 1] = 1.0
+    return Plant(a, b)
+
+
+def regulator_of(plant):
+    """The gain of the linear-quadratic regulator, and the cost of all that is to come."""
+    weights = np.zeros_like(plant.a)
+    weights[:4, :4] = PERIOD * WEIGHTS
+    cost = solve_discrete_are(plant.a, plant.b, weights, np.array([[PERIOD * EFFORT]]))
+    gain = np.linalg.solve(PERIOD * EFFORT + plant.b.T @ cost @ plant.b, plant.b.T @ cost @ plant.a)
+    return gain, cost, weights
+
+
+class Regulator:
+    """LQR: a linear law, cut at the bounds of the force."""
+
+    def __init__(self, plant):
+        self.gain, _, _ = regulator_of(plant)
+
+    def force(self, state):
+        return float(np.clip(-self.gain @ state, -FORCE, FORCE)[0])
+
+
+class Predictor:
+    """MPC: the forces of some blocks of time that cost least, within the bounds of force and track, of which the first is taken."""
+
+    def __init__(self, plant):
+        _, cost, weights = regulator_of(plant)
+        count = len(plant.a)
+        powers, sums, step = np.eye(count), np.zeros((count, 1)), np.zeros((count, count))
+        inner = np.zeros((count + 1, count + 1))
+        whole = np.block([[plant.a, plant.b], [np.zeros((1, count)), np.ones((1, 1))]])
+        stage = np.zeros_like(whole)
+        stage[:count, :count], stage[count, count] = weights, PERIOD * EFFORT
+        power = np.eye(count + 1)
+        for _ in range(BLOCK):
+            inner += power.T @ stage @ power
+            power = whole @ power
+        a, b = power[:count, :count], power[:count, count:]
+        free, forced = np.eye(count), np.zeros((count, BLOCKS))  # the state at the beginning of a block, of the first state and of the forces
+        hessian, mixed, self.track_free, self.track_forced = np.zeros((BLOCKS, BLOCKS)), np.zeros((BLOCKS, count)), [], []
+        for k in range(BLOCKS):
+            chosen = np.zeros((1, BLOCKS))
+            chosen[0, k] = 1.0
+            left, right = np.vstack([forced, chosen]), np.vstack([free, np.zeros((1, count))])
+            hessian += left.T @ inner @ left
+            mixed += left.T @ inner @ right
+            free, forced = a @ free, a @ forced + b @ chosen
+            self.track_free.append(free[0])  # behind the block
+            self.track_forced.append(forced[0])
+        hessian += forced.T @ cost @ forced
+        size = hessian.diagonal().max()
+        self.mixed = np.vstack([mixed + forced.T @ cost @ free, np.zeros((1, count))]) / size
+        # The last unknown is by how much the cart may leave its track, which costs much: there is a solution always.
+        self.hessian = np.zeros((BLOCKS + 1, BLOCKS + 1))
+        self.hessian[:BLOCKS, :BLOCKS], self.hessian[BLOCKS, BLOCKS] = (hessian + hessian.T) / (2 * size), LEAVING
+        self.track_free, left = np.array(self.track_free), np.array(self.track_forced)
+        self.track_forced = np.block([[left, -np.ones((BLOCKS, 1))], [left, np.ones((BLOCKS, 1))]])
+        shapes = {"h": casadi.Sparsity.dense(*self.hessian.shape), "a": casadi.Sparsity.dense(*self.track_forced.shape)}
+        self.solver = casadi.conic("program", "daqp", shapes, {})
+        self.least, self.most = (np.append(np.full(BLOCKS, bound), end) for bound, end in ((-FORCE, 0.0), (FORCE, np.inf)))
+
+    def force(self, state):
+        room, open_end = self.track_free @ state, np.full(BLOCKS, np.inf)
+        found = self.solver(h=self.hessian, g=self.mixed @ state, a=self.track_forced, lbx=self.least, ubx=self.most,
+                            lba=np.concatenate([-open_end, -TRACK - room]), uba=np.concatenate([TRACK - room, open_end]))  # fmt: skip
+        return float(np.clip(float(found["x"][0]), -FORCE, FORCE))
+
+
+class Observer:
+    """Kalman's filter of the measured places, at rest; it knows the forces."""
+
+    def __init__(self, plant, start):
+        self.plant, self.look = plant, np.eye(2, len(plant.a))
+        disturbance = 1e-9 * np.eye(len(plant.a))
+        disturbance[2:4, 2:4] = 1e-5 * np.eye(2)
+        covariance = solve_discrete_are(plant.a.T, self.look.T, disturbance, np.diag(NOISE**2))
+        self.gain = covariance @ self.look.T @ np.linalg.inv(self.look @ covariance @ self.look.T + np.diag(NOISE**2))
+        self.state = np.concatenate([start, np.zeros(len(plant.a) - len(start))])
+
+    def correct(self, measured):
+        self.state = self.state + self.gain @ (measured - self.look @ self.state)
+        return self.state
+
+    def predict(self, force):
+        self.state = self.plant.a @ self.state + self.plant.b[:, 0] * force
+
+
+class Run(NamedTuple):
+    times: np.ndarray
+    states: np.ndarray  # as they are, a row for each period
+    forces: np.ndarray  # as the controller wishes them
+    seconds: np.ndarray  # that observer and controller took
+
+
+def run(unpacked, plant, controller, duration=5.0, seed=1):
+    """The nonlinear FMU, measured and driven."""
+    description = fmpy.read_model_description(str(unpacked))
+    references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    cart = FMU2Slave(guid=description.guid, unzipDirectory=str(unpacked), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="cart")
+    cart.instantiate()
+    cart.setupExperiment(startTime=0.0)
+    places = [references[name] for name in CART.states]
+    cart.setReal(places, START)
+    cart.enterInitializationMode()
+    cart.exitInitializationMode()
+    noise = np.random.default_rng(seed).normal(size=(round(duration / PERIOD), 2)) * NOISE
+    observer, underway = Observer(plant, [*(START[:2] + noise[0]), 0.0, 0.0]), [0.0] * DELAY
+    rows, forces, seconds = [], [], []
+    for k, error in enumerate(noise):
+        rows.append(cart.getReal(places))
+        begin = time.perf_counter()
+        force = controller.force(observer.correct(rows[-1][:2] + error))
+        observer.predict(force)
+        seconds.append(time.perf_counter() - begin)
+        forces.append(force)
+        cart.setReal([references["F"]], [underway.pop(0)])
+        underway.append(force)
+        cart.doStep(k * PERIOD, PERIOD)
+    cart.terminate()
+    cart.freeInstance()
+    return Run(PERIOD * np.arange(len(rows)), np.array(rows), np.array(forces), np.array(seconds))
+
+
+CONTROLLERS = {"LQR": Regulator, "MPC": Predictor}
