@@ -1,5 +1,6 @@
 """Derivatives of motions, and fits to measurements, of the package: against closed forms, and data that were made with known values and noise."""
 
+import math
 import re
 import subprocess
 import sys
@@ -21,12 +22,17 @@ OSCILLATOR = """<system name="Oscillator"><!-- kept -->
   <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
   <experiment stopTime="4"/></system>"""
 BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
-  <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="0.5"/></system>"""
+  <parameter name="e" start="0.5" unit="1"/>
+  <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
+# A block on a belt, which sticks and slides.
+BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>
+  <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
+  <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Oscillator": OSCILLATOR, "Ball": BALL})
+    build_systems("fitted", {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT})
 
 
 @pytest.fixture(scope="module")
@@ -83,12 +89,53 @@ def test_derivative_of_a_pendulum(lagrange_fmu, name):
     assert found.derivatives[of, "l"][1] == pytest.approx(expected, rel=1e-7)
 
 
-def test_events_are_refused(lagrange_fmu):
-    """A derivative through an impact is another than what the equations between impacts say."""
-    fall = lagrange_fmu.sensitivities(fmu.archive("Ball"), ["h"], ["g"], [0, 0.4])
-    assert fall.derivatives["h", "g"][1] == pytest.approx(-(0.4**2) / 2, rel=1e-9)
-    with pytest.raises(lagrange_fmu.Problem, match="there is an event between .* and .* s"):
-        lagrange_fmu.sensitivities(fmu.archive("Ball"), ["h"], ["g"], [0, 1])
+def bounce(t, h0, g, e, bounces):
+    """The height of a ball that fell from h0, behind so many bounces."""
+    fall = mpmath.sqrt(2 * h0 / g)
+    time, speed = fall, e * g * fall
+    for _ in range(bounces - 1):
+        time, speed = time + 2 * speed / g, e * speed
+    return speed * (t - time) - g / 2 * (t - time) ** 2 if bounces else h0 - g / 2 * t**2
+
+
+def test_derivatives_through_impacts(lagrange_fmu):
+    """A ball that bounces, by its start, by g and by e: closed forms, between all bounces and behind them."""
+    at = {"h": 1.3, "g": 9.81, "e": 0.7}
+    fall = math.sqrt(2 * 1.3 / 9.81)
+    times = [0.0, 0.4, fall + 0.3, fall + 2 * 0.7 * fall + 0.2, fall + 2 * (0.7 + 0.49) * fall + 0.1]
+    found = lagrange_fmu.sensitivities(fmu.archive("Ball"), ["h"], list(at), times, at)
+    with mpmath.workdps(40):
+        for i, t in enumerate(times):
+            for place, name in enumerate(at):
+                along = lambda value: bounce(mpmath.mpf(t), *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())], [0, 0, 1, 2, 3][i])
+                assert found.derivatives["h", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), rel=1e-7, abs=1e-9), (t, name)
+
+
+def belt(times, k, F, u):
+    """Where the block is: a linear oscillator while it slides, carried along while it sticks; all in closed form."""
+    w = mpmath.sqrt(k)
+    slide_at = 1.5 * F / k
+    # From rest at 0 it is pulled along at first: x'' = F - k x until v = u, or until it turns.
+    catch = mpmath.asin(u * w / F) / w
+    x_catch = F / k * (1 - mpmath.cos(w * catch))
+    leave = catch + (slide_at - x_catch) / u
+    def sliding(t):  # x'' = F - k x with x = slide_at, v = u at first
+        return F / k + (slide_at - F / k) * mpmath.cos(w * t) + u / w * mpmath.sin(w * t)
+    def place(t):
+        return F / k * (1 - mpmath.cos(w * t)) if t <= catch else x_catch + u * (t - catch) if t <= leave else sliding(t - leave)
+    return [place(t) for t in times]
+
+
+def test_derivatives_through_friction(lagrange_fmu):
+    """A block that is carried along by a belt, sticks and slides again."""
+    at, times = {"k": 20.0, "F": 3.0, "u": 0.4}, [0.0, 0.1, 0.3, 0.6, 0.9]
+    found = lagrange_fmu.sensitivities(fmu.archive("Belt"), ["x"], list(at), times, at)
+    with mpmath.workdps(40):
+        for i, t in enumerate(times):
+            assert found.values["x"][i] == pytest.approx(float(belt([mpmath.mpf(t)], *map(mpmath.mpf, at.values()))[0]), abs=1e-8)
+            for place, name in enumerate(at):
+                along = lambda value: belt([mpmath.mpf(t)], *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())])[0]
+                assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), rel=1e-6, abs=1e-8), (t, name)
 
 
 def measured(generator, truth, F=0.0, noise=1e-3):

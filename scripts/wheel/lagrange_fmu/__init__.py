@@ -88,8 +88,8 @@ def sensitivities(
 ) -> Sensitivities:
     """
     The derivatives of outputs and states `of`, at times in s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
-    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, with SciPy; not through events,
-    which are refused.
+    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, with SciPy; events change
+    them by what they make of neighbouring motions. Several events at once, and one that is only touched, are refused.
     """
     from .sensitivity import sensitivities
 

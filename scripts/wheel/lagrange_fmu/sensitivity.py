@@ -12,6 +12,9 @@ try:
 except ImportError:
     raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
 
+from .saltation import Saltation, crossing_of
+
+LOOKS = 8  # at what events look at, in a step
 STEP = 1e-3  # relative, of differences of fourth order through initialization
 
 
@@ -77,30 +80,51 @@ class Motion:
     def over(self, times, values=None, inputs=None, kinks=()):
         """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, smooth between the kinks."""
         both = self.start(values or {})
-        ends = [*kinks, times[-1]]
         rows, begin = [self.read(times[0], both, inputs)], times[0]
-        before = self.point.indicators()
-        for end in ends:
-            solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
-            due = [time for time in times if begin < time <= end]
-            while solver.status == "running":
-                message = solver.step()
-                if solver.status == "failed":
-                    raise Problem(f"the motion cannot be followed beyond {solver.t:g} s: {message}")
-                self.place(solver.t, solver.y[: len(self.state_references)], inputs)
-                before = self.check_events(before, solver)
-                dense = solver.dense_output()
-                while due and due[0] <= solver.t:
-                    rows.append(self.read(due[0], dense(due.pop(0)), inputs))
-            begin, both = end, solver.y
+        due = [time for time in times if time > begin]
+        for end in [*kinks, times[-1]]:
+            while begin < end:
+                begin, both = self.follow(begin, both, end, inputs, due, rows)
         found = [np.array(part) for part in zip(*rows)]
         return found[0], found[1]
 
-    def check_events(self, before, solver):
-        now = self.point.indicators()
-        if (before * now < 0).any():
-            raise Problem(f"there is an event between {solver.t_old:g} and {solver.t:g} s, and derivatives through events are not known here; expected a stop time before it")
-        return np.where(now == 0, before, now)
+    def follow(self, begin, both, end, inputs, due, rows):
+        """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
+        solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise Problem(f"the motion cannot be followed beyond {solver.t:g} s: {message}")
+            dense = solver.dense_output()
+            event = self.event_in(dense, solver, inputs)
+            reached = event[0] if event else solver.t
+            while due and due[0] <= reached:
+                rows.append(self.read(due[0], dense(due.pop(0)), inputs))
+            if event:
+                return event[0], self.pass_over(event, dense, solver.t_old, inputs)
+        return end, solver.y
+
+    def event_in(self, dense, solver, inputs):
+        """Its time and the number of its indicator; None for none."""
+        if self.point.indicator_count == 0:
+            return None
+        count = len(self.state_references)
+
+        def indicators(time):
+            self.place(time, dense(time)[:count], inputs)
+            return self.point.indicators()
+
+        looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
+        return next((event for event in (crossing_of(indicators, *part) for part in zip(looks, looks[1:])) if event), None)
+
+    def pass_over(self, event, dense, before, inputs):
+        count = len(self.state_references)
+        time, indicator = event
+        both = dense(time)
+        early = (before + time) / 2
+        saltation = Saltation(self, time, both[:count], (early, dense(early)[:count]), indicator, inputs)
+        state, slopes = saltation.pass_over(both[count:].reshape(len(self.by), count))
+        return np.concatenate([state, slopes.ravel()])
 
 
 def check_names(point, of, by):
