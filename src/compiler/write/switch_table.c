@@ -38,16 +38,35 @@ static void write_friction_facts(FILE *file, const struct Program *program, cons
   write_name(file, program, friction->constraint);
 }
 
+static const char *friction_laws_of(const struct Switches *switches) {
+  return has_planes(switches) ? "plane_friction_laws" : "friction_laws";
+}
+
 static void write_contacts(FILE *file, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   if (switches->contact_count > 0) fputs("extern const struct ContactLaws contact_laws;\n\n", file);
   if (switches->contact_count > 0) fputs("static const struct ContactFacts contact_facts[] = {", file);
   for (size_t i = 0; i < switches->contact_count; i++) write_contact_facts(file, program, &switches->contacts[i]);
   if (switches->contact_count > 0) fputs("};\n\n", file);
-  if (switches->friction_count > 0) fputs("extern const struct FrictionLaws friction_laws;\n\n", file);
+  if (switches->friction_count > 0)
+    fprintf(file, "extern const struct FrictionLaws %s;\n\n", friction_laws_of(switches));
   if (switches->friction_count > 0) fputs("static const struct FrictionFacts friction_facts[] = {", file);
   for (size_t i = 0; i < switches->friction_count; i++) write_friction_facts(file, program, &switches->frictions[i]);
   if (switches->friction_count > 0) fputs("};\n\n", file);
+}
+
+static void write_planes(FILE *file, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  if (!has_planes(switches)) return;
+  fputs("static const struct PlaneFacts plane_facts[] = {", file);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct PlaneSide *along = &switches->frictions[i].plane;
+    if (along->axis != ALONG) continue;
+    const struct PlaneSide *across = &switches->frictions[i + 1].plane;
+    fprintf(file, "{%zu, {%d, %d}, %d, %d}, ", i, mode_index(program, along->heading),
+            mode_index(program, across->heading), mode_index(program, along->lower), mode_index(program, along->upper));
+  }
+  fputs("};\n\n", file);
 }
 
 static void write_rests(FILE *file, const struct Program *program) {
@@ -102,6 +121,7 @@ void switching_write(FILE *file, const struct Program *program) {
   if (program->watched_series != NULL) statements_watched_limit(file, program);
   write_branches(file, program);
   write_contacts(file, program);
+  write_planes(file, program);
   write_rests(file, program);
   write_events(file, program);
   fprintf(file,
@@ -123,7 +143,9 @@ void switching_write(FILE *file, const struct Program *program) {
   if (switches->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (switching->rests != NULL) fputs("    .rests_on = rests,\n", file);
   if (switches->friction_count > 0)
-    fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
+    fprintf(file, "    .frictions = friction_facts,\n    .friction_laws = &%s,\n", friction_laws_of(switches));
+  if (has_planes(switches))
+    fputs("    .planes = plane_facts,\n    .plane_count = sizeof plane_facts / sizeof *plane_facts,\n", file);
   if (switches->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
   fputs("};\n\n", file);
 }

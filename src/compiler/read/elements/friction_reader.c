@@ -1,4 +1,4 @@
-/* <friction>: along a velocity. */
+/* <friction>: along a velocity, or in the plane of two. */
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "read/context/constraint_checks.h"
@@ -51,6 +51,17 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
   }
 }
 
+/* The velocity across that of a friction which acts in a plane. */
+static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension along, struct Quantity *velocity) {
+  if (!has_attribute(node, "velocity")) {
+    report_at(reader, node, "a <friction> with across and without velocity; expected velocity=\"...\" beside it");
+    return false;
+  }
+  if (!expression_attribute(reader, node, "across", IN_CONSTRAINT, velocity)) return false;
+  if (along.known) require_unit(reader, xmlGetLineNo(node), "across", *velocity, along);
+  return true;
+}
+
 /* Reads what friction pushes with; false after reporting an error. */
 static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
                                  struct Friction *friction) {
@@ -63,28 +74,48 @@ static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct 
   return true;
 }
 
-/* Sliding, it pushes against the velocity; sticking, it is the force of the constraint velocity = 0. */
-void read_friction(struct Reader *reader, xmlNodePtr node) {
-  struct Model *model = reader->model;
-  struct Graph *graph = model->graph;
-  struct Friction *friction = &model->switches.frictions[reader->present->number];
-  struct Variable *constraint = &model->constraints.items[friction->constraint];
-  struct Quantity velocity = {.node = ZERO};
-  if (!read_velocity(reader, node, &velocity)) return;
-  if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
+static void set_velocity(struct Reader *reader, xmlNodePtr node, struct Friction *friction, Node velocity) {
+  if (velocity != ZERO && !graph_depends_on(reader->model->graph, velocity, VELOCITY))
     report_at(reader, node,
-              "the velocity of a <friction> depends on no velocity; expected an expression such as v - vBelt");
-  struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
-  friction->velocity = velocity.node;
-  if (!read_friction_forces(reader, node, unit, friction)) return;
+              "the velocity %sof a <friction> depends on no velocity; expected an expression such as v - vBelt",
+              friction->plane.axis == ACROSS ? "across " : "");
+  friction->velocity = velocity;
+}
+
+/* Sticking, it is the force of the constraint velocity = 0. */
+static void hold_velocity(struct Reader *reader, const struct Friction *friction, struct Dimension unit) {
+  struct Graph *graph = reader->model->graph;
+  struct Variable *constraint = &reader->model->constraints.items[friction->constraint];
   constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
   Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
-  constraint->node = function(graph, GATE, sticks, velocity.node);
+  constraint->node = function(graph, GATE, sticks, friction->velocity);
   check_constraint(reader, constraint);
-  if (reader->diagnostics->errors > 0) return;
-  Node push = negate(graph, multiply(graph, friction->mode, friction->sliding));
-  const struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
-  add_virtual_work(model, push, &levers);
+}
+
+/* Sliding, it pushes against the velocity. */
+static void add_push(struct Reader *reader, const struct Friction *friction) {
+  struct Graph *graph = reader->model->graph;
+  Node push = negate(graph, sliding_push(graph, friction));
+  const struct Gradient levers = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
+  add_virtual_work(reader->model, push, &levers);
+}
+
+void read_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Friction *friction = &reader->model->switches.frictions[reader->present->number];
+  size_t parts = has_attribute(node, "across") ? 2 : 1;
+  struct Quantity velocity = {.node = ZERO}, across = {.node = ZERO};
+  if (!read_velocity(reader, node, &velocity)) return;
+  set_velocity(reader, node, friction, velocity.node);
+  if (parts > 1 && !read_across(reader, node, velocity.dimension, &across)) return;
+  if (parts > 1) set_velocity(reader, node, friction + 1, across.node);
+  struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
+  if (!read_friction_forces(reader, node, unit, friction)) return;
+  for (size_t i = 0; i < parts; i++) {
+    friction[i].sliding = friction->sliding;
+    friction[i].stiction = friction->stiction;
+    hold_velocity(reader, &friction[i], unit);
+  }
+  for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);
 }
 
 void complete_friction_forces(struct Reader *reader) {

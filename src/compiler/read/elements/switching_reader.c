@@ -101,14 +101,37 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
 }
 
-void declare_friction(struct Reader *reader, xmlNodePtr node) {
+/* Returns the friction, without its constraint. */
+static struct Friction *append_friction(struct Reader *reader, struct Friction friction) {
   struct Switches *switches = &reader->model->switches;
-  struct Variable constraint = common_attributes(reader, node);
-  reader->present->number = switches->friction_count;
   switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
-  switches->frictions[switches->friction_count++] = (struct Friction){
-      .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
-  switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
+  switches->frictions[switches->friction_count] = friction;
+  return &switches->frictions[switches->friction_count++];
+}
+
+/* Makes a friction, the last one, the part along of one in a plane, and appends the part across. */
+static void declare_plane(struct Reader *reader, struct Friction *along, struct Variable constraint) {
+  const char *name = constraint.name;
+  along->plane.axis = ALONG;
+  along->plane.heading = new_mode(reader, name, "heading");
+  struct Friction across = *along;
+  across.plane.axis = ACROSS;
+  across.plane.heading = new_mode(reader, name, "across.heading");
+  along->plane.lower = across.plane.lower = new_mode(reader, name, "lower");
+  along->plane.upper = across.plane.upper = new_mode(reader, name, "upper");
+  constraint.name = format_text("%s.across", name);
+  if (constraint.description != NULL) constraint.description = format_text("%s, across", constraint.description);
+  across.constraint = declare_held(reader, constraint);
+  append_friction(reader, across);
+}
+
+void declare_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Variable constraint = common_attributes(reader, node);
+  reader->present->number = reader->model->switches.friction_count;
+  Node mode = new_mode(reader, constraint.name, "mode"), told = new_told_mode(reader, &constraint, "sliding");
+  struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .told = told});
+  friction->constraint = declare_held(reader, constraint);
+  if (has_attribute(node, "across")) declare_plane(reader, friction, constraint);
   reader->model->forces.any = true;
 }
 
