@@ -155,6 +155,18 @@ struct FrictionFacts {
   const char *name;
 };
 
+/*
+ * Friction in the plane of two velocities: the frictions along and across, which follow each other, have one mode: 1 while it
+ * slides, 0 while it sticks, and -1 while it slides along its heading, as it does from rest on. The mode may change where it is
+ * slower than the lower speed, goes back along the heading as fast, or is faster than the upper one, or aside of the heading.
+ */
+struct PlaneFacts {
+  size_t along;      /* among the frictions */
+  size_t heading[2]; /* the modes that are a unit vector */
+  size_t lower,
+      upper; /* modes, in units of the velocity; a negative upper one is where it goes back along the heading */
+};
+
 /* What an event sets: a state, or a mode. */
 struct AssignmentFacts {
   enum VariableKind kind;
@@ -206,12 +218,15 @@ struct SwitchTable {
   size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
   /* What decides on the modes: value[] as below. */
   void (*switching_values)(const struct Point *point, const double *acceleration, double *value);
+  const struct PlaneFacts *planes; /* ascending; NULL where there are none */
+  size_t plane_count;
 };
 
 /*
  * value[] of struct SwitchTable: the indicators of the branches, then their time derivatives; of each contact the gap, its first
  * and second time derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the
- * force while it slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta.
+ * force while it slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta;
+ * of frictions in a plane the scale of the speed.
  */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
 enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
@@ -239,6 +254,10 @@ static inline size_t assignment_place(const struct SwitchTable *switches, size_t
 /* Of the kinetic energy, before the potential one and the momenta. */
 static inline size_t energy_place(const struct SwitchTable *switches) {
   return assignment_place(switches, switches->assignment_count);
+}
+
+static inline size_t plane_place(const struct SwitchTable *switches, size_t plane) {
+  return energy_place(switches) + switches->energy_count + plane;
 }
 
 /* indicator[] of struct SwitchTable: of the branches, the contacts and the frictions. */

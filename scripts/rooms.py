@@ -62,6 +62,7 @@ RUNTIME = House(
     src/runtime/methods/sundials
     src/runtime/events
     src/runtime/contacts
+    src/runtime/planes
     src/runtime/stepping
     src/runtime/fmi
     src/runtime/fmi2

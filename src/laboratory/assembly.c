@@ -19,7 +19,7 @@
 
 extern const struct Solver solver_taylor, solver_radau, solver_auto, solver_exact;
 extern const struct ContactLaws contact_laws;
-extern const struct FrictionLaws friction_laws;
+extern const struct FrictionLaws friction_laws, plane_friction_laws;
 
 static const struct {
   const char *name;
@@ -131,7 +131,8 @@ static struct SwitchTable *switches_of(const struct Program *program) {
   struct SwitchTable *switches = allocate(1, sizeof *switches);
   *switches = switch_facts_of(program);
   if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
-  if (switches->friction_count > 0) switches->friction_laws = &friction_laws;
+  if (switches->friction_count > 0)
+    switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
   return switches;
 }
 

@@ -428,6 +428,18 @@ PLACES = [
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
     ("if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);", "", pytest("test_roundings_of_contacts", "lift_off")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
+    # Friction in a plane
+    ("return divide(graph, component[friction - along], power_number(graph, square, 0.5));", "return component[friction - along];",
+     pytest("test_friction_in_a_plane", "stops_on_a_line")),
+    ("state.needed = hypot(state.force[0], state.force[1]);", "state.needed = fmax(fabs(state.force[0]), fabs(state.force[1]));",
+     pytest("test_friction_in_a_plane", "comes_to_rest")),
+    ("slow_share = 10.0;", "slow_share = 1.0;", pytest("test_friction_in_a_plane", "ends_to_slide")),
+    ("return act_on_headings(settlement, again);", "return false ? act_on_headings(settlement, again) : NULL;",
+     pytest("test_friction_in_a_plane", "opposite_to_the_acceleration")),
+    ("share = size > limit ? limit / size : 1.0;", "share = size > limit ? fmin(1.0, limit / fmax(fabs(along), fabs(across))) : 1.0;",
+     pytest("test_friction_in_a_plane", "bounce_with_spin")),
+    ("state.aside < -slope_back * state.ahead;", "state.aside < -1e9 + slope_back * state.ahead;",
+     pytest("test_friction_in_a_plane", "long_steps")),
 ]
 
 # Changes that are no faults, since what they leave out follows from the rest: (what stands there, what was planted, why).

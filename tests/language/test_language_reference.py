@@ -100,6 +100,16 @@ def block(t):
     return {"x": 2 * moving - 0.3 * 9.81 * moving**2 / 2, "v": 2 - 0.3 * 9.81 * moving}
 
 
+def cue_ball(t):
+    spin, velocity = 0.0286 * np.array([-10, -20]), np.array([1, 0])  # its velocity if it rolled so
+    slip = velocity - spin
+    size = np.linalg.norm(slip)
+    slides = min(t, 2 * size / (7 * 0.2 * 9.81))
+    end = velocity - 0.2 * 9.81 * slides * slip / size
+    place = (velocity + end) / 2 * slides + end * (t - slides)
+    return {"x": place[0], "y": place[1], "vx": end[0], "vy": end[1], "h": 0}
+
+
 def dropped_ball(t):
     """Parabolas between bounces, each with half the velocity of the one before."""
     flight, velocity = 2 * np.sqrt(2 / 9.81), np.sqrt(2 * 9.81)
@@ -197,6 +207,7 @@ MOTIONS = {
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-12),
+    "CueBall": (cue_ball, 1e-9),
     "DroppedBall": (dropped_ball, 1e-12),
     "Thermostat": (thermostat, 1e-9),
     "Latch": (lambda t: {"x": (10 * t**3 - 1.25) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0}, 1e-12),

@@ -157,9 +157,12 @@ static void append_modes(struct Interface *interface, const struct Model *model)
                 "1 while it is closed, else 0");
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
+    bool is_in_plane = switches->frictions[i].plane.axis != NO_PLANE;
+    if (switches->frictions[i].plane.axis == ACROSS) continue; /* it slides as the one along */
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
     append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
-                "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
+                is_in_plane ? "1 while it slides, 0 while it sticks"
+                            : "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
   }
 }
 

@@ -97,6 +97,51 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }
 
+/* The component of the velocity in a plane along the heading, or to the left of it. */
+static Node velocity_by_heading(struct Graph *graph, const struct Friction *along, bool is_left) {
+  Node first = multiply(graph, along[0].plane.heading, along[is_left ? 1 : 0].velocity);
+  Node second = multiply(graph, along[1].plane.heading, along[is_left ? 0 : 1].velocity);
+  return is_left ? subtract(graph, first, second) : add(graph, first, second);
+}
+
+/*
+ * In units of the velocity: falls through 0 where the speed falls to the lower one, or that along the heading below 0 by as much,
+ * or the force needed comes to the stiction.
+ */
+static Node lower_indicator(const struct Model *model, const struct Friction *along) {
+  struct Graph *graph = model->graph;
+  Node left = power_number(graph, along->stiction, 2.0);
+  for (int i = 0; i < 2; i++) {
+    Node square = power_number(graph, model->unknowns.forces[along[i].constraint], 2.0);
+    left = subtract(graph, left, square);
+  }
+  Node lower = along->plane.lower, above = subtract(graph, divide(graph, square_of_speed(graph, along), lower), lower);
+  Node ahead = add(graph, velocity_by_heading(graph, along, false), lower);
+  Node moves = choose_node(graph, along->mode, above, ahead);
+  return choose_node(graph, power_number(graph, along->mode, 2.0), moves, left);
+}
+
+/*
+ * The same where the speed rises to the upper one, or that to the side of the heading; with a negative upper one, where that along
+ * the heading falls to it.
+ */
+static Node upper_indicator(const struct Model *model, const struct Friction *along) {
+  struct Graph *graph = model->graph;
+  Node upper = along->plane.upper, speed = square_of_speed(graph, along);
+  Node aside = power_number(graph, velocity_by_heading(graph, along, true), 2.0);
+  Node square = choose_node(graph, along->mode, speed, aside);
+  Node ahead = subtract(graph, velocity_by_heading(graph, along, false), upper);
+  return choose_node(graph, upper, subtract(graph, upper, divide(graph, square, upper)), ahead);
+}
+
+static Node indicator_by_axis(const struct Model *model, const struct Friction *friction) {
+  switch (friction->plane.axis) {
+  case ALONG: return lower_indicator(model, friction);
+  case ACROSS: return upper_indicator(model, friction - 1);
+  default: return indicator_of_friction(model, friction);
+  }
+}
+
 static void fill_indicators(const struct Model *model, const struct SwitchTable *counts,
                             struct SwitchingExpressions *switching) {
   switching->indicator_count = indicator_count(counts);
@@ -105,7 +150,7 @@ static void fill_indicators(const struct Model *model, const struct SwitchTable 
   for (size_t i = 0; i < counts->contact_count; i++)
     switching->indicators[contact_indicator(counts, i)] = indicator_of_contact(model, &model->switches.contacts[i]);
   for (size_t i = 0; i < counts->friction_count; i++)
-    switching->indicators[friction_indicator(counts, i)] = indicator_of_friction(model, &model->switches.frictions[i]);
+    switching->indicators[friction_indicator(counts, i)] = indicator_by_axis(model, &model->switches.frictions[i]);
 }
 
 static void append_watched(const struct Model *model, const struct SwitchingExpressions *switching,
@@ -145,6 +190,32 @@ static void append_energies(const struct Model *model, const struct Equations *e
   for (size_t i = 0; i < n && graph_depends_on(model->graph, model->energies.kinetic.node, MODE); i++)
     append_node(list, momentum[i]);
   switching->energy_count = list->count - first;
+}
+
+/* The scale of the speed: that of all velocities in it, each of its present size, or its nominal one where that is larger. */
+static Node scale_of_plane(const struct Model *model, const struct Friction *along) {
+  struct Graph *graph = model->graph;
+  Node scale = ZERO;
+  for (int axis = 0; axis < 2; axis++) {
+    const struct Gradient levers = gradient_by_kinds(graph, along[axis].velocity, 1u << VELOCITY);
+    for (size_t i = 0; i < levers.count; i++) {
+      const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
+      double nominal = model->velocities.items[symbol->index].nominal;
+      Node size = function(graph, ABSOLUTE, levers.symbols[i], ZERO);
+      size = add(graph, size, graph_constant(graph, isnan(nominal) ? 1.0 : nominal));
+      Node lever = function(graph, ABSOLUTE, levers.values[i], ZERO);
+      Node term = multiply(graph, lever, size);
+      scale = add(graph, scale, term);
+    }
+  }
+  return scale;
+}
+
+static void append_planes(const struct Model *model, struct NodeList *list) {
+  for (size_t i = 0; i < model->switches.friction_count; i++) {
+    const struct Friction *friction = &model->switches.frictions[i];
+    if (friction->plane.axis == ALONG) append_node(list, scale_of_plane(model, friction));
+  }
 }
 
 static void fill_contacts(const struct Model *model, const struct SwitchTable *counts, const Node *seeds,
@@ -210,6 +281,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
   fill_events(&model->switches, counts, values);
   append_nodes(list, values, count);
   append_energies(model, equations, switching, list);
+  append_planes(model, list);
 }
 
 /* Whether the friction follows from the force of the contact. */

@@ -12,7 +12,35 @@ bool has_switches(const struct Switches *switches) {
   return switches->branch_count + switches->contact_count + switches->friction_count > 0;
 }
 
+bool has_planes(const struct Switches *switches) {
+  bool has = false;
+  for (size_t i = 0; i < switches->friction_count; i++) has |= switches->frictions[i].plane.axis != NO_PLANE;
+  return has;
+}
+
+Node square_of_speed(struct Graph *graph, const struct Friction *along) {
+  Node first = power_number(graph, along[0].velocity, 2.0), second = power_number(graph, along[1].velocity, 2.0);
+  return add(graph, first, second);
+}
+
+/* This component of the unit vector against which a friction in a plane pushes; of its heading as it begins to slide. */
+static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
+  const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
+  Node square = ZERO, component[2];
+  for (int i = 0; i < 2; i++) {
+    component[i] = choose_node(graph, along->mode, along[i].velocity, along[i].plane.heading);
+    square = add(graph, square, power_number(graph, component[i], 2.0));
+  }
+  return divide(graph, component[friction - along], power_number(graph, square, 0.5));
+}
+
+Node sliding_push(struct Graph *graph, const struct Friction *friction) {
+  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, friction->sliding);
+  Node moves = power_number(graph, friction->mode, 2.0);
+  return multiply(graph, friction->sliding, function(graph, GATE, moves, direction_in_plane(graph, friction)));
+}
+
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
-  Node sliding = multiply(graph, friction->mode, friction->sliding);
-  return choose_node(graph, power_number(graph, friction->mode, 2.0), sliding, force);
+  Node push = sliding_push(graph, friction);
+  return choose_node(graph, power_number(graph, friction->mode, 2.0), push, force);
 }

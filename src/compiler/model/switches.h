@@ -25,6 +25,19 @@ struct Contact {
 };
 
 /*
+ * What a friction along one of two velocities has that acts in their plane: Coulomb's cone. Both are frictions of the model, the
+ * one across follows the one along, and share their modes: the common mode is 1 while the friction slides against the velocity
+ * in the plane, 0 while it sticks, and -1 while it slides along the heading, as it does from rest on.
+ */
+enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
+
+struct PlaneSide {
+  enum PlaneAxis axis;
+  Node heading;      /* a mode: this component of a unit vector */
+  Node lower, upper; /* modes: speeds at which the mode may change; a negative upper one is along the heading */
+};
+
+/*
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, 0 while it sticks: then a constraint
  * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
  * where others hold the velocity at 0: the told mode is 0 then.
@@ -32,6 +45,7 @@ struct Contact {
 struct Friction {
   size_t constraint; /* among the model's */
   Node mode, told, velocity, sliding, stiction;
+  struct PlaneSide plane;
 };
 
 /* What a variable becomes at an event: a coordinate, a velocity or a mode. */
@@ -66,6 +80,15 @@ void append_branch(struct Switches *switches, struct Branch branch);
 
 /* Whether anything may happen along the motion. */
 bool has_switches(const struct Switches *switches);
+
+/* Whether any friction acts in a plane. */
+bool has_planes(const struct Switches *switches);
+
+/* Of a friction that acts in a plane, of which this is the part along: the square of the speed. */
+Node square_of_speed(struct Graph *graph, const struct Friction *along);
+
+/* What it pushes with against its velocity as it slides, and along it where that is negative. */
+Node sliding_push(struct Graph *graph, const struct Friction *friction);
 
 /* The force of a friction, from that of its constraint: while it slides it belongs to none. */
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);

@@ -52,6 +52,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
   if (program->routines[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
+  if (has_planes(switches)) include_room(file, "planes");
   fputs("#endif\n", file);
 }
 

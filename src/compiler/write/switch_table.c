@@ -37,14 +37,29 @@ static void write_contacts(FILE *file, const struct SwitchTable *facts) {
   fputs("};\n\n", file);
 }
 
+static const char *friction_laws_of(const struct SwitchTable *facts) {
+  return facts->plane_count > 0 ? "plane_friction_laws" : "friction_laws";
+}
+
 static void write_frictions(FILE *file, const struct SwitchTable *facts) {
   if (facts->friction_count == 0) return;
-  fputs("extern const struct FrictionLaws friction_laws;\n\nstatic const struct FrictionFacts friction_facts[] = {",
-        file);
+  fprintf(file, "extern const struct FrictionLaws %s;\n\nstatic const struct FrictionFacts friction_facts[] = {",
+          friction_laws_of(facts));
   for (size_t i = 0; i < facts->friction_count; i++) {
     const struct FrictionFacts *friction = &facts->frictions[i];
     fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->told, friction->constraint);
     write_name(file, friction->name);
+  }
+  fputs("};\n\n", file);
+}
+
+static void write_planes(FILE *file, const struct SwitchTable *facts) {
+  if (facts->plane_count == 0) return;
+  fputs("static const struct PlaneFacts plane_facts[] = {", file);
+  for (size_t i = 0; i < facts->plane_count; i++) {
+    const struct PlaneFacts *plane = &facts->planes[i];
+    fprintf(file, "{%zu, {%zu, %zu}, %zu, %zu}, ", plane->along, plane->heading[0], plane->heading[1], plane->lower,
+            plane->upper);
   }
   fputs("};\n\n", file);
 }
@@ -101,7 +116,9 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   if (facts->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (facts->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
   if (facts->friction_count > 0)
-    fputs("    .frictions = friction_facts,\n    .friction_laws = &friction_laws,\n", file);
+    fprintf(file, "    .frictions = friction_facts,\n    .friction_laws = &%s,\n", friction_laws_of(facts));
+  if (facts->plane_count > 0)
+    fputs("    .planes = plane_facts,\n    .plane_count = sizeof plane_facts / sizeof *plane_facts,\n", file);
   if (facts->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
   fputs("};\n\n", file);
 }
@@ -116,6 +133,7 @@ void switching_write(FILE *file, const struct Program *program) {
   write_branches(file, &facts);
   write_contacts(file, &facts);
   write_frictions(file, &facts);
+  write_planes(file, &facts);
   write_rests(file, &facts);
   write_events(file, &facts);
   write_table(file, program, &facts);

@@ -101,8 +101,7 @@ static double mobility_with_friction(const struct Settlement *settlement, const 
   size_t contacts = pushes->contact_count;
   double sum = pushes->mobility[i * pushes->count + j];
   for (size_t f = 0; f < pushes->friction_count; f++) {
-    const struct FrictionFacts *facts = &settlement->switches->frictions[pushes->member[contacts + f]];
-    double against = mode_of(settlement, facts->mode) * pushes->coefficient[f * contacts + j];
+    double against = sliding_share(settlement, pushes->member[contacts + f]) * pushes->coefficient[f * contacts + j];
     sum -= against * pushes->mobility[i * pushes->count + contacts + f];
   }
   return sum;
@@ -261,8 +260,8 @@ static const char *locking_friction(const struct Settlement *settlement, const s
   size_t contacts = pushes->contact_count, most = 0;
   double taken = -INFINITY;
   for (size_t f = 0; f < pushes->friction_count; f++) {
-    const struct FrictionFacts *facts = &settlement->switches->frictions[pushes->member[contacts + f]];
-    double takes = mode_of(settlement, facts->mode) * pushes->coefficient[f * contacts + contact] *
+    double takes = sliding_share(settlement, pushes->member[contacts + f]) *
+                   pushes->coefficient[f * contacts + contact] *
                    pushes->mobility[contact * pushes->count + contacts + f];
     if (takes > taken) most = f;
     taken = fmax(takes, taken);

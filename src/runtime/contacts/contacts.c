@@ -8,6 +8,7 @@
 
 #include "contacts/contact_forces.h"
 #include "contacts/impacts.h"
+#include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
@@ -135,7 +136,7 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
     size_t velocity = friction_place(switches, i, FRICTION_VELOCITY);
-    bool slides = fabs(settlement->value[velocity]) > settlement->noise[velocity];
+    bool slides = sliding_speed(settlement, i) > settlement->noise[velocity];
     if (rests_on(switches, i, contact) && !slides) set_friction(settlement, i, 0.0);
   }
 }

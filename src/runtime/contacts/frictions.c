@@ -2,15 +2,15 @@
  * Dry friction: which slides, which sticks. Of frictions the first that cannot stay as it is switches, by Murty's least-index
  * method: it comes to an end, but the first ones may switch often where many act on one another.
  */
+#include "contacts/frictions.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
 
+#include "contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
-#include "events/settlement.h"
-
-enum { FRICTION_FLIP_LIMIT = 500 };
 
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
@@ -85,7 +85,7 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
   return state.mode == 0.0 ? mode_from_rest(settlement, &state) : mode_from_sliding(settlement, &state);
 }
 
-static const char *refuse_friction(const struct Settlement *settlement, size_t friction) {
+const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
   log_message(settlement->instance, STATUS_DISCARD,
               "time %g: the friction '%s' neither sticks nor slides; expected a stiction of at least the "
               "force while it slides",
@@ -93,14 +93,15 @@ static const char *refuse_friction(const struct Settlement *settlement, size_t f
   return neither;
 }
 
-static const char *act_once_on_friction(struct Settlement *settlement, bool *switched) {
+const char *frictions_act(struct Settlement *settlement, bool *switched) {
   const struct SwitchTable *switches = settlement->switches;
   *switched = false;
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
+    if (is_in_plane(switches, i)) continue;
     double mode = friction_mode(settlement, i);
     if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
     if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT)
-      return refuse_friction(settlement, i);
+      return frictions_refuse(settlement, i);
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
     *switched = true;
   }
@@ -121,31 +122,36 @@ static size_t count_redundant(struct Settlement *settlement) {
   return count;
 }
 
-/* Whether a friction that counts as sliding has a velocity that others hold: *held. False where that cannot be told. */
-static bool find_held(struct Settlement *settlement, const struct FrictionFacts *facts, bool *held) {
-  double *mode = &settlement->instance->parameter[facts->mode], kept = *mode;
+bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *held) {
+  size_t velocities = is_in_plane(settlement->switches, friction) ? 2 : 1;
+  double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
   size_t without = count_redundant(settlement);
   *mode = 0.0;
   settlement->instance->prepared_is_stale = true;
   size_t with = count_redundant(settlement);
   *mode = kept;
   settlement->instance->prepared_is_stale = true;
-  *held = with > without;
-  return with != SIZE_MAX && without != SIZE_MAX;
+  *held = with >= without + velocities;
+  /* What follows, as the way back to the constraints, is to find the values of the modes as they are. */
+  bool is_restored = evaluate_prepare(settlement->instance) == STATUS_DONE;
+  return is_restored && with != SIZE_MAX && without != SIZE_MAX;
 }
 
 /* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
-static bool tell_frictions(struct Settlement *settlement, bool *again) {
+bool frictions_tell(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
   double slowest = share * largest_scale(settlement->state, lagrangian.coordinate_count);
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionFacts *facts = &switches->frictions[i];
-    double mode = mode_of(settlement, facts->mode);
-    double velocity = settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
+    bool is_planar = is_in_plane(switches, i);
+    double mode = is_planar ? fabs(mode_of(settlement, facts->mode)) : mode_of(settlement, facts->mode);
+    double velocity =
+        is_planar ? speed_in_plane(settlement, i) : settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
     bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
-    if (may_rest && !find_held(settlement, facts, &held)) return false;
+    if (may_rest && !frictions_find_held(settlement, i, &held)) return false;
+    if (is_planar) i++; /* the one across is told with it */
     if (held) mode = 0.0;
     if (mode == mode_of(settlement, facts->told)) continue;
     settlement_set_mode(settlement, facts->told, mode);
@@ -155,7 +161,7 @@ static bool tell_frictions(struct Settlement *settlement, bool *again) {
 }
 
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
-static const char *check_frictions(const struct Settlement *settlement) {
+const char *frictions_check(const struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
     size_t place = friction_place(settlement->switches, i, FRICTION_FORCE);
     double force = settlement->value[place];
@@ -169,5 +175,4 @@ static const char *check_frictions(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct FrictionLaws friction_laws = {
-    .act = act_once_on_friction, .tell = tell_frictions, .check = check_frictions};
+const struct FrictionLaws friction_laws = {.act = frictions_act, .tell = frictions_tell, .check = frictions_check};

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "contacts/complementarity.h"
+#include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/services.h"
 
@@ -109,6 +110,13 @@ static double restitution_of(const struct Settlement *settlement, size_t contact
   return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;
 }
 
+/* What a share of the restitution makes of the rate of a push that is to be kept from falling below 0. */
+static double rise_by_restitution(const struct Settlement *settlement, const struct Pushes *pushes, size_t push,
+                                  double share) {
+  double bounce = push < pushes->contact_count ? restitution_of(settlement, pushes->member[push]) : 0.0;
+  return 1.0 + (pushes->rate[push] < 0.0 ? share * bounce : 0.0);
+}
+
 /* Rates that are to be kept from falling below 0, as shares of the largest. Returns this. */
 static double fill_rates(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
@@ -116,8 +124,7 @@ static double fill_rates(const struct Settlement *settlement, struct ImpactProbl
   memset(problem->rate, 0, problem->count * sizeof *problem->rate);
   for (size_t i = 0; i < pushes->count; i++) {
     bool is_contact = i < pushes->contact_count;
-    double bounce = is_contact ? restitution_of(settlement, pushes->member[i]) : 0.0;
-    double rate = pushes->rate[i] * problem->unit[i] * (1.0 + (pushes->rate[i] < 0.0 ? share * bounce : 0.0));
+    double rate = pushes->rate[i] * problem->unit[i] * rise_by_restitution(settlement, pushes, i, share);
     problem->rate[i] = rate;
     if (!is_contact) problem->rate[i + pushes->friction_count] = -rate;
     largest = fmax(largest, fabs(rate));
@@ -153,9 +160,25 @@ static bool solve_regularized(struct ImpactProblem *problem, double regularizati
   return is_solved;
 }
 
+/* The first friction among them that acts in a plane, as a row of the pushes; their number for none. */
+static size_t find_plane(const struct Settlement *settlement, const struct Pushes *pushes) {
+  size_t row = pushes->contact_count;
+  while (row < pushes->count && !is_in_plane(settlement->switches, pushes->member[row])) row++;
+  return row;
+}
+
+/* The impulses where frictions act in planes, whose cones are no linear problem. */
+static bool find_impulses_in_planes(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
+  const struct Pushes *pushes = problem->pushes;
+  for (size_t i = 0; i < pushes->count; i++)
+    problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, share);
+  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, problem->impulse);
+}
+
 /* The impulses with a share of the restitutions. False where there are none. */
 static bool find_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
+  if (find_plane(settlement, pushes) < pushes->count) return find_impulses_in_planes(settlement, problem, share);
   double scale = fill_rates(settlement, problem, share);
   bool is_solved = false;
   for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
@@ -213,10 +236,21 @@ static bool take_one(struct Settlement *settlement, const struct Pushes *pushes,
   return true;
 }
 
+static void refuse_planes(const struct Settlement *settlement, const struct Pushes *pushes) {
+  size_t row = find_plane(settlement, pushes);
+  if (row == pushes->count) return;
+  log_message(
+      settlement->instance, STATUS_DISCARD,
+      "time %g: no impulses were found for an impact with the friction '%s', which acts in a plane; expected less "
+      "friction, or another position",
+      settlement->time, settlement->switches->frictions[pushes->member[row]].name);
+}
+
 static bool take_several(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
   struct ImpactProblem problem;
   bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
   if (is_done) add_impulses(settlement, pushes, problem.impulse);
+  else refuse_planes(settlement, pushes);
   if (problem.block != NULL) settlement->instance->memory.free(problem.block);
   return is_done;
 }

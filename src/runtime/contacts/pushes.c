@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
@@ -33,6 +34,25 @@ bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double 
   double depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   double lost = fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * settlement->value[gap]);
   return rate * rate <= 2.0 * fall * fmax(lost, lost_height(settlement));
+}
+
+void set_friction(struct Settlement *settlement, size_t friction, double mode) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t plane = plane_of(switches, friction);
+  if (plane < switches->plane_count) switches->friction_laws->set_plane(settlement, plane, mode != 0.0);
+  else settlement_set_mode(settlement, switches->frictions[friction].mode, mode);
+}
+
+double sliding_share(const struct Settlement *settlement, size_t friction) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t plane = plane_of(switches, friction);
+  double mode = mode_of(settlement, switches->frictions[friction].mode);
+  if (plane == switches->plane_count) return mode;
+  const struct PlaneFacts *facts = &switches->planes[plane];
+  double speed = speed_in_plane(settlement, facts->along);
+  bool has_heading = mode < 0.0 && (speed == 0.0 || mode_of(settlement, facts->upper) > 0.0);
+  if (has_heading) return mode_of(settlement, facts->heading[friction - facts->along]);
+  return settlement->value[friction_place(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {

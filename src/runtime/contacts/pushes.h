@@ -40,10 +40,11 @@ static inline bool friction_sticks(const struct Settlement *settlement, size_t f
   return mode_of(settlement, settlement->switches->frictions[friction].mode) == 0.0;
 }
 
-/* mode: the sign of its velocity, 0 for one that sticks. */
-static inline void set_friction(struct Settlement *settlement, size_t friction, double mode) {
-  settlement_set_mode(settlement, settlement->switches->frictions[friction].mode, mode);
-}
+/* mode: the sign of its velocity, which one in a plane does not look at; 0 for one that sticks. */
+void set_friction(struct Settlement *settlement, size_t friction, double mode);
+
+/* What a friction that slides pushes against its velocity by a force of 1: its sign, or the component of a direction. */
+double sliding_share(const struct Settlement *settlement, size_t friction);
 
 /* Whether the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);

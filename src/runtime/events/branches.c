@@ -106,13 +106,10 @@ bool branches_begin(struct Settlement *settlement) {
   return true;
 }
 
-void branches_guess(struct Instance *instance) {
+static void guess_branches(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Point point = instance_point(instance);
   double *value = settlement_of(instance).value;
-  for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
   /* Of a mass that a sign decides on, 0 leaves nothing. */
   for (size_t i = 0; i < switches->branch_count; i++)
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
@@ -128,4 +125,13 @@ void branches_guess(struct Instance *instance) {
     }
     if (same) return;
   }
+}
+
+void branches_guess(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
+  guess_branches(instance);
+  if (switches->plane_count > 0) switches->friction_laws->guess(instance);
 }

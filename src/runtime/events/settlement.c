@@ -10,7 +10,7 @@
 #include "events/search.h"
 
 size_t settlement_value_count(const struct SwitchTable *switches) {
-  return energy_place(switches) + switches->energy_count;
+  return plane_place(switches, switches->plane_count);
 }
 
 static size_t rows_of_matrix(void) {

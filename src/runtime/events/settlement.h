@@ -33,6 +33,8 @@ struct Settlement {
   int impacts, lifts;
 };
 
+struct Pushes;
+
 /* What contacts do; FMUs without any do not hold it. */
 struct ContactLaws {
   /*
@@ -59,6 +61,16 @@ struct FrictionLaws {
   bool (*tell)(struct Settlement *settlement, bool *again);
   /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
   const char *(*check)(const struct Settlement *settlement);
+  /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */
+  void (*guess)(struct Instance *instance);
+  /* Lets the friction in a plane slide, or stick; NULL without any. */
+  void (*set_plane)(struct Settlement *settlement, size_t plane, bool slides);
+  /*
+   * The impulse of each push where some are of frictions in a plane, such that the rates, and those that the impulses add, fulfil
+   * the law of impacts. False where none is found. NULL without any.
+   */
+  bool (*find_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                        double *impulse);
 };
 
 /* The numbers in value[]. */

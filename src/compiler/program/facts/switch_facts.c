@@ -43,6 +43,22 @@ static const struct FrictionFacts *frictions_of(const struct Program *program) {
   return facts;
 }
 
+/* Of the frictions along, whose next ones are those across. */
+static void add_planes(struct SwitchTable *facts, const struct Program *program) {
+  const struct Switches *switches = &program->model->switches;
+  struct PlaneFacts *planes = allocate(switches->friction_count, sizeof *planes);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct PlaneSide *along = &switches->frictions[i].plane;
+    if (along->axis != ALONG) continue;
+    planes[facts->plane_count++] = (struct PlaneFacts){
+        .along = i,
+        .heading = {mode_index(program, along->heading), mode_index(program, switches->frictions[i + 1].plane.heading)},
+        .lower = mode_index(program, along->lower),
+        .upper = mode_index(program, along->upper)};
+  }
+  facts->planes = planes;
+}
+
 static struct AssignmentFacts assignment_of(const struct Program *program, Node assigned) {
   const struct Symbol *symbol = graph_symbol_of(program->model->graph, assigned);
   size_t first = symbol->kind == VELOCITY ? program->equations->count : 0;
@@ -88,6 +104,7 @@ struct SwitchTable switch_facts_of(const struct Program *program) {
   if (facts.branch_count > 0) facts.branches = branches_of(program);
   if (facts.contact_count > 0) facts.contacts = contacts_of(program);
   if (facts.friction_count > 0) facts.frictions = frictions_of(program);
+  if (has_planes(switches)) add_planes(&facts, program);
   if (facts.event_count > 0) add_events(&facts, program);
   if (program->watched_series != NULL) {
     facts.watched_rows = program->watched_series->row_count;

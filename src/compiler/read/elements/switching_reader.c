@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "algebra/differentiate.h"
 #include "algebra/polynomials/rational.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -102,14 +101,37 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
 }
 
-void declare_friction(struct Reader *reader, xmlNodePtr node) {
+/* Returns the friction, without its constraint. */
+static struct Friction *append_friction(struct Reader *reader, struct Friction friction) {
   struct Switches *switches = &reader->model->switches;
-  struct Variable constraint = common_attributes(reader, node);
-  reader->present->number = switches->friction_count;
   switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
-  switches->frictions[switches->friction_count++] = (struct Friction){
-      .mode = new_mode(reader, constraint.name, "mode"), .told = new_told_mode(reader, &constraint, "sliding")};
-  switches->frictions[switches->friction_count - 1].constraint = declare_held(reader, constraint);
+  switches->frictions[switches->friction_count] = friction;
+  return &switches->frictions[switches->friction_count++];
+}
+
+/* Makes a friction, the last one, the part along of one in a plane, and appends the part across. */
+static void declare_plane(struct Reader *reader, struct Friction *along, struct Variable constraint) {
+  const char *name = constraint.name;
+  along->plane.axis = ALONG;
+  along->plane.heading = new_mode(reader, name, "heading");
+  struct Friction across = *along;
+  across.plane.axis = ACROSS;
+  across.plane.heading = new_mode(reader, name, "across.heading");
+  along->plane.lower = across.plane.lower = new_mode(reader, name, "lower");
+  along->plane.upper = across.plane.upper = new_mode(reader, name, "upper");
+  constraint.name = format_text("%s.across", name);
+  if (constraint.description != NULL) constraint.description = format_text("%s, across", constraint.description);
+  across.constraint = declare_held(reader, constraint);
+  append_friction(reader, across);
+}
+
+void declare_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Variable constraint = common_attributes(reader, node);
+  reader->present->number = reader->model->switches.friction_count;
+  Node mode = new_mode(reader, constraint.name, "sliding"), told = new_told_mode(reader, &constraint, "sliding");
+  struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .told = told});
+  friction->constraint = declare_held(reader, constraint);
+  if (has_attribute(node, "across")) declare_plane(reader, friction, constraint);
   reader->model->forces.any = true;
 }
 
@@ -192,111 +214,6 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
   bool is_fixed = !graph_depends_on(graph, room, COORDINATE) && !graph_depends_on(graph, room, MODE);
   if (has_attribute(node, "min") && has_attribute(node, "max") && is_fixed)
     expect_not_negative(reader, node, format_text("max - min of the <stop> of '%s'", name), room, true);
-}
-
-/* --- Friction --- */
-
-/* Where friction acts: along the velocity of a coordinate, or one that is an expression. */
-static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
-  bool has_coordinate = has_attribute(node, "coordinate");
-  if (has_coordinate == has_attribute(node, "velocity")) {
-    report_at(reader, node, "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
-    return false;
-  }
-  if (!has_coordinate) return expression_attribute(reader, node, "velocity", IN_CONSTRAINT, velocity);
-  char *name = reference_attribute(reader, node, "coordinate");
-  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
-  if (symbol == NULL)
-    report_at(reader, node, "a <friction> of '%s', which is not a coordinate; expected the name of one",
-              name != NULL ? name : "");
-  else {
-    const struct Variable *variable = &reader->model->velocities.items[symbol->index];
-    *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
-  }
-  return symbol != NULL;
-}
-
-static struct Quantity read_friction_force(struct Reader *reader, xmlNodePtr node, const char *attribute_name,
-                                           struct Dimension unit) {
-  struct Quantity force = {.node = ZERO};
-  if (expression_attribute(reader, node, attribute_name, IN_CONDITION | KIND(ACCELERATION), &force) && unit.known)
-    require_unit(reader, xmlGetLineNo(node), attribute_name, force, unit);
-  return force;
-}
-
-/* Of accelerations, a friction may follow from the forces of contacts and constraints alone, and linearly. */
-static void check_linear(struct Reader *reader, long line, const char *what, Node force) {
-  struct Graph *graph = reader->model->graph;
-  struct Gradient gradient = gradient_by_kinds(graph, force, KIND(ACCELERATION));
-  for (size_t i = 0; i < gradient.count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(graph, gradient.symbols[i]);
-    if ((size_t)symbol->index < reader->model->coordinates.count)
-      report_error(reader->diagnostics, line,
-                   "the %s of a friction depends on '%s'; expected the forces of contacts and constraints alone, as in "
-                   "mu*ground.force",
-                   what, symbol->name);
-    else if (graph_depends_on(graph, gradient.values[i], ACCELERATION))
-      report_error(reader->diagnostics, line,
-                   "the %s of a friction is not linear in '%s'; expected a force such as mu*%s", what, symbol->name,
-                   symbol->name);
-  }
-}
-
-/* Reads what friction pushes with; false after reporting an error. */
-static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
-                                 struct Friction *friction) {
-  long line = reader->model->constraints.items[friction->constraint].line;
-  friction->sliding = friction->stiction = read_friction_force(reader, node, "force", unit).node;
-  if (has_attribute(node, "stiction")) friction->stiction = read_friction_force(reader, node, "stiction", unit).node;
-  if (reader->diagnostics->errors > 0) return false;
-  check_linear(reader, line, "force", friction->sliding);
-  check_linear(reader, line, "stiction", friction->stiction);
-  return true;
-}
-
-/* Sliding, it pushes against the velocity; sticking, it is the force of the constraint velocity = 0. */
-void read_friction(struct Reader *reader, xmlNodePtr node) {
-  struct Model *model = reader->model;
-  struct Graph *graph = model->graph;
-  struct Friction *friction = &model->switches.frictions[reader->present->number];
-  struct Variable *constraint = &model->constraints.items[friction->constraint];
-  struct Quantity velocity = {.node = ZERO};
-  if (!read_velocity(reader, node, &velocity)) return;
-  if (velocity.node != ZERO && !graph_depends_on(graph, velocity.node, VELOCITY))
-    report_at(reader, node,
-              "the velocity of a <friction> depends on no velocity; expected an expression such as v - vBelt");
-  struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
-  friction->velocity = velocity.node;
-  if (!read_friction_forces(reader, node, unit, friction)) return;
-  constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
-  Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
-  constraint->node = function(graph, GATE, sticks, velocity.node);
-  check_constraint(reader, constraint);
-  if (reader->diagnostics->errors > 0) return;
-  Node push = negate(graph, multiply(graph, friction->mode, friction->sliding));
-  const struct Gradient levers = gradient_by_kinds(graph, velocity.node, KIND(VELOCITY));
-  add_virtual_work(model, push, &levers);
-}
-
-void complete_friction_forces(struct Reader *reader) {
-  struct Model *model = reader->model;
-  struct Graph *graph = model->graph;
-  struct Switches *switches = &model->switches;
-  if (switches->friction_count == 0) return;
-  Node *replacements = own_symbols(graph);
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    const struct Friction *friction = &switches->frictions[i];
-    Node force = model->unknowns.forces[friction->constraint];
-    replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
-  }
-  for (size_t i = 0; i < switches->branch_count; i++)
-    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
-  for (size_t i = 0; i < switches->event_count; i++)
-    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
-      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
-                 &switches->events[i].assignments[j].value);
-  for (size_t i = 0; i < model->outputs.count; i++)
-    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
 }
 
 /* --- Branches --- */

@@ -1,0 +1,140 @@
+/* <friction>: along a velocity, or in the plane of two. */
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "read/context/constraint_checks.h"
+#include "read/elements/switching_reader.h"
+#include "read/space/forces.h"
+
+/* Where friction acts: along the velocity of a coordinate, or one that is an expression. */
+static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
+  bool has_coordinate = has_attribute(node, "coordinate");
+  if (has_coordinate == has_attribute(node, "velocity")) {
+    report_at(reader, node, "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
+    return false;
+  }
+  if (!has_coordinate) return expression_attribute(reader, node, "velocity", IN_CONSTRAINT, velocity);
+  char *name = reference_attribute(reader, node, "coordinate");
+  const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
+  if (symbol == NULL)
+    report_at(reader, node, "a <friction> of '%s', which is not a coordinate; expected the name of one",
+              name != NULL ? name : "");
+  else {
+    const struct Variable *variable = &reader->model->velocities.items[symbol->index];
+    *velocity = (struct Quantity){.node = variable->node, .dimension = variable->dimension};
+  }
+  return symbol != NULL;
+}
+
+static struct Quantity read_friction_force(struct Reader *reader, xmlNodePtr node, const char *attribute_name,
+                                           struct Dimension unit) {
+  struct Quantity force = {.node = ZERO};
+  if (expression_attribute(reader, node, attribute_name, IN_CONDITION | KIND(ACCELERATION), &force) && unit.known)
+    require_unit(reader, xmlGetLineNo(node), attribute_name, force, unit);
+  return force;
+}
+
+/* Of accelerations, a friction may follow from the forces of contacts and constraints alone, and linearly. */
+static void check_linear(struct Reader *reader, long line, const char *what, Node force) {
+  struct Graph *graph = reader->model->graph;
+  struct Gradient gradient = gradient_by_kinds(graph, force, KIND(ACCELERATION));
+  for (size_t i = 0; i < gradient.count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, gradient.symbols[i]);
+    if ((size_t)symbol->index < reader->model->coordinates.count)
+      report_error(reader->diagnostics, line,
+                   "the %s of a friction depends on '%s'; expected the forces of contacts and constraints alone, as in "
+                   "mu*ground.force",
+                   what, symbol->name);
+    else if (graph_depends_on(graph, gradient.values[i], ACCELERATION))
+      report_error(reader->diagnostics, line,
+                   "the %s of a friction is not linear in '%s'; expected a force such as mu*%s", what, symbol->name,
+                   symbol->name);
+  }
+}
+
+/* The velocity across that of a friction which acts in a plane. */
+static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension along, struct Quantity *velocity) {
+  if (!has_attribute(node, "velocity")) {
+    report_at(reader, node, "a <friction> with across and without velocity; expected velocity=\"...\" beside it");
+    return false;
+  }
+  if (!expression_attribute(reader, node, "across", IN_CONSTRAINT, velocity)) return false;
+  if (along.known) require_unit(reader, xmlGetLineNo(node), "across", *velocity, along);
+  return true;
+}
+
+/* Reads what friction pushes with; false after reporting an error. */
+static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
+                                 struct Friction *friction) {
+  long line = reader->model->constraints.items[friction->constraint].line;
+  friction->sliding = friction->stiction = read_friction_force(reader, node, "force", unit).node;
+  if (has_attribute(node, "stiction")) friction->stiction = read_friction_force(reader, node, "stiction", unit).node;
+  if (reader->diagnostics->errors > 0) return false;
+  check_linear(reader, line, "force", friction->sliding);
+  check_linear(reader, line, "stiction", friction->stiction);
+  return true;
+}
+
+static void set_velocity(struct Reader *reader, xmlNodePtr node, struct Friction *friction, Node velocity) {
+  if (velocity != ZERO && !graph_depends_on(reader->model->graph, velocity, VELOCITY))
+    report_at(reader, node,
+              "the velocity %sof a <friction> depends on no velocity; expected an expression such as v - vBelt",
+              friction->plane.axis == ACROSS ? "across " : "");
+  friction->velocity = velocity;
+}
+
+/* Sticking, it is the force of the constraint velocity = 0. */
+static void hold_velocity(struct Reader *reader, const struct Friction *friction, struct Dimension unit) {
+  struct Graph *graph = reader->model->graph;
+  struct Variable *constraint = &reader->model->constraints.items[friction->constraint];
+  constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
+  Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
+  constraint->node = function(graph, GATE, sticks, friction->velocity);
+  check_constraint(reader, constraint);
+}
+
+/* Sliding, it pushes against the velocity. */
+static void add_push(struct Reader *reader, const struct Friction *friction) {
+  struct Graph *graph = reader->model->graph;
+  Node push = negate(graph, sliding_push(graph, friction));
+  const struct Gradient levers = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
+  add_virtual_work(reader->model, push, &levers);
+}
+
+void read_friction(struct Reader *reader, xmlNodePtr node) {
+  struct Friction *friction = &reader->model->switches.frictions[reader->present->number];
+  size_t parts = has_attribute(node, "across") ? 2 : 1;
+  struct Quantity velocity = {.node = ZERO}, across = {.node = ZERO};
+  if (!read_velocity(reader, node, &velocity)) return;
+  set_velocity(reader, node, friction, velocity.node);
+  if (parts > 1 && !read_across(reader, node, velocity.dimension, &across)) return;
+  if (parts > 1) set_velocity(reader, node, friction + 1, across.node);
+  struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
+  if (!read_friction_forces(reader, node, unit, friction)) return;
+  for (size_t i = 0; i < parts; i++) {
+    friction[i].sliding = friction->sliding;
+    friction[i].stiction = friction->stiction;
+    hold_velocity(reader, &friction[i], unit);
+  }
+  for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);
+}
+
+void complete_friction_forces(struct Reader *reader) {
+  struct Model *model = reader->model;
+  struct Graph *graph = model->graph;
+  struct Switches *switches = &model->switches;
+  if (switches->friction_count == 0) return;
+  Node *replacements = own_symbols(graph);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node force = model->unknowns.forces[friction->constraint];
+    replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
+  }
+  for (size_t i = 0; i < switches->branch_count; i++)
+    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
+      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
+                 &switches->events[i].assignments[j].value);
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+}

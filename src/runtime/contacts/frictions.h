@@ -1,0 +1,23 @@
+/* Dry friction: which slides, which sticks. As in struct FrictionLaws; frictions in a plane are only told and checked. */
+#ifndef FRICTIONS_H
+#define FRICTIONS_H
+
+#include "events/settlement.h"
+
+const char *frictions_act(struct Settlement *settlement, bool *again);
+bool frictions_tell(struct Settlement *settlement, bool *again);
+const char *frictions_check(const struct Settlement *settlement);
+
+/*
+ * Whether a friction that counts as sliding has a velocity, or two in a plane, that others hold: *held. False where that cannot
+ * be told.
+ */
+bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *held);
+
+/* Where no mode of a friction lasts: logs it. Returns the reason why the motion cannot go on. */
+const char *frictions_refuse(const struct Settlement *settlement, size_t friction);
+
+/* So often may one switch in a settlement. */
+enum { FRICTION_FLIP_LIMIT = 500 };
+
+#endif

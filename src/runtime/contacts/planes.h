@@ -1,0 +1,35 @@
+/* Which frictions act in a plane. */
+#ifndef PLANES_H
+#define PLANES_H
+
+#include <math.h>
+
+#include "events/settlement.h"
+
+/* The plane of a friction along or across; plane_count for none. */
+static inline size_t plane_of(const struct SwitchTable *switches, size_t friction) {
+  size_t plane = 0;
+  while (plane < switches->plane_count && friction - switches->planes[plane].along > 1) plane++;
+  return plane;
+}
+
+static inline bool is_in_plane(const struct SwitchTable *switches, size_t friction) {
+  return plane_of(switches, friction) < switches->plane_count;
+}
+
+/* The speed of a friction in a plane, which is the one along. */
+static inline double speed_in_plane(const struct Settlement *settlement, size_t along) {
+  const double *value = settlement->value;
+  return hypot(value[friction_place(settlement->switches, along, FRICTION_VELOCITY)],
+               value[friction_place(settlement->switches, along + 1, FRICTION_VELOCITY)]);
+}
+
+/* How fast a friction slides, whichever way. */
+static inline double sliding_speed(const struct Settlement *settlement, size_t friction) {
+  size_t plane = plane_of(settlement->switches, friction);
+  if (plane < settlement->switches->plane_count)
+    return speed_in_plane(settlement, settlement->switches->planes[plane].along);
+  return fabs(settlement->value[friction_place(settlement->switches, friction, FRICTION_VELOCITY)]);
+}
+
+#endif

@@ -1,0 +1,148 @@
+/*
+ * Coulomb's friction in a plane. While it slides, its force is opposite to the velocity; where this has become small, it is
+ * asked whether it can stick. From rest it slides along a heading until the velocity turns away from it.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "contacts/frictions.h"
+#include "evaluation/evaluate.h"
+#include "planes/cone_impulses.h"
+#include "planes/plane_starts.h"
+#include "planes/plane_stops.h"
+
+static const char no_directions[] = "the directions of frictions in a plane cannot be found there";
+
+/* Whether one that slides has to be tried to stick. */
+static bool is_stopping(const struct Settlement *settlement, const struct PlaneState *state) {
+  bool has_slowed = state->has_slowed && state->is_first;
+  if (state->mode == PLANE_STICKS || !plane_is_slow(settlement, state)) return false;
+  if (settlement->occasion == AT_START && state->is_first) return true;
+  if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_turned_back;
+  return state->mode == PLANE_HEADS && (state->ahead <= -state->lower || has_slowed);
+}
+
+/* Whether one that slides has to be followed in another way. */
+static bool is_sliding_otherwise(const struct Settlement *settlement, const struct PlaneState *state) {
+  double rising = state->mode == PLANE_HEADS ? state->aside : state->speed;
+  if (settlement->occasion == AT_START && state->is_first) return true;
+  if (state->upper > 0.0 && (rising >= state->upper || (state->has_sped && state->is_first))) return true;
+  if (state->has_slowed && state->is_first) return true;
+  if (state->mode == PLANE_HEADS) return state->ahead <= -state->lower;
+  return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
+}
+
+/* One that sticks slides where it moves, as by an impact, or where it would need more than its stiction. Whether it does. */
+static bool leave_rest(struct Settlement *settlement, const struct PlaneState *state) {
+  bool is_reached = state->has_slowed && state->is_first && !settlement->jumped;
+  if (!(state->speed > state->small || state->needed > state->stiction || is_reached)) return false;
+  if (plane_moves(state)) plane_slide(settlement, state);
+  else plane_head(settlement, state, state->force);
+  plane_count_switch(settlement, state);
+  return true;
+}
+
+/* One that loses its force, or has one again. Whether it does. */
+static bool change_force(struct Settlement *settlement, const struct PlaneState *state) {
+  if (state->is_free != state->has_force) return false;
+  if (!state->has_force) plane_free(settlement, state);
+  else if (plane_moves(state)) plane_slide(settlement, state);
+  else plane_stick(settlement, state);
+  plane_count_switch(settlement, state);
+  return true;
+}
+
+/* Whether one that slides changes in how it slides. */
+static bool change_slide(struct Settlement *settlement, const struct PlaneState *state) {
+  if (!is_sliding_otherwise(settlement, state)) return false;
+  plane_slide(settlement, state);
+  plane_count_switch(settlement, state);
+  return true;
+}
+
+/* Of those that slide along headings; *again where any turns, or sticks since it has no way to go. */
+static const char *act_on_headings(struct Settlement *settlement, bool *again) {
+  bool heads = false;
+  size_t stays = settlement->switches->plane_count;
+  for (size_t i = 0; i < settlement->switches->plane_count; i++)
+    heads |= plane_state(settlement, i).mode == PLANE_HEADS;
+  if (!heads) return NULL;
+  if (!plane_headings_find(settlement, again, &stays)) return no_directions;
+  if (stays == settlement->switches->plane_count) return NULL;
+  *again = true;
+  struct PlaneState state = plane_state(settlement, stays);
+  plane_stick(settlement, &state);
+  plane_count_switch(settlement, &state);
+  return NULL;
+}
+
+/* One of those that flip without end; friction_count for none. */
+static size_t find_flipping(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->plane_count; i++)
+    if (settlement->flips[friction_indicator(switches, switches->planes[i].along)] > FRICTION_FLIP_LIMIT)
+      return switches->planes[i].along;
+  return switches->friction_count;
+}
+
+static const char *act_on_planes(struct Settlement *settlement, bool *again) {
+  bool stops = false;
+  for (size_t i = 0; i < settlement->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    if (state.is_free || !state.has_force) *again |= change_force(settlement, &state);
+    else if (is_stopping(settlement, &state)) stops = true;
+    else *again |= state.mode == PLANE_STICKS ? leave_rest(settlement, &state) : change_slide(settlement, &state);
+  }
+  if (*again) return NULL;
+  if (stops) {
+    *again = true;
+    return planes_stop(settlement) ? NULL : no_directions;
+  }
+  return act_on_headings(settlement, again);
+}
+
+static const char *act(struct Settlement *settlement, bool *again) {
+  const char *problem = frictions_act(settlement, again);
+  if (problem == NULL && !*again) problem = act_on_planes(settlement, again);
+  size_t flipping = find_flipping(settlement);
+  if (problem == NULL && flipping < settlement->switches->friction_count) return frictions_refuse(settlement, flipping);
+  return problem;
+}
+
+static void set_plane(struct Settlement *settlement, size_t plane, bool slides) {
+  struct PlaneState state = plane_state(settlement, plane);
+  const double heading[] = {mode_of(settlement, state.facts->heading[0]), mode_of(settlement, state.facts->heading[1])};
+  if (!slides) plane_stick(settlement, &state);
+  else if (plane_moves(&state)) plane_slide(settlement, &state);
+  else plane_head(settlement, &state, heading);
+}
+
+/* They begin along the first velocity where they rest: there is no direction before the start. */
+static void guess(struct Instance *instance) {
+  struct Settlement settlement = settlement_of(instance);
+  const struct SwitchTable *switches = settlement.switches;
+  struct Point point = instance_point(instance);
+  double *parameter = instance->parameter;
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    const struct PlaneFacts *facts = &switches->planes[i];
+    parameter[switches->frictions[facts->along].mode] = PLANE_HEADS;
+    parameter[facts->heading[0]] = parameter[facts->lower] = 1.0;
+    parameter[facts->heading[1]] = 0.0;
+    parameter[facts->upper] = -1.0;
+  }
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  memset(settlement.acceleration, 0, rows * sizeof *settlement.acceleration);
+  if (lagrangian.prepare(parameter, instance->prepared) != 0) return;
+  switches->switching_values(&point, settlement.acceleration, settlement.value);
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    size_t along = switches->planes[i].along;
+    if (speed_in_plane(&settlement, along) > 0.0) parameter[switches->frictions[along].mode] = PLANE_SLIDES;
+  }
+}
+
+const struct FrictionLaws plane_friction_laws = {.act = act,
+                                                 .tell = frictions_tell,
+                                                 .check = frictions_check,
+                                                 .guess = guess,
+                                                 .set_plane = set_plane,
+                                                 .find_impulses = cone_impulses_find};

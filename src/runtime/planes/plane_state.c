@@ -1,0 +1,109 @@
+#include "planes/plane_state.h"
+
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+
+/* In units of the tolerance and the scale of the speed. */
+static const double small_share = 10.0, no_share = 0.1;
+/* In units of the small speed: so fast may others be that come to rest with one that is slow. */
+static const double slow_share = 10.0;
+/* Less than this is asked of no method, and of no importer. */
+static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
+/* Where it is slow and cannot stick, this is tried again at this share of its speed. */
+static const double slower_share = 0.1;
+
+/* Speeds that are not reached, and where it turns from its heading to the side, which no importer passes over unseen. */
+static const double never = -1e300, turned_aside = -1e-300;
+/* One that goes back in less than this slope to the heading was at rest in between. */
+static const double slope_back = 0.5;
+
+static double tolerance_of(const struct Instance *instance) {
+  double least = instance->kind == KIND_MODEL_EXCHANGE ? least_tolerance_in_exchange : least_tolerance;
+  return fmax(instance->situation->tolerance, least);
+}
+
+struct PlaneState plane_state(const struct Settlement *settlement, size_t plane) {
+  const struct SwitchTable *switches = settlement->switches;
+  const struct PlaneFacts *facts = &switches->planes[plane];
+  struct PlaneState state = {.facts = facts,
+                             .mode = (int)mode_of(settlement, switches->frictions[facts->along].mode),
+                             .speed = speed_in_plane(settlement, facts->along),
+                             .lower = mode_of(settlement, facts->lower),
+                             .upper = mode_of(settlement, facts->upper)};
+  for (size_t i = 0; i < 2; i++) {
+    size_t place = friction_place(switches, facts->along + i, 0);
+    state.velocity[i] = settlement->value[place + FRICTION_VELOCITY];
+    state.rate[i] = settlement->value[place + FRICTION_RATE];
+    state.stiction = settlement->value[place + FRICTION_STICTION];
+    size_t constraint = switches->frictions[facts->along + i].constraint;
+    state.force[i] = settlement->acceleration[lagrangian.coordinate_count + constraint];
+  }
+  double c = mode_of(settlement, facts->heading[0]), s = mode_of(settlement, facts->heading[1]);
+  state.ahead = c * state.velocity[0] + s * state.velocity[1];
+  state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
+  state.needed = hypot(state.force[0], state.force[1]);
+  const double *value = &settlement->value[friction_place(switches, facts->along, 0)];
+  state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || value[FRICTION_FORCE] != 0.0;
+  state.is_free = state.mode == PLANE_HEADS && state.upper < 0.0;
+  double unit = tolerance_of(settlement->instance) * settlement->value[plane_place(switches, plane)];
+  state.small = small_share * unit;
+  state.none = no_share * unit;
+  state.has_slowed = is_hit(settlement, friction_indicator(switches, facts->along));
+  state.has_sped = is_hit(settlement, friction_indicator(switches, facts->along + 1));
+  state.has_turned_back =
+      state.mode == PLANE_SLIDES && state.upper == turned_aside && state.aside < -slope_back * state.ahead;
+  state.is_first = settlement->flips[friction_indicator(switches, facts->along)] == 0.0;
+  return state;
+}
+
+/* At the start velocities are as they were given: what slides, slides. */
+bool plane_is_slow(const struct Settlement *settlement, const struct PlaneState *state) {
+  if (settlement->occasion == AT_START) return state->speed <= state->none;
+  return state->speed <= slow_share * state->small || state->has_turned_back;
+}
+
+bool plane_evaluate(struct Settlement *settlement) {
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  return settlement_values(settlement, settlement->state, settlement->value);
+}
+
+void plane_count_switch(struct Settlement *settlement, const struct PlaneState *state) {
+  settlement->flips[friction_indicator(settlement->switches, state->facts->along)]++;
+}
+
+static void set_plane_mode(struct Settlement *settlement, const struct PlaneState *state, enum PlaneMode mode,
+                           double lower, double upper) {
+  settlement_set_mode(settlement, settlement->switches->frictions[state->facts->along].mode, mode);
+  settlement_set_mode(settlement, state->facts->lower, lower);
+  settlement_set_mode(settlement, state->facts->upper, upper);
+}
+
+void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
+  set_plane_mode(settlement, state, PLANE_STICKS, state->none, never);
+}
+
+/* Where there is none, it keeps the one that it has. */
+static void set_heading(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
+  double length = hypot(heading[0], heading[1]);
+  for (int i = 0; i < 2 && length > 0.0; i++)
+    settlement_set_mode(settlement, state->facts->heading[i], heading[i] / length);
+}
+
+void plane_slide(struct Settlement *settlement, const struct PlaneState *state) {
+  bool is_exchanged = settlement->instance->kind == KIND_MODEL_EXCHANGE;
+  double slower = fmax(slower_share * state->speed, state->none);
+  set_heading(settlement, state, state->velocity);
+  if (state->speed > 2.0 * state->small)
+    set_plane_mode(settlement, state, PLANE_SLIDES, state->small, is_exchanged ? turned_aside : never);
+  else set_plane_mode(settlement, state, PLANE_SLIDES, slower, 4.0 * state->small);
+}
+
+void plane_free(struct Settlement *settlement, const struct PlaneState *state) {
+  set_plane_mode(settlement, state, PLANE_HEADS, -never, never);
+}
+
+void plane_head(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
+  set_heading(settlement, state, heading);
+  set_plane_mode(settlement, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+}
