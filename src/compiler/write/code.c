@@ -37,7 +37,11 @@ static bool has_oblique_block(const struct Program *program) {
 static bool has_lanes(const struct Program *program) {
   bool is_taylor = program->solver != NULL && strcmp(program->solver, "taylor") == 0;
   bool is_smooth = program->equations->switching == NULL && program->routines[FUNCTION_ACCELERATIONS] == NULL;
-  return is_taylor && is_smooth && !program->is_table && program->blocks.count == 0;
+  if (program->series == NULL || !is_taylor || !is_smooth || program->is_table || program->blocks.count > 0)
+    return false;
+  for (size_t i = 0; i < program->series->limit.count; i++)
+    if (program->series->limit.items[i].is_gated) return false;
+  return true;
 }
 
 /*
