@@ -1,0 +1,127 @@
+"""Many runs at once (src/ensemble): as the FMU does each alone, whatever their neighbours and the processor; and what lanes leave to it."""
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy import read_model_description
+
+from closed_forms import kepler, pendulum_angle
+from fmu import ROOT, archive
+from scripts.ensembles import Ensemble, lanes_here, source_of
+from scripts.sweep import compile_ensemble
+
+# Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
+SYSTEMS = {
+    "DoublePendulum": ({"theta1": (-3, 3), "theta2": (-3, 3), "m2": (0.5, 2), "l1": (0.5, 2)}, 2),
+    "SimplePendulum": ({"theta": (-3, 3), "l": (0.3, 3), "m": (0.1, 3)}, 10),
+    "InvertedPendulumCart": ({"theta": (-3, 3), "F": (-3, 3), "M": (0.5, 3)}, 3),
+    "InvertedPendulumCartTorque": ({"theta": (-3, 3), "F": (-3, 3)}, 3),
+    "HeavyTop": ({"vpsi": (100, 200), "theta": (0.3, 1)}, 0.5),
+    "ParticlePolar": ({"r": (0.5, 2), "omega": (0.5, 1), "mu": (0.5, 2)}, 3),
+    "ParticleSpherical": ({"phi": (0.5, 2), "omegaTheta": (-1, 1)}, 2),
+    "ParticleCylindrical": ({"rho": (0.5, 2), "omega": (-1, 1), "Fz": (-1, 1)}, 2),
+    "RotatingPivotPendulum": ({"theta": (-3, 3), "l": (0.3, 3)}, 3),
+}
+HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")
+NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # of lanes, that this processor can do
+
+
+def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
+    reference = {v.name: v.valueReference for v in read_model_description(archive(name)).modelVariables}
+    library = compile_ensemble(source_of(archive(name)), lanes)
+    return Ensemble(library, [reference[v] for v in varied], [reference[v] for v in asked], times, tolerance)
+
+
+def states(name):
+    return [unknown.variable.derivative.name for unknown in read_model_description(archive(name)).derivatives]
+
+
+def starts(ranges, count, seed=1):
+    generator = np.random.default_rng(seed)
+    return np.array([generator.uniform(*span, count) for span in ranges.values()]).T
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_each_run_is_that_of_the_fmu_alone(name):
+    """The states and the energies at three times, more runs than lanes; each takes its own number of steps."""
+    ranges, stop = SYSTEMS[name]
+    asked = [*states(name), "kineticEnergy", "totalEnergy"]
+    rows, times = starts(ranges, 3 * HERE + 1), [0, 0.3 * stop, stop]
+    values, is_left = ensemble(name, ranges, asked, times).run(rows)
+    assert not is_left.any()
+    for row, value in zip(rows, values):
+        alone = fmpy.simulate_fmu(str(archive(name)), start_values=dict(zip(ranges, row)), stop_time=stop, output_interval=0.1 * stop, output=asked, relative_tolerance=1e-10)
+        for k, result in zip((0, 3, 10), value):
+            expected = np.array(list(alone[k])[1:])
+            np.testing.assert_allclose(result, expected, rtol=2e-9, atol=2e-9)
+
+
+@pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])
+def test_a_run_has_the_same_bits_among_any_others(name):
+    """Whatever its lane, how many lanes there are, and where the others begin and end."""
+    ranges, stop = SYSTEMS[name]
+    rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
+    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
+    for lanes in NUMBERS:
+        one = ensemble(name, ranges, asked, [0, stop], lanes)
+        np.testing.assert_array_equal(one.run(rows)[0], values)
+        order = np.random.default_rng(2).permutation(len(rows))[:37]
+        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
+        np.testing.assert_array_equal(one.run(rows[7:8])[0], values[7:8])
+
+
+def test_pendulums_in_closed_form():
+    """Released at rest, each with an angle and a length of its own."""
+    rows, times = starts({"theta": (-3, 3), "l": (0.3, 3)}, 60), [0.1, 1.0, 7.0]
+    values, _ = ensemble("SimplePendulum", ["theta", "l"], ["theta"], times).run(rows)
+    exact = [[pendulum_angle(theta, np.sqrt(9.81 / l), t) for t in times] for theta, l in rows]
+    np.testing.assert_allclose(values[:, :, 0], exact, atol=1e-9)
+
+
+def test_orbits_in_closed_form():
+    """From their pericentres, with masses of the centre of their own."""
+    rows, time = starts({"mu": (0.5, 0.9), "omega": (1, 1.2)}, 60), 10.0
+    rows = rows[rows[:, 1] ** 2 < 1.8 * rows[:, 0]]
+    values, _ = ensemble("ParticlePolar", ["mu", "omega"], ["r", "theta"], [time]).run(rows)
+    r, theta = values[:, 0].T
+    exact = np.array([kepler(mu, 1, omega, time) for mu, omega in rows])
+    np.testing.assert_allclose(np.array([r * np.cos(theta), r * np.sin(theta)]).T, exact, atol=1e-8)
+    assert len(rows) > 20
+
+
+def test_looser_tolerances_take_lower_orders():
+    rows = starts({"theta": (-3, 3)}, 100)
+    exact, _ = ensemble("SimplePendulum", ["theta"], ["theta"], [5], tolerance=1e-13).run(rows)
+    for tolerance in (1e-4, 1e-7):
+        values, _ = ensemble("SimplePendulum", ["theta"], ["theta"], [5], tolerance=tolerance).run(rows)
+        assert 1e-3 * tolerance < np.max(np.abs(values - exact)) < 100 * tolerance
+
+
+def test_runs_without_a_solution_are_left_alone():
+    """A particle on the axis of its coordinates, a mass that may not be, and no number: they spoil no other run."""
+    ranges, asked = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
+    rows = starts(ranges, 40)
+    one = ensemble("ParticleSpherical", ranges, asked, [0, 1])
+    values, is_left = one.run(rows)
+    assert not is_left.any()
+    bad = rows.copy()
+    bad[3, 0], bad[4, 1], bad[17, 1], bad[39, 0] = 0.0, 0.0, -1.0, np.nan
+    others, is_left = one.run(bad)
+    assert list(np.flatnonzero(is_left)) == [3, 4, 17, 39] and np.all(np.isnan(others[is_left]))
+    np.testing.assert_array_equal(others[~is_left], values[~is_left])
+
+
+def test_runs_that_end_in_a_singularity_are_left_alone():
+    """Particles that fall into the centre of attraction, from r = 1 after pi/(2 sqrt(2)), and some that pass it by."""
+    rows = np.array([[0.0], [0.5], [0.0], [1.0]])
+    values, is_left = ensemble("ParticlePolar", ["omega"], ["r", "vr"], [1.0, 1.2]).run(rows)
+    assert list(is_left) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
+
+
+def test_what_lanes_do_not_serve():
+    """Methods that hand over or are exact, events, constraints, and masses that are factored as they run; and values that are no Real or no state."""
+    for name in ("DampedPendulum", "ParticleCartesian", "BouncingBall", "FourBar", "ChainPendulum", "Rope", "StateFeedback"):
+        assert source_of(archive(name)) is None, name
+    assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
+    assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
+    assert ensemble("SimplePendulum", ["theta"], ["theta", "kineticEnergy"], [1]).serves()
