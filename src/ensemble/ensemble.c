@@ -20,7 +20,7 @@ static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *varia
 
 /* Whether the FMU would take the value. */
 static bool is_allowed(const struct ScalarVariable *variable, double value) {
-  return value - value == 0.0 && value >= variable->minimum && value <= variable->maximum;
+  return isfinite(value) && value >= variable->minimum && value <= variable->maximum;
 }
 
 static void leave(struct Group *group, Mask lanes) {

@@ -32,9 +32,11 @@ static Series *take_series(Lanes **block, size_t count) {
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t series = states + inputs + lagrangian.taylor.rows;
-  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count + inputs + 5 * states;
-  char *memory = calloc((rows + 1) * sizeof(Lanes), 1);
+  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count + inputs + 6 * states;
+  size_t size = (rows + 1) * sizeof(Lanes);
+  char *memory = malloc(size);
   if (memory == NULL) return false;
+  memset(memory, 0, size);
   Lanes *block = (void *)(memory + (sizeof(Lanes) - (uintptr_t)memory % sizeof(Lanes)));
   double local = local_tolerance(tolerance);
   *steps =
@@ -47,6 +49,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   steps->prepared = take(&block, lagrangian.prepared_count);
   steps->constants = take(&block, inputs);
   steps->low = take(&block, states);
+  steps->unit = take(&block, states);
   steps->derivative = take(&block, states);
   steps->change = take(&block, states);
   steps->state = take(&block, states);
@@ -60,8 +63,9 @@ void lane_steps_destroy(struct LaneSteps *steps) {
 
 /* --- The polynomials, as in methods/taylor.h and taylor_reach.c ----------------------------------------------------- */
 
-static Lanes scale(const struct LaneSteps *steps, size_t i) {
-  return lanes_larger(lanes_absolute(steps->x[i][0]), LANES_OF(lagrangian.steps.nominal[i]));
+static void measure_scales(struct LaneSteps *steps) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    steps->unit[i] = 1.0 / lanes_larger(lanes_absolute(steps->x[i][0]), LANES_OF(lagrangian.steps.nominal[i]));
 }
 
 /* The change of state variable i from the origin to s after it. */
@@ -104,7 +108,7 @@ Lanes lane_steps_state(const struct LaneSteps *steps, size_t i, Lanes time) {
 static Lanes norm(const struct LaneSteps *steps, int order) {
   Lanes largest = {0};
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    Lanes size = lanes_absolute(steps->x[i][order]) / scale(steps, i);
+    Lanes size = lanes_absolute(steps->x[i][order]) * steps->unit[i];
     largest = lanes_select(size <= largest, largest, size); /* a NaN is taken */
   }
   return largest;
@@ -129,17 +133,18 @@ static Lanes rough_power_of_two(Lanes x) {
 
 /* Where the last two terms that do not vanish are as small as the tolerance asks; 0 where they are not finite. */
 static Lanes promised_step(const struct LaneSteps *steps) {
-  Lanes last = norm(steps, steps->order), before = norm(steps, steps->order - 1),
-        power = LANES_OF((double)steps->order);
+  Lanes last = norm(steps, steps->order), before = norm(steps, steps->order - 1);
+  Lanes share = LANES_OF(1.0 / steps->order), share_before = LANES_OF(1.0 / (steps->order - 1));
   Mask vanish = last + before == 0.0;
   for (int order = steps->order - 1; any_lane(vanish) && order > steps->order / 2; order--) {
     last = lanes_select(vanish, before, last);
     before = lanes_select(vanish, norm(steps, order - 1), before);
-    power = lanes_select(vanish, LANES_OF((double)order), power);
+    share = lanes_select(vanish, LANES_OF(1.0 / order), share);
+    share_before = lanes_select(vanish, LANES_OF(1.0 / (order - 1)), share_before);
     vanish &= last + before == 0.0;
   }
-  Lanes of_last = rough_logarithm(last) / power, of_before = rough_logarithm(before) / (power - 1.0);
-  Lanes margin = (2.0 + 0.7 / (power - 1.0)) / logarithm_of_2;
+  Lanes of_last = rough_logarithm(last) * share, of_before = rough_logarithm(before) * share_before;
+  Lanes margin = (2.0 + 0.7 * share_before) * (1.0 / logarithm_of_2);
   Lanes exponent = -lanes_larger(of_last, of_before) - margin;
   Lanes step = rough_power_of_two(lanes_larger(lanes_smaller(exponent, LANES_OF(900.0)), LANES_OF(-900.0)));
   step = lanes_select(vanish, LANES_OF(DBL_MAX), step);
@@ -192,7 +197,7 @@ static Lanes defect(struct LaneSteps *steps, Lanes s) {
   for (size_t i = first; i < states; i++) {
     Lanes exact = steps->derivative[i];
     Lanes difference = lanes_absolute(exact - steps->rate[i]) - rounding * DBL_EPSILON * lanes_absolute(exact);
-    largest = larger_or_infinite(largest, difference * s / scale(steps, i));
+    largest = larger_or_infinite(largest, difference * s * steps->unit[i]);
   }
   return lanes_select(refused, LANES_OF(INFINITY), largest / allowed_defect(steps));
 }
@@ -212,7 +217,7 @@ static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
   Mask refused = right_side(steps, s, 4.0 * DBL_EPSILON, steps->rate);
   refused |= right_side(steps, s, 0.0, steps->derivative);
   for (size_t i = lagrangian.coordinate_count; i < lagrangian.state_count; i++) {
-    Lanes moved = lanes_absolute(steps->rate[i] - steps->derivative[i]) * s / scale(steps, i);
+    Lanes moved = lanes_absolute(steps->rate[i] - steps->derivative[i]) * s * steps->unit[i];
     largest = lanes_larger(moved, largest);
   }
   return lanes_select(refused, (Lanes){0}, largest / allowed_defect(steps));
@@ -266,11 +271,12 @@ static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
 static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *limit) {
   Lanes crossing = LANES_OF(crossing_share * steps->length);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    crossing = lanes_smaller(crossing, crossing_share * scale(steps, i) / lanes_absolute(steps->x[i][1]));
+    crossing = lanes_smaller(crossing, crossing_share / (steps->unit[i] * lanes_absolute(steps->x[i][1])));
   return limit->shortened & ((limit->step < crossing) | is_too_short(steps, 0.5 * limit->step));
 }
 
 Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
+  measure_scales(steps);
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->x[i][1] = steps->derivative[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) steps->input[i][0] = steps->constants[i];
   struct Point point = point_at(steps, steps->origin, NULL);
@@ -303,7 +309,7 @@ Mask lane_steps_move(struct LaneSteps *steps) {
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     Lanes before = steps->x[i][0], term = steps->change[i] + steps->low[i];
     Lanes sum = before + term, part = sum - before;
-    largest = lanes_larger(lanes_absolute(term) / scale(steps, i), largest);
+    largest = lanes_larger(lanes_absolute(term) * steps->unit[i], largest);
     steps->low[i] = (before - (sum - part)) + (term - part);
     steps->x[i][0] = sum;
   }

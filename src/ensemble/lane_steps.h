@@ -15,12 +15,13 @@ struct LaneSteps {
   double length;                           /* of the runs */
   Lanes origin, reach;                     /* of the series: their time and how far they are right */
   Lanes *parameter, *prepared, *constants; /* constants: the inputs */
-  Lanes *low;                              /* what rounding left of the state at the origin */
-  Series *x, *input, *work;                /* x[i][0] is the state at the origin */
-  Lanes *derivative, *change;              /* at the end of the reach, where they were measured; see taylor.h */
-  Lanes *state, *rate;                     /* scratch */
-  Mask is_limited;                         /* the step is short for another reason than the size of its coefficients */
-  Lanes path, steps; /* of the last steps that are not, how far they moved the state, and how many */
+  Lanes *unit; /* one over the size of each state variable, or over its nominal value where that is larger */
+  Lanes *low;  /* what rounding left of the state at the origin */
+  Series *x, *input, *work;   /* x[i][0] is the state at the origin */
+  Lanes *derivative, *change; /* at the end of the reach, where they were measured; see taylor.h */
+  Lanes *state, *rate;        /* scratch */
+  Mask is_limited;            /* the step is short for another reason than the size of its coefficients */
+  Lanes path, steps;          /* of the last steps that are not, how far they moved the state, and how many */
 };
 
 /* Rows for everything; false where there is no memory. */

@@ -46,7 +46,7 @@ LANES_INLINE Lanes lanes_smaller(Lanes a, Lanes b) {
 }
 
 LANES_INLINE Mask lanes_are_finite(Lanes a) {
-  return a - a == 0.0;
+  return lanes_absolute(a) < INFINITY;
 }
 
 #endif

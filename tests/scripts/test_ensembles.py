@@ -1,13 +1,18 @@
 """Many runs at once (src/ensemble): as the FMU does each alone, whatever their neighbours and the processor; and what lanes leave to it."""
 
+import ctypes
+import subprocess
+
 import fmpy
+import mpmath
 import numpy as np
 import pytest
 from fmpy import read_model_description
 
+from building import build_systems
 from closed_forms import kepler, pendulum_angle
 from fmu import ROOT, archive
-from scripts.ensembles import Ensemble, lanes_here, source_of
+from scripts.ensembles import Ensemble, lanes_here, source_of, words
 from scripts.sweep import compile_ensemble
 
 # Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
@@ -125,3 +130,59 @@ def test_what_lanes_do_not_serve():
     assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
     assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
     assert ensemble("SimplePendulum", ["theta"], ["theta", "kineticEnergy"], [1]).serves()
+
+
+FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(x)", "tan(x/2)", "asin(x/3)", "acos(x/3)", "atan(2*x)", "sinh(x)", "cosh(x)", "tanh(4*x)",
+             "asinh(x)", "acosh(3 + x)", "atanh(x/3)", "sqrt(2 + x)", "1/sqrt(2 + x)", "(3 + x)^2.5", "(2 + x^2)^n", "x^3", "1/(2 + x)", "1/(2 + x)^2", "1/(2 + x)^3", "x^5", "x^4",
+             "1/(4 + x)^4", "atan2(x, 1 + x^2)", "(1 + x^2)/(3 - x)", "sin(time + x)"]  # fmt: skip
+
+
+def test_functions_and_their_series():
+    """A particle for each function, in it as a potential, whose force is its derivative; and a start that follows from a parameter."""
+    particles = "".join(
+        f'<coordinate name="x{i}" velocity="v{i}" start="n/{i + 3}"/><particle name="p{i}" mass="m" x="x{i}"/><potential>{function.replace("exp", "EXP").replace("x", f"x{i}").replace("EXP", "exp")}</potential>'
+        for i, function in enumerate(FUNCTIONS)
+    )
+    head = '<parameter name="m" start="1"/><parameter name="n" start="1.5"/>'
+    build_systems("ensembles", {"Functions": f'<system name="Functions">{head}{particles}<solver method="taylor"/></system>'})
+    ranges = {"m": (1, 2), "n": (0.5, 2.5), **{f"x{i}": (-0.7, 0.7) for i in range(len(FUNCTIONS) - 3)}}
+    rows, asked = starts(ranges, HERE + 3), states("Functions")
+    values, is_left = ensemble("Functions", ranges, asked, [0.4]).run(rows)
+    assert not is_left.any()
+    for row, value in zip(rows, values):
+        alone = fmpy.simulate_fmu(str(archive("Functions")), start_values=dict(zip(ranges, row)), stop_time=0.4, output_interval=0.4, output=asked, relative_tolerance=1e-10)
+        np.testing.assert_allclose(value[0], list(alone[-1])[1:], rtol=1e-9, atol=1e-9)
+
+
+SINES = """
+#include "lane_functions.h"
+void sines(size_t count, const double *x, double *s, double *c) {
+  for (size_t i = 0; i < count; i += LANES) {
+    Lanes lanes, sine, cosine;
+    memcpy(&lanes, x + i, sizeof lanes);
+    sine = lanes_sin(lanes);
+    cosine = lanes_cos(lanes);
+    memcpy(s + i, &sine, sizeof sine);
+    memcpy(c + i, &cosine, sizeof cosine);
+  }
+}
+"""
+
+
+def test_sines(tmp_path):
+    """To less than 1.5 units in the last place, also beside the multiples of quarter turns, far out, and where there is none."""
+    (tmp_path / "sines.c").write_text(SINES)
+    subprocess.run(["cc", *map(str, words(ROOT, HERE, tmp_path / "sines.c", tmp_path / "sines.so")), "-fvisibility=default", "-lm"], check=True)
+    generator = np.random.default_rng(3)
+    quarters = np.arange(-2000, 2000) * (np.pi / 2)
+    x = np.concatenate([generator.uniform(-4, 4, 4000), generator.uniform(-1.1e5, 1.1e5, 4000), quarters, quarters * (1 + 1e-15), 10.0 ** generator.uniform(-300, 300, 4000)])
+    s, c = np.empty_like(x), np.empty_like(x)
+    ctypes.CDLL(str(tmp_path / "sines.so")).sines(ctypes.c_size_t(len(x)), *(ctypes.c_void_p(a.ctypes.data) for a in (x, s, c)))
+    with mpmath.workprec(1200):
+        for function, values in ((mpmath.sin, s), (mpmath.cos, c)):
+            exact = [function(mpmath.mpf(a)) for a in x]
+            errors = [abs(value - e) / np.spacing(abs(float(e))) for value, e in zip(values, exact)]
+            assert max(errors) < 1.5
+    nowhere = np.full(8, np.inf)
+    ctypes.CDLL(str(tmp_path / "sines.so")).sines(ctypes.c_size_t(8), *(ctypes.c_void_p(a.ctypes.data) for a in (nowhere, s, c)))
+    assert np.all(np.isnan(s[:8]) & np.isnan(c[:8]))

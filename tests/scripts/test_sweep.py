@@ -49,6 +49,19 @@ def test_failures_are_recorded(tmp_path):
     assert "3 runs, 1 failed" in text
 
 
+def test_many_runs_in_lanes(tmp_path):
+    """As the FMU does them alone, with equal shares of the time; what has no solution is told by the FMU, and at its place."""
+    table, text = sweep(tmp_path / "lanes.parquet", "ParticleSpherical", "--vary", "phi=2:0:2500", "--stop", "0.5")
+    assert "2500 runs, 1 failed" in text and re.search("fmi2ExitInitializationMode.*mass matrix is singular.*'theta'", table["problem"][-1])
+    assert table["run"] == list(range(2500)) and set(table["problem"][:-1]) == {None}
+    assert len(set(table["runTime"])) < 20 and min(table["runTime"]) > 0
+    for run in (0, 1234, 2498):
+        result = fmpy.simulate_fmu(str(archive("ParticleSpherical")), start_values={"phi": table["phi"][run]}, stop_time=0.5, output_interval=0.5, output=["r", "phi"])
+        assert [table[f"{name}_end"][run] for name in ("r", "phi")] == pytest.approx(list(result[-1])[1:], rel=1e-9)
+    table, text = sweep(tmp_path / "energies.parquet", "DoublePendulum", "--vary", "theta1=-3:3", "--random", "3000", "--stop", "1")
+    assert 0 < np.max(np.abs(table["energyError"])) < 1e-10 and len(set(table["runTime"])) < 20
+
+
 def test_resumes_after_a_kill(tmp_path):
     """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
     output, words = tmp_path / "killed.parquet", ["DampedPendulum", "--vary", "theta=-2:2", "--random", "8000", "--stop", "3"]
