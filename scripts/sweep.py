@@ -22,7 +22,8 @@ from scripts.sweeping import sweep
 def compile_ensemble(source, lanes):
     """By the C compiler, once for a system."""
     rest = ROOT / "build" / f"libensemble{lanes}.a"
-    key = hashlib.sha256(source.encode() + rest.read_bytes()).hexdigest()[:32]
+    parts = [rest, *sorted((ROOT / "src" / "ensemble").iterdir()), *sorted((ROOT / "include").iterdir())]
+    key = hashlib.sha256(b"".join([source.encode(), *(part.read_bytes() for part in parts)])).hexdigest()[:32]
     library = ROOT / "build" / "ensembles" / f"{key}.so"
     if library.exists():
         return library

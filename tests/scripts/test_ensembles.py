@@ -102,6 +102,57 @@ def test_looser_tolerances_take_lower_orders():
         assert 1e-3 * tolerance < np.max(np.abs(values - exact)) < 100 * tolerance
 
 
+SYSTEM = '<system name="{name}"><coordinate name="x" velocity="v"/><particle name="p" mass="1" x="x"/>{more}<solver method="taylor"/></system>'
+HILL = '<parameter name="k" start="400"/><potential>exp(-k*(x - 1)^2)</potential><output name="inverse">1/x</output><output name="push">der(v)</output>'
+STIFF = '<parameter name="b" start="0"/><potential>b*1e3*x^2/2</potential><dissipation>b*v^2/2</dissipation>'
+
+
+@pytest.fixture(scope="module")
+def of_tests():
+    build_systems("ensembles", {name: SYSTEM.format(name=name, more=more) for name, more in (("Hill", HILL), ("Stiff", STIFF))})
+
+
+def test_a_narrow_hill_is_not_passed_over(of_tests):
+    """On which exp is flat where a particle starts: it takes longer by the integral of 1/sqrt(v0^2 - 2 V) - 1/v0, or is turned back."""
+    values, is_left = ensemble("Hill", ["v"], ["x", "v"], [2.0]).run([[1.3], [1.4143], [1.5], [2.0], [3.0]])
+    assert not is_left.any()
+    assert values[0, 0, 1] == pytest.approx(-1.3, abs=1e-8) and values[0, 0, 0] < 0
+    for speed, value in zip((1.5, 2.0, 3.0), values[2:, 0]):
+        delay = mpmath.quad(lambda x: 1 / mpmath.sqrt(speed**2 - 2 * mpmath.exp(-400 * (x - 1) ** 2)) - 1 / mpmath.mpf(speed), [0, 0.8, 0.9, 1, 1.1, 1.2, 2])
+        assert value == pytest.approx([speed * (2.0 - float(delay)), speed], abs=1e-7)
+
+
+def test_what_follows_from_accelerations(of_tests):
+    """The push of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start alone."""
+    rows = [[0.95], [1.02], [0.0]]
+    values, is_left = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
+    assert list(is_left) == [False, False, True]
+    for (x,), value in zip(rows[:2], values):
+        assert value[0] == pytest.approx([800 * (x - 1) * np.exp(-400 * (x - 1) ** 2), 1 / x], rel=1e-12)
+
+
+def test_a_stiff_run_is_left_alone(of_tests):
+    """x' = -1000 x nearly, which takes a million steps; the FMU says what is the matter. Its neighbour moves freely."""
+    values, is_left = ensemble("Stiff", ["b", "x", "v"], ["x"], [10.0]).run([[1e5, 1e-3, 0.0], [0.0, 1.0, 2.0]])
+    assert list(is_left) == [True, False] and values[1, 0, 0] == pytest.approx(21, rel=1e-14)
+
+
+def test_what_the_fmu_refuses_is_left_to_it():
+    """A length below its minimum, with which there would be a motion; and masses so different that there is none to 14 digits."""
+    assert list(ensemble("SimplePendulum", ["l"], ["theta"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
+    one = ensemble("DoublePendulum", ["m1", "theta1", "theta2"], ["theta1"], [0.1])
+    assert list(one.run([[1e-15, 1.0, 1.0], [1.0, 1.0, 1.0]])[1]) == [True, False]
+
+
+def test_tolerances_beyond_rounding():
+    """Defects that rounding explains do not end a run; sums of many steps carry along what it takes from them."""
+    rows, time = starts({"theta": (-3, 3)}, 30), 20.0
+    values, is_left = ensemble("SimplePendulum", ["theta"], ["theta"], [time], tolerance=1e-16).run(rows)
+    exact = [pendulum_angle(theta, np.sqrt(9.81), time) for (theta,) in rows]
+    assert not is_left.any()
+    np.testing.assert_allclose(values[:, 0, 0], exact, atol=1e-12)
+
+
 def test_runs_without_a_solution_are_left_alone():
     """A particle on the axis of its coordinates, a mass that may not be, and no number: they spoil no other run."""
     ranges, asked = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
