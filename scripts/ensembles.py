@@ -1,6 +1,6 @@
 """
 Many runs of an FMU at once: its equations, which stand in its sources, compiled over the vectors of this machine's processor (src/ensemble). Those
-of systems with the Taylor series alone, where nothing switches and no constraint holds, can be. Also a module of the wheel.
+of systems with Taylor series, where nothing switches and no constraint holds, can be. Also a module of the wheel.
 """
 
 import zipfile

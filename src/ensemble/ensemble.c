@@ -44,7 +44,8 @@ static void load(struct Group *group, int lane) {
     is_right &= is_allowed(variable, value);
   }
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->low[i][lane] = 0.0;
-  steps->origin[lane] = steps->reach[lane] = steps->path[lane] = steps->steps[lane] = 0.0;
+  steps->origin[lane] = steps->reach[lane] = 0.0;
+  steps->fast[lane] = steps->path[lane] = steps->steps[lane] = 0.0;
   group->run[lane] = run;
   group->time[lane] = 0;
   group->is_active[lane] = is_right ? -1 : 0;

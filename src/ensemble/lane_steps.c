@@ -7,12 +7,17 @@
 
 _Thread_local Mask lanes_refused;
 
-/* The system's table names the method, which is this file; what FMUs know of a method is not asked for. */
+/* What a system's table names of the runtime of FMUs. The method is this file; nobody asks how matrices are factored. */
 struct Solver {
+  bool hands_over; /* to another method where the system is stiff */
+};
+struct Lu {
   int nothing;
 };
-extern const struct Solver solver_taylor;
-const struct Solver solver_taylor = {0};
+extern const struct Solver solver_taylor, solver_auto;
+extern const struct Lu lu_dense, lu_sparse;
+const struct Solver solver_taylor = {.hands_over = false}, solver_auto = {.hands_over = true};
+const struct Lu lu_dense = {0}, lu_sparse = {0};
 
 static const double logarithm_of_2 = 0.69314718055994530942;
 
@@ -270,9 +275,23 @@ static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
  */
 static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *limit) {
   Lanes crossing = LANES_OF(crossing_share * steps->length);
+  if (!any_lane(limit->shortened)) return (Mask){0};
   for (size_t i = 0; i < lagrangian.state_count; i++)
     crossing = lanes_smaller(crossing, crossing_share / (steps->unit[i] * lanes_absolute(steps->x[i][1])));
   return limit->shortened & ((limit->step < crossing) | is_too_short(steps, 0.5 * limit->step));
+}
+
+/*
+ * Lanes in which fast modes may have bounded so many steps, one after another, that the FMU would try another method; see
+ * methods/stiffness.c.
+ */
+static Mask may_be_stiff(struct LaneSteps *steps) {
+  enum { FAST_STEPS = 12 };
+  if (!lagrangian.solver->hands_over) return (Mask){0};
+  Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);
+  Mask is_fast = (last > fast_share * fast_share * before) & ~steps->is_limited;
+  steps->fast = lanes_select(is_fast, steps->fast + 1.0, (Lanes){0});
+  return steps->fast >= (double)FAST_STEPS;
 }
 
 Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
@@ -289,7 +308,8 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
                             &limit);
   steps->is_limited = active & (limit.step < promised);
   Mask left = active & approaches(steps, &limit);
-  return left | shorten(steps, limit.step, active & ~left);
+  left |= shorten(steps, limit.step, active & ~left);
+  return left | (active & may_be_stiff(steps));
 }
 
 /* Where many steps of the length that the coefficients promise hardly move the state, it is stiff. */

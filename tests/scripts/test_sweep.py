@@ -64,7 +64,7 @@ def test_many_runs_in_lanes(tmp_path):
 
 def test_resumes_after_a_kill(tmp_path):
     """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
-    output, words = tmp_path / "killed.parquet", ["DampedPendulum", "--vary", "theta=-2:2", "--random", "8000", "--stop", "3"]
+    output, words = tmp_path / "killed.parquet", ["BouncingBall", "--vary", "v=-2:2", "--random", "8000", "--stop", "3"]
     first = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL,
                              stderr=subprocess.DEVNULL)  # fmt: skip
     for _ in range(600):

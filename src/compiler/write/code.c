@@ -30,12 +30,16 @@ static bool has_oblique_block(const struct Program *program) {
   return has;
 }
 
+static bool has_solver(const struct Program *program, const char *name) {
+  return program->solver != NULL && strcmp(program->solver, name) == 0;
+}
+
 /*
  * Whether all that the Taylor series of the motion takes can be compiled over lanes: see src/ensemble. Solvers of
  * equations at run time, and what switches, work on numbers of one run.
  */
 static bool has_lanes(const struct Program *program) {
-  bool is_taylor = program->solver != NULL && strcmp(program->solver, "taylor") == 0;
+  bool is_taylor = has_solver(program, "taylor") || has_solver(program, "auto");
   bool is_smooth = program->equations->switching == NULL && program->routines[FUNCTION_ACCELERATIONS] == NULL;
   if (program->series == NULL || !is_taylor || !is_smooth || program->is_table || program->blocks.count > 0)
     return false;
