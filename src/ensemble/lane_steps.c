@@ -289,7 +289,7 @@ static Mask may_be_stiff(struct LaneSteps *steps) {
   enum { FAST_STEPS = 12 };
   if (!lagrangian.solver->hands_over) return (Mask){0};
   Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);
-  Mask is_fast = (last > fast_share * fast_share * before) & ~steps->is_limited;
+  Mask is_fast = (FALL_OF_FAST * FALL_OF_FAST * last > before) & ~steps->is_limited;
   steps->fast = lanes_select(is_fast, steps->fast + 1.0, (Lanes){0});
   return steps->fast >= (double)FAST_STEPS;
 }

@@ -21,8 +21,8 @@ static const double rounding = 100.0, rounding_margin = 10.0;
 /* The shares of a step at which its defect is measured beside its end, where the step is short for another reason. */
 static const double places_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
-/* Where modes may be fast, a coefficient is more than this share, over the step, of the one before; else it is exp(-2) of it. */
-static const double fast_share = 0.25;
+/* Over a step whose length fast modes set, the terms of the series fall by less than this from one to the next; else by e^2. */
+enum { FALL_OF_FAST = 4 };
 
 enum { DEFECT_PLACES = sizeof places_of_defects / sizeof *places_of_defects };
 
