@@ -112,7 +112,11 @@ class Parts:
 def ensemble_of(path, description, names, settings, runner, compile_ensemble):
     """What runs many at once, or None where the FMU or what varies does not allow it."""
     source, states = source_of(path), sweep_worker.states_of(description)
-    library = source and compile_ensemble(source, lanes_here(runner))
+    try:
+        library = source and compile_ensemble(source, lanes_here(runner))
+    except Problem as problem:  # an FMU of another version's making may have sources that do not fit
+        print(f"{problem}\nThe runs follow one another.", file=sys.stderr)
+        return None
     if not library:
         return None
     references = {variable.name: variable.valueReference for variable in description.modelVariables}

@@ -2,10 +2,10 @@
 
 import re
 import signal
-import re
 import subprocess
 import sys
 import time
+import zipfile
 
 import fmpy
 import numpy as np
@@ -60,6 +60,17 @@ def test_many_runs_in_lanes(tmp_path):
         assert [table[f"{name}_end"][run] for name in ("r", "phi")] == pytest.approx(list(result[-1])[1:], rel=1e-9)
     table, text = sweep(tmp_path / "energies.parquet", "DoublePendulum", "--vary", "theta1=-3:3", "--random", "3000", "--stop", "1")
     assert 0 < np.max(np.abs(table["energyError"])) < 1e-10 and len(set(table["runTime"])) < 20
+
+
+def test_sources_that_do_not_compile_over_lanes(tmp_path):
+    """As those of another version may: said, and the runs follow one another."""
+    fmu = tmp_path / "Other.fmu"
+    with zipfile.ZipFile(archive("SimplePendulum")) as source, zipfile.ZipFile(fmu, "w") as target:
+        for name in source.namelist():
+            target.writestr(name, source.read(name) + (b"#error other" if name.endswith(".c") else b""))
+    words = command(tmp_path / "other.parquet", str(fmu), "--vary", "theta=0:3", "--random", "2000", "--stop", "0.1")
+    result = subprocess.run(words, capture_output=True, text=True)
+    assert "2000 runs, 0 failed" in result.stdout and result.stderr.endswith("The runs follow one another.\n") and "#error other" in result.stderr
 
 
 def test_resumes_after_a_kill(tmp_path):
