@@ -13,26 +13,27 @@
 
 #include "arithmetic.h"
 #include "passage.h"
+#include "real.h"
 #include "series.h"
 #include "series_limit.h"
 #include "variable_type.h"
 
 /* Where the equations are evaluated. */
 struct Point {
-  double time;
-  const double *state;
-  const double *input;
-  const double *parameter;
-  const double *prepared; /* what prepare() made of the parameters */
-  double *work;           /* workspace of the generated functions, whose values do not last from call to call */
+  Real time;
+  const Real *state;
+  const Real *input;
+  const Real *parameter;
+  const Real *prepared; /* what prepare() made of the parameters */
+  Real *work;           /* workspace of the generated functions, whose values do not last from call to call */
 };
 
 /* A direction of a directional derivative. */
 struct Seed {
-  double time;
-  const double *state;
-  const double *input;
-  const double *parameter;
+  Real time;
+  const Real *state;
+  const Real *input;
+  const Real *parameter;
 };
 
 enum VariableKind {
@@ -201,23 +202,23 @@ struct SwitchTable {
   /* Of each friction, for each contact: whether it follows from its force; NULL where none does. */
   const bool *rests_on;
   /* indicator[] as below: each changes its sign where a mode may change. acceleration as for result(). */
-  void (*indicators)(const struct Point *point, const double *acceleration, double *indicator);
+  void (*indicators)(const struct Point *point, const Real *acceleration, Real *indicator);
   /*
    * What the roundings of all operations may make of the indicators of branches, of the gaps and of the velocities of
    * frictions, in units of DBL_EPSILON; the point itself is taken as exact.
    */
-  void (*roundings)(const struct Point *point, const double *acceleration, double *uncertainty);
+  void (*roundings)(const struct Point *point, const Real *acceleration, Real *uncertainty);
   /*
    * Shortens limit->step to where the elementary functions in what the indicators look at hide nothing, as far before the
    * point as behind it. input and x hold Taylor coefficients about the point up to limit->order, and so does w[] in
    * watched_acceleration_count rows from watched_acceleration_row on, of the accelerations and forces; w[watched_rows] is
    * workspace. NULL where nothing can hide.
    */
-  void (*watched_limit)(const struct Point *point, const double *acceleration, const Series *input, const Series *x,
+  void (*watched_limit)(const struct Point *point, const Real *acceleration, const Series *input, const Series *x,
                         Series *w, struct SeriesLimit *limit);
   size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
   /* What decides on the modes: value[] as below. */
-  void (*switching_values)(const struct Point *point, const double *acceleration, double *value);
+  void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
   const struct PlaneFacts *planes; /* ascending; NULL where there are none */
   size_t plane_count;
 };
@@ -300,14 +301,14 @@ struct ImplicitTable {
   const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
   struct LuPattern lu_pattern; /* where that is lu_sparse */
   /* d derivatives / d state: the elements of the pattern, in its order */
-  int (*jacobian)(const struct Point *point, double *values);
+  int (*jacobian)(const struct Point *point, Real *values);
 };
 
 /* Taylor series of the motion and of outputs; empty without them. */
 struct TaylorTable {
   size_t rows, output_rows; /* of workspace for series() and output_series() */
   /* The same as derivatives(); also fills the first coefficients in the workspace w[rows] of series(). */
-  int (*start)(const struct Point *point, double *derivative, Series *w);
+  int (*start)(const struct Point *point, Real *derivative, Series *w);
   /*
    * Taylor coefficients x[state_count] of the state up to order, with those of the inputs given, the first two of the
    * state, and w as start() has left it at the point.
@@ -333,9 +334,9 @@ struct ResultTable {
    * result_along: its derivative along seed, with the accelerations changing by acceleration_along; of outputs and
    * calculated parameters alone.
    */
-  double (*result)(const struct Point *point, const double *acceleration, size_t result);
-  double (*result_along)(const struct Point *point, const struct Seed *seed, const double *acceleration,
-                         const double *acceleration_along, size_t result);
+  Real (*result)(const struct Point *point, const Real *acceleration, size_t result);
+  Real (*result_along)(const struct Point *point, const struct Seed *seed, const Real *acceleration,
+                       const Real *acceleration_along, size_t result);
 };
 
 /* What systems with constraints have, those of contacts and frictions among them; empty for others. */
@@ -350,8 +351,8 @@ struct ConstraintTable {
    * What result() and result_along() take: acceleration[n + m], with n coordinates and m constraints, holds the
    * accelerations and then the forces of the constraints; M a + J^T F = Q.
    */
-  int (*accelerations)(const struct Point *point, double *acceleration);
-  int (*accelerations_along)(const struct Point *point, const struct Seed *seed, double *acceleration);
+  int (*accelerations)(const struct Point *point, Real *acceleration);
+  int (*accelerations_along)(const struct Point *point, const struct Seed *seed, Real *acceleration);
   /*
    * What brings a state back to the constraints, the least in the metric of M: correction[n + 3 m] holds the changes of
    * the coordinates, how much each constraint lacks (that is, less its value), the last pivot of its row, infinite where
@@ -359,17 +360,17 @@ struct ConstraintTable {
    * already. correct_velocities() does the same at the present coordinates, where constraints are linear in the
    * velocities.
    */
-  int (*correct_positions)(const struct Point *point, const struct Seed *seed, double *correction);
-  int (*correct_velocities)(const struct Point *point, double *correction);
+  int (*correct_positions)(const struct Point *point, const struct Seed *seed, Real *correction);
+  int (*correct_velocities)(const struct Point *point, Real *correction);
   /* The same for start values, where fixed coordinates and their velocities stay; NULL where none is fixed. */
-  int (*start_positions)(const struct Point *point, const struct Seed *seed, double *correction);
-  int (*start_velocities)(const struct Point *point, double *correction);
+  int (*start_positions)(const struct Point *point, const struct Seed *seed, Real *correction);
+  int (*start_velocities)(const struct Point *point, Real *correction);
   /*
    * What impulses of contacts and frictions do while the constraints hold: impulse[n + m] has them at the places of their
    * forces; response[2 n] holds the changes of the velocities, and then the impulses along the coordinates. A contact
    * pushes along its gap, a friction along its velocity. NULL without contacts.
    */
-  int (*respond)(const struct Point *point, const double *impulse, double *response);
+  int (*respond)(const struct Point *point, const Real *impulse, Real *response);
 };
 
 struct Lagrangian {
@@ -392,19 +393,19 @@ struct Lagrangian {
   const struct EventLaws *event_laws; /* event_laws.h; likewise */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
-  int (*prepare)(const double *parameter, double *prepared);
+  int (*prepare)(const Real *parameter, Real *prepared);
   /*
    * Those of state[state_count] whose start values follow from the point's parameters, and their derivatives along the
    * seed's; other elements are left as they are. NULL where there are none. Without prepared values.
    */
-  void (*initial_state)(const struct Point *point, double *state);
-  void (*initial_state_along)(const struct Point *point, const struct Seed *seed, double *state);
+  void (*initial_state)(const struct Point *point, Real *state);
+  void (*initial_state_along)(const struct Point *point, const struct Seed *seed, Real *state);
   /* derivative[state_count] = d state / dt */
-  int (*derivatives)(const struct Point *point, double *derivative);
+  int (*derivatives)(const struct Point *point, Real *derivative);
   /* The derivative of derivatives() along seed. */
-  int (*directional)(const struct Point *point, const struct Seed *seed, double *derivative);
+  int (*directional)(const struct Point *point, const struct Seed *seed, Real *derivative);
   /* Of linear systems: d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
-  void (*linear)(const double *parameter, const double *prepared, double *matrix);
+  void (*linear)(const Real *parameter, const Real *prepared, Real *matrix);
 };
 
 extern const struct Lagrangian lagrangian;

@@ -10,9 +10,11 @@
 
 #include <math.h>
 
+#include "real.h"
+
 enum { SERIES_LENGTH = 24 };
 
-typedef double Series[SERIES_LENGTH];
+typedef Real Series[SERIES_LENGTH];
 
 /* For functions that are compiled anew for each order; with SERIES_ROLLED one copy serves all orders. */
 #ifdef __GNUC__

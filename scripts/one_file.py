@@ -22,7 +22,8 @@ HEAD = """/*
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #endif
-{names}
+#ifndef LANES
+{names}#endif
 #if defined({fmi}_FUNCTION_PREFIX) && !defined({fmi}_OVERRIDE_FUNCTION_PREFIX)
 #define {fmi}_PASTE(prefix, name) prefix##name
 #define {fmi}_FULL_NAME(prefix, name) {fmi}_PASTE(prefix, name)

@@ -1,5 +1,5 @@
 """
-The rooms of lagc, with the laboratory above it, and of what is linked into FMUs: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
+The rooms of lagc, with the laboratory above it, of what is linked into FMUs and of what runs many at once: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
 Prints what is otherwise; no output where all is well.
 """
 
@@ -70,7 +70,8 @@ RUNTIME = House(
     """.split(),
     ["src/runtime"],
 )
-HOUSES = [LAGC, RUNTIME]
+ENSEMBLE = House(["src/ensemble"], ["src/ensemble"])
+HOUSES = [LAGC, RUNTIME, ENSEMBLE]
 
 
 def files_of(house):

@@ -4,14 +4,40 @@ Parquet file: what varied, the states at the end, the error of the energy, the r
 """
 
 import argparse
+import hashlib
+import os
+import shutil
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+from scripts.ensembles import words
 from scripts.problem import Problem
 from scripts.sweep_words import sweep_words
 from scripts.sweeping import sweep
+
+
+def compile_ensemble(source, lanes):
+    """Once for a system; by clang where it is, whose loops over lanes take a sixth less time than gcc's, to the same bits."""
+    rest = ROOT / "build" / f"libensemble{lanes}.a"
+    parts = [rest, *sorted((ROOT / "src" / "ensemble").iterdir()), *sorted((ROOT / "include").iterdir())]
+    key = hashlib.sha256(b"".join([source.encode(), *(part.read_bytes() for part in parts)])).hexdigest()[:32]
+    library = ROOT / "build" / "ensembles" / f"{key}.so"
+    if library.exists():
+        return library
+    library.parent.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=library.parent) as folder:
+        unfinished, text = Path(folder) / "unfinished.so", Path(folder) / "system.c"
+        text.write_text(source, encoding="utf-8")
+        compiler = [os.environ.get("CC") or shutil.which("clang") or "cc", *words(ROOT, lanes, text, unfinished), "-Wl,--whole-archive", rest, "-Wl,--no-whole-archive", "-lm"]
+        result = subprocess.run(compiler, capture_output=True, text=True)
+        if result.returncode != 0:
+            raise Problem(f"the FMU's equations cannot be compiled for many runs at once: {result.stderr.strip()}")
+        unfinished.replace(library)
+    return library
 
 
 def main():
@@ -24,7 +50,7 @@ def main():
     try:
         if not path.exists():
             raise Problem(f"there is no {path}")
-        sweep(path, ROOT / "build" / "results", arguments, (ROOT / "build" / "libsweep_runs.so").read_bytes())
+        sweep(path, ROOT / "build" / "results", arguments, ROOT / "build" / "libsweep_runs.so", compile_ensemble)
     except Problem as problem:
         sys.exit(f"scripts/sweep: {problem}")
 

@@ -80,3 +80,14 @@ EXPORT size_t sweep_runs(const struct Functions *functions, fmi2Component compon
   }
   return count;
 }
+
+/* How many lanes of src/ensemble the processor computes at once. */
+EXPORT int sweep_lanes(void) {
+#ifdef __x86_64__
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    return 8;
+  if (__builtin_cpu_supports("avx2")) return 4;
+#endif
+  return 2;
+}

@@ -4,7 +4,9 @@ import hashlib
 import io
 import tempfile
 import threading
+import time
 from ctypes import CDLL, Structure, byref, c_char_p, c_double, c_size_t, c_void_p, cast
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -88,22 +90,59 @@ def energy_errors(before, after):
     return (after[:, 0] - before[:, 0] - work) / np.where(scale > 0, scale, 1.0)
 
 
-def run_chunk(archive, runner, numbers, rows, names, settings):
-    """A table of the results of some runs, as Parquet in bytes."""
-    place = threading.get_ident(), hashlib.sha256(archive).hexdigest()
-    if place not in opened:
-        opened[place] = Instance(archive, runner)
-    instance = opened[place]
-    states = [unknown.variable.derivative.name for unknown in instance.description.derivatives]
-    watched, count = lawful_energies(instance.description), len(rows)
+def states_of(description):
+    return [unknown.variable.derivative.name for unknown in description.derivatives]
+
+
+@dataclass
+class Results:
+    """Arrays over runs: what is watched at both ends, the states at the end, the run times, and what went wrong."""
+
+    before: np.ndarray
+    after: np.ndarray
+    ends: np.ndarray
+    seconds: np.ndarray
+    problems: np.ndarray  # of texts, None where all went well
+
+    def replace(self, runs, others):
+        for name, values in vars(others).items():
+            getattr(self, name)[runs] = values
+
+
+def run_by_fmi(instance, rows, names, settings):
+    """One run after another, by the functions of FMI."""
+    states, watched, count = states_of(instance.description), lawful_energies(instance.description), len(rows)
     variables = [instance.references(of) for of in (names, watched, states)]
     before, after = (np.full((count, len(watched)), np.nan) for _ in range(2))
     ends, seconds, rows = np.full((count, len(states)), np.nan), np.zeros(count), np.ascontiguousarray(rows, dtype=float)
     sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data,
                   settings["tolerance"] or 0.0, settings["stop"], settings["steps"], *(a.ctypes.data for a in (before, after, ends, seconds)))  # fmt: skip
-    problems = instance.run(sweep, count)
-    columns = {"run": np.array(numbers)} | dict(zip(names, rows.T)) | {f"{state}_end": column for state, column in zip(states, ends.T)}
-    columns |= {"energyError": energy_errors(before, after), "runTime": seconds, "problem": pa.array(problems, pa.string())}
+    return Results(before, after, ends, seconds, np.array(instance.run(sweep, count), dtype=object))
+
+
+def run_in_lanes(ensemble, instance, rows, names, settings):
+    """Many runs at once, which have equal shares of the time; those that the lanes leave, by FMI."""
+    begin, states = time.perf_counter(), len(states_of(instance.description))
+    values, is_left = ensemble.run(rows)
+    seconds = np.full(len(rows), (time.perf_counter() - begin) / len(rows))
+    results = Results(values[:, 0, states:], values[:, 1, states:], values[:, 1, :states], seconds, np.full(len(rows), None))
+    if is_left.any():
+        results.replace(is_left, run_by_fmi(instance, rows[is_left], names, settings))
+    return results
+
+
+def run_chunk(archive, runner, numbers, rows, names, settings, ensemble=None):
+    """A table of the results of some runs, as Parquet in bytes; ensemble: that of ensembles.py, where the FMU has one."""
+    place = threading.get_ident(), hashlib.sha256(archive).hexdigest()
+    if place not in opened:
+        opened[place] = Instance(archive, runner)
+    instance = opened[place]
+    one = rows, names, settings
+    results = run_in_lanes(ensemble, instance, *one) if ensemble else run_by_fmi(instance, *one)
+    columns = {"run": np.array(numbers)} | dict(zip(names, rows.T))
+    columns |= {f"{state}_end": column for state, column in zip(states_of(instance.description), results.ends.T)}
+    columns |= {"energyError": energy_errors(results.before, results.after), "runTime": results.seconds}
+    columns |= {"problem": pa.array(results.problems, pa.string())}
     buffer = io.BytesIO()
     pq.write_table(pa.table(columns), buffer)
     return buffer.getvalue()

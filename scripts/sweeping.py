@@ -19,12 +19,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from . import sweep_worker
+from .ensembles import Ensemble, lanes_here, source_of
 from .problem import Problem
 from .progress import Progress
 from .simulation import described
 from .variables import settable, why_not
 
 CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
+LANES_CHUNK, LANES_PARTS = 1000, 25  # the same in lanes, which take less time for a run than to write it
+LANES_FROM = 2000  # runs, with which the lanes need less time than a compiler for them
 IN_FLIGHT = 3  # tasks a worker thread, so that memory does not grow with the number of runs
 
 
@@ -106,9 +109,26 @@ class Parts:
         shutil.rmtree(self.folder)
 
 
-def simulate(executor, width, archive, runner, rows, names, settings, parts):
+def ensemble_of(path, description, names, settings, runner, compile_ensemble):
+    """What runs many at once, or None where the FMU or what varies does not allow it."""
+    source, states = source_of(path), sweep_worker.states_of(description)
+    try:
+        library = source and compile_ensemble(source, lanes_here(runner))
+    except Problem as problem:  # an FMU of another version's making may have sources that do not fit
+        print(f"{problem}\nThe runs follow one another.", file=sys.stderr)
+        return None
+    if not library:
+        return None
+    references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    varied, asked = ([references[name] for name in some] for some in (names, [*states, *sweep_worker.lawful_energies(description)]))
+    ensemble = Ensemble(library, varied, asked, [0.0, settings["stop"]], settings["tolerance"])
+    return ensemble if ensemble.serves() else None
+
+
+def simulate(executor, width, archive, runner, rows, names, settings, parts, ensemble=None):
     """Keeps that many tasks in flight; writes each as it ends."""
-    size = max(CHUNK, -(-len(rows) // PARTS))
+    least, most = (LANES_CHUNK, LANES_PARTS) if ensemble else (CHUNK, PARTS)
+    size = max(least, -(-len(rows) // most))
     count = -(-len(rows) // size)
     runs_of = lambda chunk: range(chunk * size, min((chunk + 1) * size, len(rows)))
     finished = parts.finished(runs_of)
@@ -121,7 +141,8 @@ def simulate(executor, width, archive, runner, rows, names, settings, parts):
         while waiting and len(running) < width:
             chunk = waiting.pop(0)
             numbers = runs_of(chunk)
-            future = executor.submit(sweep_worker.run_chunk, archive, runner, numbers, rows[numbers.start : numbers.stop], names, settings)
+            some = rows[numbers.start : numbers.stop]
+            future = executor.submit(sweep_worker.run_chunk, archive, runner, numbers, some, names, settings, ensemble)
             running[future] = chunk
         for future in wait(running, return_when=FIRST_COMPLETED).done:
             chunk = running.pop(future)
@@ -161,8 +182,11 @@ def print_summary(output):
     print(f"result  {output.resolve()}")
 
 
-def sweep(path, output, arguments, runner):
-    """Of an FMU, to a Parquet file, by the words of sweep_words.py; runner: sweep_runs.c as a shared library's bytes."""
+def sweep(path, output, arguments, runner, compile_ensemble):
+    """
+    Of an FMU, to a Parquet file, by the words of sweep_words.py. runner: sweep_runs.c as a shared library; compile_ensemble(source, lanes): the
+    library of ensembles.py, or None.
+    """
     description = described(path)
     if description.fmiVersion != "2.0":
         raise Problem(f"{path} is of FMI {description.fmiVersion}; expected one of FMI 2.0")
@@ -176,11 +200,14 @@ def sweep(path, output, arguments, runner):
     settings = {"stop": stop, "steps": steps, "tolerance": arguments.tolerance}
     output = arguments.output or Path(output) / f"{description.modelName}-sweep.parquet"
     archive = Path(path).read_bytes()
-    plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), **settings}
+    ensemble = None
+    if len(rows) >= LANES_FROM and not arguments.scheduler:  # a cluster's workers may have other processors
+        ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
+    plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:
         parts = Parts(output, plan)
-        words = archive, runner, rows, names, settings, parts
-        count = simulate_with_dask(arguments.scheduler, *words) if arguments.scheduler else simulate_in_threads(*words)
+        words = archive, Path(runner).read_bytes(), rows, names, settings, parts
+        count = simulate_with_dask(arguments.scheduler, *words) if arguments.scheduler else simulate_in_threads(*words, ensemble)
         parts.join(output, count)
     except OSError as problem:
         raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command goes on with them") from None

@@ -440,6 +440,17 @@ PLACES = [
      pytest("test_friction_in_a_plane", "bounce_with_spin")),
     ("state.aside < -slope_back * state.ahead;", "state.aside < -1e9 + slope_back * state.ahead;",
      pytest("test_friction_in_a_plane", "long_steps")),
+    # Many runs at once
+    ("(2.0 + 0.7 * share_before)", "(0.5 + 0.7 * share_before)", pytest("test_ensembles", "fmu_alone and ParticlePolar", "ParticlePolar")),
+    ("steps->low[i][lane] = 0.0;", "(void)steps;", pytest("test_ensembles", "same_bits and DoublePendulum", "DoublePendulum")),
+    ("ensemble->is_left[run] = !is_right;", "", pytest("test_ensembles", "without_a_solution", "ParticleSpherical")),
+    ("isfinite(value) && value >= variable->minimum", "isfinite(value)", pytest("test_ensembles", "fmu_refuses", "SimplePendulum")),
+    ("limit->step[i] = step;", "", pytest("test_ensembles", "hill")),
+    ("(lost - count * third)", "(lost)", pytest("test_ensembles", "sines")),
+    ("return left | (active & may_be_stiff(steps));", "(void)may_be_stiff;\n  return left;",
+     pytest("test_ensembles", "hand_over", "ElasticPendulum")),
+    ("is_lost |= ~lanes_are_finite(value);", "", pytest("test_ensembles", "accelerations")),
+    ("return crawls(steps, largest);", "(void)crawls;\n  return (Mask){0};", pytest("test_ensembles", "stiff_run")),
 ]
 
 # Changes that are no faults, since what they leave out follows from the rest: (what stands there, what was planted, why).

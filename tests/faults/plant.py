@@ -44,7 +44,7 @@ def build_all():
 
 def build_for(kind, test, keyword="", *systems):
     """What a test needs: itself, or the compiler, and FMUs. The others stay as they were without a fault."""
-    targets = [test] if kind == "ctest" else ["lagc", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
+    targets = [test] if kind == "ctest" else ["lagc", "sweep_runs", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
     return succeeds("cmake", "--build", "build", "--parallel", str(os.cpu_count()), "--target", *targets)
 
 

@@ -89,6 +89,17 @@ def test_a_sweep(command, tmp_path):
     np.testing.assert_allclose(runs["theta_end"], expected, rtol=1e-9)
 
 
+def test_a_sweep_in_lanes(command, tmp_path):
+    """A pendulum falls from rest at 90 degrees: after a period of 4 K(1/2) sqrt(l/g) it is there again; one of no length has no motion."""
+    period = 4 * 1.8540746773013719 / np.sqrt(9.81)
+    words = ["--vary", f"theta={np.pi / 2!r}", "--vary", "l=0:2:2001", "--stop-time", repr(float(period)), "--output", "runs.parquet"]
+    assert "2001 runs, 1 failed" in succeed(command("sweep", fmu.archive("SimplePendulum"), *words, cwd=tmp_path))
+    runs = pq.read_table(tmp_path / "runs.parquet").to_pydict()
+    assert "mass matrix is singular" in runs["problem"][0]
+    assert runs["l"][1000] == 1 and runs["theta_end"][1000] == pytest.approx(np.pi / 2, abs=1e-9)
+    assert len(set(runs["runTime"][1:])) < 10  # runs in lanes have equal shares of the time
+
+
 def test_completion(command, tmp_path):
     """What bash is given completes commands, words and files."""
     (tmp_path / "completion").write_text(succeed(command("--print-completion", "bash", cwd=tmp_path)))

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -54,7 +55,7 @@ class Clone:
             (folder / name).mkdir()
         script(folder / "bin" / "python3", PYTHON)
         script(folder / "bin" / "cmake", 'echo "cmake $*" >>"$LOG"\n')
-        script(folder / "bin" / "dpkg-query", "echo install ok installed\n")
+        script(folder / "bin" / "dpkg-query", """printf "%s install ok installed\\n" "${@:4}"\n""")
         self.signal = folder / "signal"
         os.mkfifo(self.signal)
         path = f"{folder / 'bin'}:{os.environ['PATH']}"
@@ -126,6 +127,20 @@ def test_a_build_waits_for_another_in_its_folder(clone):
         assert clone.calls() and not any("build/one" in call for call in clone.calls())
     assert waiting.wait(timeout=60) == 0
     assert any("--build build/one" in call for call in clone.calls())
+
+
+def test_a_sweep_builds_its_own_fmu_alone(clone):
+    """And does not configure again what is configured: looking after all FMUs takes longer than a small sweep."""
+    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
+    script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
+    (clone.folder / "build" / "venv" / "installed-sweep").write_text(stamp)
+    for name in ("One", "Other"):
+        (clone.folder / "fmu" / name).mkdir()
+        (clone.folder / "fmu" / name / "system.xml").touch()
+    (clone.folder / "build" / "Makefile").touch()
+    assert clone.run("sweep", "--stop", "1", "One", "--vary", "l=1,2")[0] == 0
+    (call,) = [call for call in clone.calls() if call.startswith("cmake")]
+    assert re.fullmatch("cmake --build build --parallel [0-9]+ --target sweep_runs fmu_One", call)
 
 
 @pytest.fixture
@@ -224,7 +239,7 @@ def test_sundials_is_built_once(source):
 
 
 @pytest.mark.parametrize("what, message", [
-    ({"SOURCE": "away"}, "the source package install ok installed cannot be had"),
+    ({"SOURCE": "away"}, "the source package libsundials-dev install ok installed cannot be had"),
     ({"MADE": "badly"}, "SUNDIALS cannot be built from its source package"),
 ])  # fmt: skip
 def test_without_the_source_of_sundials(what, message, source):

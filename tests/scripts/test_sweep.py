@@ -2,10 +2,10 @@
 
 import re
 import signal
-import re
 import subprocess
 import sys
 import time
+import zipfile
 
 import fmpy
 import numpy as np
@@ -49,9 +49,33 @@ def test_failures_are_recorded(tmp_path):
     assert "3 runs, 1 failed" in text
 
 
+def test_many_runs_in_lanes(tmp_path):
+    """As the FMU does them alone, with equal shares of the time; what has no solution is told by the FMU, and at its place."""
+    table, text = sweep(tmp_path / "lanes.parquet", "ParticleSpherical", "--vary", "phi=2:0:2500", "--stop", "0.5")
+    assert "2500 runs, 1 failed" in text and re.search("fmi2ExitInitializationMode.*mass matrix is singular.*'theta'", table["problem"][-1])
+    assert table["run"] == list(range(2500)) and set(table["problem"][:-1]) == {None}
+    assert len(set(table["runTime"])) < 20 and min(table["runTime"]) > 0
+    for run in (0, 1234, 2498):
+        result = fmpy.simulate_fmu(str(archive("ParticleSpherical")), start_values={"phi": table["phi"][run]}, stop_time=0.5, output_interval=0.5, output=["r", "phi"])
+        assert [table[f"{name}_end"][run] for name in ("r", "phi")] == pytest.approx(list(result[-1])[1:], rel=1e-9)
+    table, text = sweep(tmp_path / "energies.parquet", "DoublePendulum", "--vary", "theta1=-3:3", "--random", "3000", "--stop", "1")
+    assert 0 < np.max(np.abs(table["energyError"])) < 1e-10 and len(set(table["runTime"])) < 20
+
+
+def test_sources_that_do_not_compile_over_lanes(tmp_path):
+    """As those of another version may: said, and the runs follow one another."""
+    fmu = tmp_path / "Other.fmu"
+    with zipfile.ZipFile(archive("SimplePendulum")) as source, zipfile.ZipFile(fmu, "w") as target:
+        for name in source.namelist():
+            target.writestr(name, source.read(name) + (b"#error other" if name.endswith(".c") else b""))
+    words = command(tmp_path / "other.parquet", str(fmu), "--vary", "theta=0:3", "--random", "2000", "--stop", "0.1")
+    result = subprocess.run(words, capture_output=True, text=True)
+    assert "2000 runs, 0 failed" in result.stdout and result.stderr.endswith("The runs follow one another.\n") and "#error other" in result.stderr
+
+
 def test_resumes_after_a_kill(tmp_path):
     """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
-    output, words = tmp_path / "killed.parquet", ["DoublePendulum", "--vary", "theta1=-2:2", "--random", "8000", "--stop", "3"]
+    output, words = tmp_path / "killed.parquet", ["BouncingBall", "--vary", "v=-2:2", "--random", "8000", "--stop", "3"]
     first = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL,
                              stderr=subprocess.DEVNULL)  # fmt: skip
     for _ in range(600):

@@ -78,6 +78,7 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
 def runtime_key():
     """Of what every library is built from beside its system.c."""
     files = [file for part in ("runtime", "sundials/include") for file in sorted((HERE / part).rglob("*.[ch]"))]
+    files += sorted((HERE / "runtime" / "src" / "ensemble").glob("*.flags"))
     files += sorted((HERE / "runtime" / "scripts").rglob("*.py"))
     return caching.key_of(version("ziglang"), *(file.read_bytes() for file in files))
 

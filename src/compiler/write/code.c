@@ -31,6 +31,24 @@ static bool has_oblique_block(const struct Program *program) {
   return has;
 }
 
+static bool has_solver(const struct Program *program, const char *name) {
+  return program->solver != NULL && strcmp(program->solver, name) == 0;
+}
+
+/*
+ * Whether all that the Taylor series of the motion takes can be compiled over lanes: see src/ensemble. Solvers of
+ * equations at run time, and what switches, work on numbers of one run.
+ */
+static bool has_lanes(const struct Program *program) {
+  bool is_taylor = has_solver(program, "taylor") || has_solver(program, "auto");
+  bool is_smooth = program->equations->switching == NULL && program->routines[FUNCTION_ACCELERATIONS] == NULL;
+  if (program->series == NULL || !is_taylor || !is_smooth || program->is_table || program->blocks.count > 0)
+    return false;
+  for (size_t i = 0; i < program->series->limit.count; i++)
+    if (program->series->limit.items[i].is_gated) return false;
+  return true;
+}
+
 /*
  * The files of the runtime that this one needs, for compiling all in one, and for archives whose source is one file. The build
  * adds those of the version of FMI.
@@ -60,6 +78,8 @@ static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   if (program->series != NULL && !program->series_is_table && !program->series_is_unrolled)
     fputs("#define SERIES_ROLLED 1\n", file);
+  if (has_lanes(program))
+    fputs("#ifdef LANES /* these functions alone, over lanes */\n#undef FMU_IN_ONE_FILE\n#endif\n", file);
   write_runtime(file, program);
   /* Long statements of series take a compiler half the time so, and the processor not more. */
   if (program->is_table && !program->series_is_table)

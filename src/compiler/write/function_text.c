@@ -8,7 +8,7 @@ bool takes(enum FunctionName name, const char *argument) {
 
 void write_head(FILE *file, enum FunctionName name, const char *suffix, size_t operations) {
   const struct GeneratedFunction *function = &generated_functions[name];
-  static const char *const types[] = {[RETURNS_NOTHING] = "void", [RETURNS_STATUS] = "int", [RETURNS_VALUE] = "double"};
+  static const char *const types[] = {[RETURNS_NOTHING] = "void", [RETURNS_STATUS] = "int", [RETURNS_VALUE] = "Real"};
   fprintf(file, "/* %s; %zu operations */\nstatic %s %s%s(%s) {\n", function->comment, operations,
           types[function->returned], function->name, suffix, function->arguments);
 }

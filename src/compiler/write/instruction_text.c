@@ -41,7 +41,8 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
 static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
                              const char *target) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
-  for (const char *text = facts->statement; *text != '\0'; text++) {
+  bool is_number = instruction->opcode == COPY && space_of(instruction->operands[0]) == SPACE_NUMBER;
+  for (const char *text = is_number ? "REAL($1)" : facts->statement; *text != '\0'; text++) {
     if (*text != '$') {
       fputc(*text, file);
       continue;
@@ -92,7 +93,7 @@ static void write_statement(FILE *file, const struct Program *program, const str
   if (facts->result != NUMBER && space_of(instruction->result) == SPACE_TARGET && target == NULL)
     fputs("return ", file);
   else if (facts->result != NUMBER) {
-    if (space_of(instruction->result) == SPACE_LOCAL) fputs("const double ", file);
+    if (space_of(instruction->result) == SPACE_LOCAL) fputs("const Real ", file);
     write_place(file, program, instruction->result, facts->result == ROW ? COEFFICIENT : facts->result, target);
     fputs(" = ", file);
   }

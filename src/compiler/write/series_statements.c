@@ -16,9 +16,9 @@ static const struct {
   enum Space space;
   const char *declaration, *argument;
 } further_arguments[] = {
-    {SPACE_PARAMETER, "const double *p", "point->parameter"},
-    {SPACE_PREPARED, "const double *c", "point->prepared"},
-    {SPACE_TIME_ROW, "const double *time", "time"},
+    {SPACE_PARAMETER, "const Real *p", "point->parameter"},
+    {SPACE_PREPARED, "const Real *c", "point->prepared"},
+    {SPACE_TIME_ROW, "const Real *time", "time"},
     {SPACE_INPUT_ROW, "const Series *restrict input", "input"},
 };
 
@@ -84,7 +84,7 @@ static void write_unrolled_orders(FILE *file, const struct Program *program) {
 }
 
 static void declare_time(FILE *file, bool is_used) {
-  if (is_used) fputs("  const Series time = {point->time, 1.0};\n", file);
+  if (is_used) fputs("  const Series time = {point->time, REAL(1.0)};\n", file);
 }
 
 static void write_series(FILE *file, const struct Program *program) {
@@ -95,7 +95,7 @@ static void write_series(FILE *file, const struct Program *program) {
   else {
     statements_declare_point(file, program, order);
     if (program->blocks.count > 0)
-      fprintf(file, "  const double *mass = w[%zu];\n  double side[%zu];\n", program->series->mass_row,
+      fprintf(file, "  const Real *mass = w[%zu];\n  Real side[%zu];\n", program->series->mass_row,
               program->blocks.side_count);
     fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n", file);
     write_statements(file, program, order, NULL);
@@ -166,7 +166,7 @@ void statements_output_series(FILE *file, const struct Program *program) {
   write_head(file, FUNCTION_OUTPUT_SERIES, "", series->start->operation_count);
   declare_time(file, routine_uses(&both, SPACE_TIME_ROW));
   statements_declare_point(file, program, &both);
-  if (routine_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  double a[%zu];\n", program->equations->count);
+  if (routine_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  Real a[%zu];\n", program->equations->count);
   write_statements(file, program, series->start, "y");
   fputs("  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n", file);
   write_statements(file, program, series->order, NULL);

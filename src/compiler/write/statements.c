@@ -16,7 +16,7 @@ static bool reads(const struct Routine *routine, enum Space space, size_t from, 
 }
 
 static void declare(FILE *file, bool is_used, const char *name, const char *source) {
-  if (is_used) fprintf(file, "  const double *%s = %s;\n", name, source);
+  if (is_used) fprintf(file, "  const Real *%s = %s;\n", name, source);
 }
 
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine) {
@@ -34,10 +34,10 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
 
 /* Where series follow, the factors of large blocks are kept for them. */
 static void declare_block_spaces(FILE *file, const struct Program *program, const struct Routine *routine) {
-  if (routine_uses(routine, SPACE_SIDE)) fprintf(file, "  double side[%zu];\n", program->blocks.side_count);
+  if (routine_uses(routine, SPACE_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.side_count);
   if (!routine_uses(routine, SPACE_MASS)) return;
-  if (routine_uses(routine, SPACE_ROW)) fprintf(file, "  double *mass = w[%zu];\n", program->series->mass_row);
-  else fprintf(file, "  double mass[%zu];\n", program->blocks.mass_count);
+  if (routine_uses(routine, SPACE_ROW)) fprintf(file, "  Real *mass = w[%zu];\n", program->series->mass_row);
+  else fprintf(file, "  Real mass[%zu];\n", program->blocks.mass_count);
 }
 
 void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
@@ -47,9 +47,9 @@ void statements_function(FILE *file, const struct Program *program, enum Functio
   write_head(file, name, suffix, routine->operation_count);
   if (takes(name, "*point")) statements_declare_point(file, program, routine);
   declare_block_spaces(file, program, routine);
-  if (text->accelerations == IN_TARGET) fprintf(file, "  double *a = %s + %zu;\n", text->target, n);
+  if (text->accelerations == IN_TARGET) fprintf(file, "  Real *a = %s + %zu;\n", text->target, n);
   else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))
-    fprintf(file, "  double a[%zu];\n", row_count(program->equations));
+    fprintf(file, "  Real a[%zu];\n", row_count(program->equations));
   write_statements(file, program, routine, text->target);
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
 }
@@ -65,7 +65,7 @@ static size_t size_of_group(const struct Program *program, size_t first) {
 static void write_group(FILE *file, const struct Program *program, size_t first, size_t size, const char *suffix) {
   statements_function(file, program, FUNCTION_RESULTS, suffix, program->result[first]);
   fprintf(file,
-          "static double result%s(const struct Point *point, const double *a, size_t place) {\n  double value[%zu];\n"
+          "static Real result%s(const struct Point *point, const Real *a, size_t place) {\n  Real value[%zu];\n"
           "  results%s(point, a, value);\n  return value[place];\n}\n\n",
           suffix, size, suffix);
 }
@@ -79,11 +79,11 @@ static void write_result(FILE *file, const struct Program *program, size_t first
 
 static void begin_choice(FILE *file, enum FunctionName name) {
   const struct GeneratedFunction *text = &generated_functions[name];
-  fprintf(file, "static double %s(%s, size_t result) {\n  switch (result) {\n", text->name, text->arguments);
+  fprintf(file, "static Real %s(%s, size_t result) {\n  switch (result) {\n", text->name, text->arguments);
 }
 
 static void end_choice(FILE *file) {
-  fputs("  default: return NAN;\n  }\n}\n\n", file);
+  fputs("  default: return REAL(NAN);\n  }\n}\n\n", file);
 }
 
 /* A function for each, and one that chooses among them. */

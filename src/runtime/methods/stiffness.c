@@ -67,7 +67,7 @@ static bool may_be_fast(const struct Taylor *taylor) {
     last = fmax(last, fabs(taylor->x[i][order]) / scale);
     before = fmax(before, fabs(taylor->x[i][order - 2]) / scale);
   }
-  double share = 0.25 / taylor->saved->reach;
+  double share = 1.0 / FALL_OF_FAST / taylor->saved->reach;
   return last > share * share * before;
 }
 

@@ -13,9 +13,6 @@
 #include "instance/snapshot.h"
 #include "methods/taylor_reach.h"
 
-enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
-enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
-
 static size_t taylor_saved_size(void) {
   return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
 }
@@ -94,8 +91,7 @@ static double move_origin(struct Taylor *taylor) {
 }
 
 int64_t taylor_order(const struct Instance *instance) {
-  double order = ceil(1.0 - 0.5 * log(taylor_tolerance(instance)));
-  return (int64_t)fmin(fmax(order, LOWEST_ORDER), HIGHEST_ORDER);
+  return order_for(taylor_tolerance(instance));
 }
 
 /* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */

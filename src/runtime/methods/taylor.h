@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "instance/instance.h"
+#include "methods/taylor_rule.h"
 
 /* What the situation holds for this solver, beside the span of its last step; they tell all that a step depends on. */
 struct TaylorSaved {
@@ -55,10 +56,9 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   return (first * s + second) * s;
 }
 
-/* The tolerance of a local error: errors of its order add up to more than it; see tests/solvers/test_motion.py. */
+/* That of a local error. */
 static inline double taylor_tolerance(const struct Instance *instance) {
-  double tolerance = 0.1 * instance->situation->tolerance;
-  return tolerance > 1e-17 ? tolerance : 1e-17;
+  return local_tolerance(instance->situation->tolerance);
 }
 
 /* The order that the tolerance asks for. */

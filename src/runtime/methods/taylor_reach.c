@@ -13,14 +13,6 @@
 
 #include "evaluation/inputs.h"
 
-/* A step of the promised length has a defect of about a third of the order times the tolerance. */
-static const double defect_margin = 3.0;
-/* The share of its scale by which the state moves where a kink is crossed. */
-static const double crossing_share = 1e-12;
-/* Polynomial motions have no length of their own. */
-static const double horizon = 1e4;
-/* Rounding of the right side at the end of the step, in units of the last place, and of what rounding of the state does. */
-static const double rounding = 100.0, rounding_margin = 10.0;
 static const double logarithm_of_2 = 0.69314718055994530942;
 
 /*
@@ -160,10 +152,9 @@ static double rounding_of_right_side(struct Instance *instance, struct Taylor *t
 
 /* The larger of the defects inside the step and at its end. */
 static double defect_over(struct Instance *instance, struct Taylor *taylor, double s) {
-  static const double places[] = {0.15, 0.35, 0.55, 0.75, 0.9};
   double largest = 0.0;
-  for (size_t i = 0; i < sizeof places / sizeof *places && largest <= 1.0; i++)
-    largest = fmax(largest, defect(instance, taylor, places[i] * s));
+  for (int i = 0; i < DEFECT_PLACES && largest <= 1.0; i++)
+    largest = fmax(largest, defect(instance, taylor, places_of_defects[i] * s));
   return fmax(largest, defect(instance, taylor, s));
 }
 

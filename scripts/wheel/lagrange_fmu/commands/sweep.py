@@ -1,5 +1,6 @@
 """Simulates a system from a grid or a random sample of start values and parameters, on all cores; leaves a Parquet file, a run in each row."""
 
+import os
 import tempfile
 from pathlib import Path
 
@@ -10,25 +11,43 @@ from ..runtime.scripts.cross import zig
 from ..sweep_words import sweep_words
 from .words_of_systems import SYSTEM_OR_FMU
 
+RUNTIME = Path(__file__).parent.parent / "runtime"
+
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
     sweep_words(parser, "SYSTEM-sweep.parquet in the current folder")
 
 
-def runner():
-    """What calls the FMU, compiled when it is needed first."""
-    runtime = Path(__file__).parent.parent / "runtime"
-    with tempfile.TemporaryDirectory() as place:
-        library = Path(place) / "library" / "sweep_runs"
+def compiled(place, name, key, what, words_for):
+    """The library that zig makes by words_for(library), in a folder of its own in the place; compiled when it is needed first."""
+    library = place / name / name
 
-        def compile_library():
-            library.parent.mkdir()
-            words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", runtime / "include"]
-            zig("cc", *words, runtime / "scripts" / "sweep_runs.c", "-o", library, cache=Path(place) / "cache")
+    def compile_library():
+        library.parent.mkdir()
+        zig("cc", *words_for(library), cache=place / "cache")
 
-        take_or_compile(caching.key_of(runtime_key(), "sweep"), library.parent, "the library that runs sweeps cannot be compiled", compile_library)
-        return library.read_bytes()
+    take_or_compile(caching.key_of(runtime_key(), *key), library.parent, what, compile_library)
+    return library
+
+
+def runner(place):
+    """What calls the FMU."""
+    words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", RUNTIME / "include", RUNTIME / "scripts" / "sweep_runs.c"]
+    return compiled(place, "sweep_runs", ["sweep"], "the library that runs sweeps cannot be compiled", lambda library: [*words, "-o", library])
+
+
+def compile_ensemble(place, source, lanes):
+    """What runs many at once; not on Windows, where nobody has tried it."""
+    from ..ensembles import words
+
+    if os.name == "nt":
+        return None
+    text = place / "system.c"
+    text.write_text(source, encoding="utf-8")
+    rest = [*sorted((RUNTIME / "src" / "ensemble").glob("*.c")), RUNTIME / "src" / "runtime" / "support" / "series_limit.c", "-lm"]
+    what = "the FMU's equations cannot be compiled for many runs at once"
+    return compiled(place, "ensemble", ["ensemble", source, lanes], what, lambda library: [*words(RUNTIME, lanes, text, library), *rest])
 
 
 def run(arguments):
@@ -38,5 +57,6 @@ def run(arguments):
         raise Problem(f"{missing.name} is not installed; it comes with pip install pyarrow") from None
     from ..running import fmu_of
 
-    with fmu_of(arguments.system) as fmu:
-        sweep(fmu, ".", arguments, runner())
+    with fmu_of(arguments.system) as fmu, tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        sweep(fmu, ".", arguments, runner(place), lambda source, lanes: compile_ensemble(place, source, lanes))

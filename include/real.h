@@ -1,0 +1,22 @@
+/*
+ * The numbers that generated functions compute with, and what these do by a condition. An ensemble compiles the same
+ * functions over numbers that hold one of each of several runs (src/ensemble/lanes.h).
+ */
+#ifndef REAL_H
+#define REAL_H
+
+typedef double Real;
+
+/* A constant among them. */
+#define REAL(number) (number)
+
+/* The first where the condition holds, else the second. */
+#define WHERE(condition, first, second) ((condition) ? (first) : (second))
+
+/* Lets the function return the number unless the condition holds. */
+#define REQUIRE(condition, number)                                                                                     \
+  do {                                                                                                                 \
+    if (!(condition)) return (number);                                                                                 \
+  } while (0)
+
+#endif

@@ -1,0 +1,126 @@
+#include "ensemble.h"
+
+#include "lane_steps.h"
+#include "lane_values.h"
+
+/* Runs in lanes. */
+struct Group {
+  const struct Ensemble *ensemble;
+  struct LaneSteps steps;
+  Mask is_active;
+  size_t run[LANES], time[LANES]; /* of each active lane, and the next of the times */
+  size_t next, end;               /* runs that are to come */
+};
+
+static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *variable, int lane, double value) {
+  if (variable->kind == VARIABLE_STATE) steps->x[variable->index][0][lane] = value;
+  if (variable->kind == VARIABLE_INPUT) steps->constants[variable->index][lane] = value;
+  if (variable->kind == VARIABLE_PARAMETER) steps->parameter[variable->index][lane] = value;
+}
+
+/* Whether the FMU would take the value. */
+static bool is_allowed(const struct ScalarVariable *variable, double value) {
+  return isfinite(value) && value >= variable->minimum && value <= variable->maximum;
+}
+
+static void leave(struct Group *group, Mask lanes) {
+  for (int i = 0; any_lane(lanes) && i < LANES; i++)
+    if (lanes[i]) group->ensemble->is_left[group->run[i]] = true;
+  group->is_active &= ~lanes;
+}
+
+/* The next run into a lane. */
+static void load(struct Group *group, int lane) {
+  const struct Ensemble *ensemble = group->ensemble;
+  struct LaneSteps *steps = &group->steps;
+  size_t run = group->next++;
+  bool is_right = true;
+  for (size_t i = 0; i < lagrangian.variable_count; i++)
+    set_lane(steps, &lagrangian.variables[i], lane, lagrangian.variables[i].start);
+  for (size_t i = 0; i < ensemble->varied_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[ensemble->varied[i]];
+    double value = ensemble->start[run * ensemble->varied_count + i];
+    set_lane(steps, variable, lane, value);
+    is_right &= is_allowed(variable, value);
+  }
+  for (size_t i = 0; i < lagrangian.state_count; i++) steps->low[i][lane] = 0.0;
+  steps->origin[lane] = steps->reach[lane] = 0.0;
+  steps->fast[lane] = steps->path[lane] = steps->steps[lane] = 0.0;
+  group->run[lane] = run;
+  group->time[lane] = 0;
+  group->is_active[lane] = is_right ? -1 : 0;
+  ensemble->is_left[run] = !is_right;
+}
+
+/* The start values of lanes that follow from their parameters, but for those that vary themselves. */
+static void follow(struct Group *group, Mask lanes) {
+  const struct Ensemble *ensemble = group->ensemble;
+  struct LaneSteps *steps = &group->steps;
+  struct Point point = {.parameter = steps->parameter};
+  if (lagrangian.initial_state == NULL) return;
+  lagrangian.initial_state(&point, steps->state);
+  for (size_t i = 0; i < lagrangian.variable_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[i];
+    bool follows = has_following_start(variable);
+    for (size_t j = 0; j < ensemble->varied_count; j++) follows &= ensemble->varied[j] != i;
+    if (!follows) continue;
+    Lanes *x = steps->x[variable->index];
+    x[0] = lanes_select(lanes, steps->state[variable->index], x[0]);
+  }
+}
+
+/* Lets lanes that are free take runs that are to come, until all are at work or there are no more. */
+static void fill(struct Group *group) {
+  Mask is_new;
+  do {
+    is_new = ~group->is_active;
+    for (int i = 0; i < LANES; i++)
+      while (!group->is_active[i] && group->next < group->end) load(group, i);
+    is_new &= group->is_active;
+    if (!any_lane(is_new)) return;
+    follow(group, is_new);
+    leave(group, lane_steps_start(&group->steps) & is_new);
+  } while (any_lane(~group->is_active) && group->next < group->end);
+}
+
+/* The states at the times that the series reach; a run is over at the last of them. */
+static void deliver(struct Group *group) {
+  const struct Ensemble *ensemble = group->ensemble;
+  const double *times = ensemble->times;
+  Lanes end = group->steps.origin + group->steps.reach;
+  for (;;) {
+    Lanes time = group->steps.origin;
+    Mask is_reached = {0};
+    for (int i = 0; i < LANES; i++) {
+      if (!group->is_active[i] || !(times[group->time[i]] <= end[i])) continue;
+      time[i] = times[group->time[i]];
+      is_reached[i] = -1;
+    }
+    if (!any_lane(is_reached)) return;
+    leave(group, lane_values_tell(ensemble, &group->steps, time, is_reached, group->run, group->time));
+    for (int i = 0; i < LANES; i++)
+      if (is_reached[i] && ++group->time[i] == ensemble->time_count) group->is_active[i] = 0;
+  }
+}
+
+bool ensemble_serves(const struct Ensemble *ensemble) {
+  bool serves = lagrangian.steps.max_steps == 0;
+  for (size_t i = 0; i < ensemble->varied_count; i++)
+    serves &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
+  for (size_t i = 0; i < ensemble->asked_count; i++)
+    serves &= lane_values_can_tell(&lagrangian.variables[ensemble->asked[i]]);
+  return serves;
+}
+
+bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {
+  struct Group group = {.ensemble = ensemble, .next = first, .end = first + count};
+  double tolerance = ensemble->tolerance > 0.0 ? ensemble->tolerance : lagrangian.steps.tolerance;
+  if (!lane_steps_create(&group.steps, tolerance, ensemble->times[ensemble->time_count - 1])) return false;
+  for (fill(&group); any_lane(group.is_active); fill(&group)) {
+    leave(&group, lane_steps_expand(&group.steps, group.is_active));
+    deliver(&group);
+    leave(&group, lane_steps_move(&group.steps) & group.is_active);
+  }
+  lane_steps_destroy(&group.steps);
+  return true;
+}

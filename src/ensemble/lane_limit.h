@@ -1,0 +1,82 @@
+/*
+ * How far series may be trusted (include/series_limit.h), over lanes, under the same names: lanes in which the operand
+ * surely stays near enough are told at once, the others are asked about one by one.
+ */
+#ifndef SERIES_LIMIT_H
+#define SERIES_LIMIT_H
+
+#include "lane_series.h"
+#include "single_lane.h"
+
+struct SeriesLimit {
+  int order;      /* of the polynomials */
+  Lanes step;     /* what the functions below shorten */
+  Mask shortened; /* the lanes in which they did */
+};
+
+/* Lets the rule shorten the step where u may go further than the bound from u_0. other: NULL where there is none. */
+void lane_limit(struct SeriesLimit *limit, SingleLimit *rule, Lanes bound, const Lanes *u, const Lanes *other,
+                Lanes number);
+
+/* The rules let u go at least so far: functions that grow like exp, and those that mind where 0 is. */
+#define LANE_LIMIT_RANGE LANES_OF(4.0)
+#define LANE_LIMIT_SHARE 0.9
+
+LANES_INLINE void series_limit_exponential(struct SeriesLimit *limit, const Lanes *u, const char *function) {
+  (void)function;
+  lane_limit(limit, single_limit_exponential, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
+}
+
+LANES_INLINE void series_limit_hyperbolic(struct SeriesLimit *limit, const Lanes *u, const char *function) {
+  (void)function;
+  lane_limit(limit, single_limit_hyperbolic, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
+}
+
+LANES_INLINE void series_limit_tanh(struct SeriesLimit *limit, const Lanes *u) {
+  lane_limit(limit, single_limit_tanh, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
+}
+
+LANES_INLINE void series_limit_tangent(struct SeriesLimit *limit, const Lanes *u) {
+  lane_limit(limit, single_limit_tangent, (Lanes){0}, u, NULL, (Lanes){0});
+}
+
+LANES_INLINE void series_limit_positive(struct SeriesLimit *limit, const Lanes *u, const char *function) {
+  (void)function;
+  lane_limit(limit, single_limit_positive, LANE_LIMIT_SHARE * lanes_absolute(u[0]), u, NULL, (Lanes){0});
+}
+
+LANES_INLINE Lanes lane_limit_bound(const Lanes *u, double share) {
+  return LANE_LIMIT_SHARE * (share < 1.0 ? share : 1.0) * lanes_absolute(u[0]);
+}
+
+LANES_INLINE void series_limit_quotient(struct SeriesLimit *limit, const Lanes *u, double share) {
+  lane_limit(limit, single_limit_quotient, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
+}
+
+LANES_INLINE void series_limit_root(struct SeriesLimit *limit, const Lanes *u, double share) {
+  lane_limit(limit, single_limit_root, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
+}
+
+LANES_INLINE void series_limit_whole_power(struct SeriesLimit *limit, const Lanes *u, double share) {
+  lane_limit(limit, single_limit_whole_power, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
+}
+
+LANES_INLINE void series_limit_division(struct SeriesLimit *limit, const Lanes *u, const Lanes *numerator,
+                                        double share) {
+  lane_limit(limit, single_limit_division, lane_limit_bound(u, share), u, numerator, LANES_OF(share));
+}
+
+LANES_INLINE void series_limit_power(struct SeriesLimit *limit, const Lanes *u, Lanes exponent) {
+  lane_limit(limit, single_limit_power, (Lanes){0}, u, NULL, exponent);
+}
+
+LANES_INLINE void series_limit_sign(struct SeriesLimit *limit, const Lanes *u, const char *function) {
+  (void)function;
+  lane_limit(limit, single_limit_sign, LANE_LIMIT_SHARE * lanes_absolute(u[0]), u, NULL, (Lanes){0});
+}
+
+LANES_INLINE void series_limit_angle(struct SeriesLimit *limit, const Lanes *y, const Lanes *x) {
+  lane_limit(limit, single_limit_angle, LANE_LIMIT_SHARE * lanes_absolute(y[0]), y, x, (Lanes){0});
+}
+
+#endif

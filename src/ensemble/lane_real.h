@@ -1,0 +1,16 @@
+/* What include/real.h says, over lanes: with it, generated functions are those of several runs at once. */
+#ifndef REAL_H
+#define REAL_H
+
+#include "lanes.h"
+
+typedef Lanes Real;
+
+#define REAL(number) LANES_OF(number)
+#define WHERE(condition, first, second) lanes_select(condition, LANES_OF(first), LANES_OF(second))
+
+/* The lanes of which the functions below refused a condition; whoever calls them empties it before. */
+extern _Thread_local Mask lanes_refused;
+#define REQUIRE(condition, number) (lanes_refused |= ~(condition))
+
+#endif

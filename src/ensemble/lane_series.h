@@ -1,0 +1,95 @@
+/* The recurrences of include/series.h over lanes, under the same names. */
+#ifndef SERIES_H
+#define SERIES_H
+
+#include "lane_real.h"
+
+enum { SERIES_LENGTH = 24 };
+
+typedef Real Series[SERIES_LENGTH];
+
+/* A piece of code serves all orders: products of whole lanes leave little to gain by unrolling. */
+#define SERIES_INLINE __attribute__((noinline))
+
+/* sum of a[j] b[-j] for j < n; additions that wait for one another leave the processor to other sums. */
+LANES_INLINE Lanes series_dot(int n, const Lanes *a, const Lanes *b) {
+  Lanes sum = {0};
+  for (int j = 0; j < n; j++) sum += a[j] * b[-j];
+  return sum;
+}
+
+/* The sum of a_j b_(k-j) without the ends j = 0 and j = k. */
+LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
+  return series_dot(k - 1, a + 1, b + k - 1);
+}
+
+/* (a b)_k; the newest coefficients come last, as they are waited for. */
+LANES_INLINE Lanes series_product(int k, const Lanes *a, const Lanes *b) {
+  return series_middle(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
+}
+
+/* (a b)_k without its first term a_0 b_k */
+LANES_INLINE Lanes series_rest(int k, const Lanes *a, const Lanes *b) {
+  return series_middle(k, a, b) + a[k] * b[0];
+}
+
+/* (a a)_k: each pair of different coefficients stands twice in the sum. */
+LANES_INLINE Lanes series_square(int k, const Lanes *a) {
+  Lanes half = series_dot((k - 1) / 2, a + 1, a + k - 1) + a[0] * a[k];
+  return k % 2 == 0 ? 2.0 * half + a[k / 2] * a[k / 2] : 2.0 * half;
+}
+
+/* (a / b)_k, where top is a_k, which may be a constant, inverse is 1 / b_0 and c holds the quotient so far */
+LANES_INLINE Lanes lane_series_quotient(int k, Lanes top, Lanes inverse, const Lanes *b, const Lanes *c) {
+  return ((top - b[k] * c[0]) - series_middle(k, b, c)) * inverse;
+}
+#define series_quotient(k, top, inverse, b, c) lane_series_quotient(k, LANES_OF(top), LANES_OF(inverse), b, c)
+
+/* (sqrt a)_k; the root of 0 at all times is 0 */
+LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
+  Lanes root = (a[k] - series_dot(k - 1, c + 1, c + k - 1)) / (2.0 * c[0]);
+  return lanes_select((c[0] == 0.0) & (c[k - 1] == 0.0) & (a[k] == 0.0), (Lanes){0}, root);
+}
+
+/* c' = a' b: c_k, with the series of a' */
+LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
+  return (series_dot(k - 1, rate, b + k - 1) + rate[k - 1] * b[0]) * (1.0 / k);
+}
+
+/* c' = a' / b: c_k, where top is a_k, which may be a constant */
+LANES_INLINE Lanes lane_series_ratio_integral(int k, Lanes top, const Lanes *b, const Lanes *c) {
+  Lanes sum = {0};
+  for (int j = 1; j < k; j++) sum += (double)j * c[j] * b[k - j];
+  return (top - sum * (1.0 / k)) / b[0];
+}
+#define series_ratio_integral(k, top, b, c) lane_series_ratio_integral(k, LANES_OF(top), b, c)
+
+/* The sign that a(t) has at first for t > 0, as far as its coefficients up to k tell: -1, 0 or 1 */
+LANES_INLINE Lanes series_sign(int k, const Lanes *a) {
+  Lanes first = {0};
+  for (int j = k; j >= 0; j--) first = lanes_select(a[j] != 0.0, a[j], first);
+  return WHERE(first > 0.0, 1.0, WHERE(first < 0.0, -1.0, 0.0));
+}
+
+/* |a|_k, of the piece that is there first */
+LANES_INLINE Lanes series_absolute(int k, const Lanes *a) {
+  return series_sign(k, a) * a[k];
+}
+
+/* The coefficient k - 1 of y' x - x' y, divided by k */
+LANES_INLINE Lanes series_area(int k, const Lanes *y, const Lanes *x) {
+  Lanes sum = {0};
+  for (int j = 1; j <= k; j++) sum += (double)j * (y[j] * x[k - j] - x[j] * y[k - j]);
+  return sum * (1.0 / k);
+}
+
+/* The coefficient k of atan2(y, x), with the series of x^2 + y^2 in b */
+LANES_INLINE Lanes series_angle(int k, const Lanes *y, const Lanes *x, const Lanes *b, const Lanes *c) {
+  return series_ratio_integral(k, series_area(k, y, x), b, c);
+}
+
+/* (a^n)_k for any number n, lane by lane */
+Lanes lane_series_power(int k, Lanes n, const Lanes *a, const Lanes *c);
+#define series_power(k, n, a, c) lane_series_power(k, LANES_OF(n), a, c)
+
+#endif

@@ -1,0 +1,347 @@
+#include "lane_steps.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+#include "methods/taylor_rule.h"
+
+_Thread_local Mask lanes_refused;
+
+/* What a system's table names of the runtime of FMUs. The method is this file; nobody asks how matrices are factored. */
+struct Solver {
+  bool hands_over; /* to another method where the system is stiff */
+};
+struct Lu {
+  int nothing;
+};
+extern const struct Solver solver_taylor, solver_auto;
+extern const struct Lu lu_dense, lu_sparse;
+const struct Solver solver_taylor = {.hands_over = false}, solver_auto = {.hands_over = true};
+const struct Lu lu_dense = {0}, lu_sparse = {0};
+
+static const double logarithm_of_2 = 0.69314718055994530942;
+
+/* --- Memory ------------------------------------------------------------------------------------------------------- */
+
+/* The next count rows of a block. */
+static Lanes *take(Lanes **block, size_t count) {
+  Lanes *rows = *block;
+  *block += count;
+  return rows;
+}
+
+static Series *take_series(Lanes **block, size_t count) {
+  return (Series *)take(block, count * SERIES_LENGTH);
+}
+
+bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length) {
+  size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
+  size_t series = states + inputs + lagrangian.taylor.rows;
+  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count + inputs + 6 * states;
+  size_t size = (rows + 1) * sizeof(Lanes);
+  char *memory = malloc(size);
+  if (memory == NULL) return false;
+  memset(memory, 0, size);
+  Lanes *block = (void *)(memory + (sizeof(Lanes) - (uintptr_t)memory % sizeof(Lanes)));
+  double local = local_tolerance(tolerance);
+  *steps =
+      (struct LaneSteps){.memory = memory, .order = (int)order_for(local), .tolerance = tolerance, .length = length};
+  steps->longest = fmin(horizon * length, lagrangian.steps.max_step);
+  steps->x = take_series(&block, states);
+  steps->input = take_series(&block, inputs);
+  steps->work = take_series(&block, lagrangian.taylor.rows);
+  steps->parameter = take(&block, lagrangian.parameter_count);
+  steps->prepared = take(&block, lagrangian.prepared_count);
+  steps->constants = take(&block, inputs);
+  steps->low = take(&block, states);
+  steps->unit = take(&block, states);
+  steps->derivative = take(&block, states);
+  steps->change = take(&block, states);
+  steps->state = take(&block, states);
+  steps->rate = take(&block, states);
+  return true;
+}
+
+void lane_steps_destroy(struct LaneSteps *steps) {
+  free(steps->memory);
+}
+
+/* --- The polynomials, as in methods/taylor.h and taylor_reach.c ----------------------------------------------------- */
+
+static void measure_scales(struct LaneSteps *steps) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    steps->unit[i] = 1.0 / lanes_larger(lanes_absolute(steps->x[i][0]), LANES_OF(lagrangian.steps.nominal[i]));
+}
+
+/* The change of state variable i from the origin to s after it. */
+static Lanes change(const struct LaneSteps *steps, size_t i, Lanes s) {
+  const Lanes *x = steps->x[i], square = s * s;
+  int j = steps->order;
+  Lanes first = x[j], second = x[j - 1];
+  for (j -= 2; j > 1; j -= 2) {
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+  }
+  return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
+}
+
+/* The same with its time derivative there. */
+static Lanes change_and_rate(const struct LaneSteps *steps, size_t i, Lanes s, Lanes *rate) {
+  const Lanes *x = steps->x[i], square = s * s;
+  int j = steps->order;
+  double factor = j;
+  Lanes first = x[j], second = x[j - 1];
+  Lanes first_rate = factor * first, second_rate = (factor - 1.0) * second;
+  for (j -= 2; j > 1; j -= 2) {
+    factor -= 2.0;
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+    first_rate = first_rate * square + factor * x[j];
+    second_rate = second_rate * square + (factor - 1.0) * x[j - 1];
+  }
+  *rate = j == 1 ? (first_rate * s + second_rate) * s + x[1] : first_rate * s + second_rate;
+  return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
+}
+
+Lanes lane_steps_state(const struct LaneSteps *steps, size_t i, Lanes time) {
+  return steps->x[i][0] + (change(steps, i, time - steps->origin) + steps->low[i]);
+}
+
+/* --- The promise of the last coefficients -------------------------------------------------------------------------- */
+
+/* The largest coefficients of an order, in units of the variables' scales. */
+static Lanes norm(const struct LaneSteps *steps, int order) {
+  Lanes largest = {0};
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    Lanes size = lanes_absolute(steps->x[i][order]) * steps->unit[i];
+    largest = lanes_select(size <= largest, largest, size); /* a NaN is taken */
+  }
+  return largest;
+}
+
+/* A whole number of less than 2^51 as a double, by the bits of its sum with one in which the last bit counts ones. */
+static const double whole_numbers = 0x1.8p52;
+
+/* The logarithm to base 2 of a number that is not negative, to 0.01. */
+static Lanes rough_logarithm(Lanes x) {
+  Bits bits = (Bits)x, exponent = (bits >> 52) + (Bits)LANES_OF(whole_numbers);
+  Lanes mantissa = (Lanes)((bits & 0xfffffffffffffu) | (uint64_t)1023 << 52); /* from 1 to 2 */
+  return ((Lanes)exponent - whole_numbers) - 1022.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
+}
+
+/* 2^x to 1 %, for |x| < 1000. */
+static Lanes rough_power_of_two(Lanes x) {
+  Lanes sum = x + whole_numbers, rest = x - (sum - whole_numbers);
+  Lanes power = (Lanes)(((Bits)sum + 1023) << 52);
+  return power * (1.0 + rest * (0.693 + rest * (0.24 + rest * 0.055)));
+}
+
+/* Where the last two terms that do not vanish are as small as the tolerance asks; 0 where they are not finite. */
+static Lanes promised_step(const struct LaneSteps *steps) {
+  Lanes last = norm(steps, steps->order), before = norm(steps, steps->order - 1);
+  Lanes share = LANES_OF(1.0 / steps->order), share_before = LANES_OF(1.0 / (steps->order - 1));
+  Mask vanish = last + before == 0.0;
+  for (int order = steps->order - 1; any_lane(vanish) && order > steps->order / 2; order--) {
+    last = lanes_select(vanish, before, last);
+    before = lanes_select(vanish, norm(steps, order - 1), before);
+    share = lanes_select(vanish, LANES_OF(1.0 / order), share);
+    share_before = lanes_select(vanish, LANES_OF(1.0 / (order - 1)), share_before);
+    vanish &= last + before == 0.0;
+  }
+  Lanes of_last = rough_logarithm(last) * share, of_before = rough_logarithm(before) * share_before;
+  Lanes margin = (2.0 + 0.7 * share_before) * (1.0 / logarithm_of_2);
+  Lanes exponent = -lanes_larger(of_last, of_before) - margin;
+  Lanes step = rough_power_of_two(lanes_larger(lanes_smaller(exponent, LANES_OF(900.0)), LANES_OF(-900.0)));
+  step = lanes_select(vanish, LANES_OF(DBL_MAX), step);
+  return lanes_select(lanes_are_finite(last + before), step, (Lanes){0});
+}
+
+/* --- The defect ---------------------------------------------------------------------------------------------------- */
+
+static struct Point point_at(const struct LaneSteps *steps, Lanes time, const Lanes *state) {
+  return (struct Point){.time = time,
+                        .state = state,
+                        .input = steps->constants,
+                        .parameter = steps->parameter,
+                        .prepared = steps->prepared};
+}
+
+/*
+ * The right side of the equations of motion at s after the origin, at the state that steps->change leads to, with each of
+ * its numbers made larger or smaller by the share. Returns the lanes where it does not exist.
+ */
+static Mask right_side(struct LaneSteps *steps, Lanes s, double share, Lanes *derivative) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    steps->state[i] = steps->x[i][0] + (steps->change[i] + steps->low[i]);
+    if (share != 0.0) steps->state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
+  }
+  struct Point point = point_at(steps, steps->origin + s, steps->state);
+  lanes_refused = (Mask){0};
+  lagrangian.taylor.start(&point, derivative, steps->work);
+  return lanes_refused;
+}
+
+/* The defect that is allowed over a step, as a change in units of the variables' scales. */
+static Lanes allowed_defect(const struct LaneSteps *steps) {
+  double size = local_tolerance(steps->tolerance);
+  return lanes_select(steps->is_limited, LANES_OF(size), LANES_OF(defect_margin * (steps->order + 1) * size));
+}
+
+/* Both where the second is no number or larger. */
+static Lanes larger_or_infinite(Lanes largest, Lanes size) {
+  return lanes_select(size <= largest, largest, lanes_select(size < INFINITY, size, LANES_OF(INFINITY)));
+}
+
+/* The largest defect at s, as the change that it makes over s in units of the variables' scales and of what is allowed. */
+static Lanes defect(struct LaneSteps *steps, Lanes s) {
+  size_t first = lagrangian.coordinate_count, states = lagrangian.state_count;
+  Lanes largest = {0};
+  for (size_t i = 0; i < first; i++) steps->change[i] = change(steps, i, s);
+  for (size_t i = first; i < states; i++) steps->change[i] = change_and_rate(steps, i, s, &steps->rate[i]);
+  Mask refused = right_side(steps, s, 0.0, steps->derivative);
+  for (size_t i = first; i < states; i++) {
+    Lanes exact = steps->derivative[i];
+    Lanes difference = lanes_absolute(exact - steps->rate[i]) - rounding * DBL_EPSILON * lanes_absolute(exact);
+    largest = larger_or_infinite(largest, difference * s * steps->unit[i]);
+  }
+  return lanes_select(refused, LANES_OF(INFINITY), largest / allowed_defect(steps));
+}
+
+/* The same, and inside the step where that is short for another reason than its coefficients. */
+static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
+  Lanes inside = {0};
+  for (int i = 0; any_lane(steps->is_limited) && i < DEFECT_PLACES; i++)
+    inside = larger_or_infinite(inside, defect(steps, places_of_defects[i] * s));
+  Lanes end = defect(steps, s);
+  return lanes_select(steps->is_limited, larger_or_infinite(end, inside), end);
+}
+
+/* What rounding of the state at s, where defect() has just been, makes of the right side, in the units of defect(). */
+static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
+  Lanes largest = {0};
+  Mask refused = right_side(steps, s, 4.0 * DBL_EPSILON, steps->rate);
+  refused |= right_side(steps, s, 0.0, steps->derivative);
+  for (size_t i = lagrangian.coordinate_count; i < lagrangian.state_count; i++) {
+    Lanes moved = lanes_absolute(steps->rate[i] - steps->derivative[i]) * s * steps->unit[i];
+    largest = lanes_larger(moved, largest);
+  }
+  return lanes_select(refused, (Lanes){0}, largest / allowed_defect(steps));
+}
+
+/* --- The step ------------------------------------------------------------------------------------------------------ */
+
+/* The next origin is a number, so that the time does not drift. */
+static Lanes exact_reach(const struct LaneSteps *steps, Lanes step) {
+  return steps->origin + step - steps->origin;
+}
+
+/* Steps below are none in a time of so many digits. */
+static Mask is_too_short(const struct LaneSteps *steps, Lanes step) {
+  return step <= 8.0 * DBL_EPSILON * lanes_absolute(steps->origin);
+}
+
+/* By how much a step is shortened whose defect has the size. */
+static double shortening(double size, int order) {
+  return fmin(fmax(0.9 * pow(size, -1.0 / (order + 1)), 0.1), 0.8);
+}
+
+/*
+ * Shortens the steps of the lanes until their defects are small, and measures these at their ends. Returns the lanes in
+ * which they stay large. A defect that rounding explains stays in a shorter step too.
+ */
+static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
+  Mask lost = active & ~(step > 0.0);
+  for (;;) {
+    lost |= active & is_too_short(steps, step);
+    step = exact_reach(steps, lanes_select(active & ~lost, step, (Lanes){0}));
+    Lanes size = defect_over(steps, step);
+    Mask is_large = active & ~lost & ~(size <= 1.0);
+    if (any_lane(is_large)) {
+      Lanes explained = rounding_margin * rounding_of_right_side(steps, step);
+      is_large &= ~((size < INFINITY) & (size <= explained));
+    }
+    if (!any_lane(is_large)) break;
+    steps->is_limited |= is_large;
+    for (int i = 0; i < LANES; i++)
+      if (is_large[i]) step[i] *= shortening(size[i], steps->order);
+  }
+  steps->reach = step;
+  return lost;
+}
+
+/*
+ * Lanes that come so near to a point without a series that a step across it may be shorter: the FMU knows how to cross, or
+ * says what is there.
+ */
+static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *limit) {
+  Lanes crossing = LANES_OF(crossing_share * steps->length);
+  if (!any_lane(limit->shortened)) return (Mask){0};
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    crossing = lanes_smaller(crossing, crossing_share / (steps->unit[i] * lanes_absolute(steps->x[i][1])));
+  return limit->shortened & ((limit->step < crossing) | is_too_short(steps, 0.5 * limit->step));
+}
+
+/*
+ * Lanes in which fast modes may have bounded so many steps, one after another, that the FMU would try another method; see
+ * methods/stiffness.c.
+ */
+static Mask may_be_stiff(struct LaneSteps *steps) {
+  enum { FAST_STEPS = 12 };
+  if (!lagrangian.solver->hands_over) return (Mask){0};
+  Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);
+  Mask is_fast = (FALL_OF_FAST * FALL_OF_FAST * last > before) & ~steps->is_limited;
+  steps->fast = lanes_select(is_fast, steps->fast + 1.0, (Lanes){0});
+  return steps->fast >= (double)FAST_STEPS;
+}
+
+Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
+  measure_scales(steps);
+  for (size_t i = 0; i < lagrangian.state_count; i++) steps->x[i][1] = steps->derivative[i];
+  for (size_t i = 0; i < lagrangian.input_count; i++) steps->input[i][0] = steps->constants[i];
+  struct Point point = point_at(steps, steps->origin, NULL);
+  lagrangian.taylor.series(&point, steps->order, (const Series *)steps->input, steps->x, steps->work);
+  Lanes promised = promised_step(steps);
+  struct SeriesLimit limit = {.order = steps->order - 1, .step = lanes_smaller(promised, LANES_OF(steps->longest))};
+  limit.step = lanes_select(active, limit.step, (Lanes){0});
+  if (lagrangian.taylor.limit != NULL)
+    lagrangian.taylor.limit(&point, (const Series *)steps->input, (const Series *)steps->x, (const Series *)steps->work,
+                            &limit);
+  steps->is_limited = active & (limit.step < promised);
+  Mask left = active & approaches(steps, &limit);
+  left |= shorten(steps, limit.step, active & ~left);
+  return left | (active & may_be_stiff(steps));
+}
+
+/* Where many steps of the length that the coefficients promise hardly move the state, it is stiff. */
+static Mask crawls(struct LaneSteps *steps, Lanes moved) {
+  steps->path += lanes_select(steps->is_limited, (Lanes){0}, moved);
+  steps->steps += lanes_select(steps->is_limited, (Lanes){0}, LANES_OF(1.0));
+  Mask many = steps->steps >= (double)CRAWL_STEPS;
+  if (!any_lane(many)) return many;
+  Mask stays = many & (steps->path < CRAWL_STEPS * fmin(steps->tolerance, 1e-6));
+  steps->path = lanes_select(many, (Lanes){0}, steps->path);
+  steps->steps = lanes_select(many, (Lanes){0}, steps->steps);
+  return stays;
+}
+
+Mask lane_steps_move(struct LaneSteps *steps) {
+  Lanes largest = {0};
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    Lanes before = steps->x[i][0], term = steps->change[i] + steps->low[i];
+    Lanes sum = before + term, part = sum - before;
+    largest = lanes_larger(lanes_absolute(term) * steps->unit[i], largest);
+    steps->low[i] = (before - (sum - part)) + (term - part);
+    steps->x[i][0] = sum;
+  }
+  steps->origin += steps->reach;
+  return crawls(steps, largest);
+}
+
+Mask lane_steps_start(struct LaneSteps *steps) {
+  lanes_refused = (Mask){0};
+  lagrangian.prepare(steps->parameter, steps->prepared);
+  for (size_t i = 0; i < lagrangian.state_count; i++) steps->state[i] = steps->x[i][0];
+  struct Point point = point_at(steps, steps->origin, steps->state);
+  lagrangian.taylor.start(&point, steps->derivative, steps->work);
+  return lanes_refused;
+}

@@ -1,0 +1,249 @@
+"""Many runs at once (src/ensemble): as the FMU does each alone, whatever their neighbours and the processor; and what lanes leave to it."""
+
+import ctypes
+import subprocess
+
+import fmpy
+import mpmath
+import numpy as np
+import pytest
+from fmpy import read_model_description
+
+from building import build_systems
+from closed_forms import kepler, pendulum_angle
+from fmu import ROOT, archive
+from scripts.ensembles import Ensemble, lanes_here, source_of, words
+from scripts.sweep import compile_ensemble
+
+# Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
+SYSTEMS = {
+    "DoublePendulum": ({"theta1": (-3, 3), "theta2": (-3, 3), "m2": (0.5, 2), "l1": (0.5, 2)}, 2),
+    "SimplePendulum": ({"theta": (-3, 3), "l": (0.3, 3), "m": (0.1, 3)}, 10),
+    "InvertedPendulumCart": ({"theta": (-3, 3), "F": (-3, 3), "M": (0.5, 3)}, 3),
+    "InvertedPendulumCartTorque": ({"theta": (-3, 3), "F": (-3, 3)}, 3),
+    "HeavyTop": ({"vpsi": (100, 200), "theta": (0.3, 1)}, 0.5),
+    "ParticlePolar": ({"r": (0.5, 2), "omega": (0.5, 1), "mu": (0.5, 2)}, 3),
+    "ParticleSpherical": ({"phi": (0.5, 2), "omegaTheta": (-1, 1)}, 2),
+    "ParticleCylindrical": ({"rho": (0.5, 2), "omega": (-1, 1), "Fz": (-1, 1)}, 2),
+    "RotatingPivotPendulum": ({"theta": (-3, 3), "l": (0.3, 3)}, 3),
+    "DampedPendulum": ({"theta": (-3, 3), "tau": (-3, 3), "b": (0, 1)}, 5),  # by auto, but not stiff; so are the next two
+    "ElasticPendulum": ({"theta": (-1, 1), "k": (10, 100), "c": (0, 5)}, 2),
+    "Gyrocompass": ({"alpha": (-1, 1), "b": (0, 1e-3)}, 0.1),
+}
+HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")
+NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # of lanes, that this processor can do
+
+
+def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
+    reference = {v.name: v.valueReference for v in read_model_description(archive(name)).modelVariables}
+    library = compile_ensemble(source_of(archive(name)), lanes)
+    return Ensemble(library, [reference[v] for v in varied], [reference[v] for v in asked], times, tolerance)
+
+
+def states(name):
+    return [unknown.variable.derivative.name for unknown in read_model_description(archive(name)).derivatives]
+
+
+def starts(ranges, count, seed=1):
+    generator = np.random.default_rng(seed)
+    return np.array([generator.uniform(*span, count) for span in ranges.values()]).T
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_each_run_is_that_of_the_fmu_alone(name):
+    """The states and the energies at three times, more runs than lanes; each takes its own number of steps."""
+    ranges, stop = SYSTEMS[name]
+    asked = [*states(name), "kineticEnergy", "totalEnergy"]
+    rows, times = starts(ranges, 3 * HERE + 1), [0, 0.3 * stop, stop]
+    values, is_left = ensemble(name, ranges, asked, times).run(rows)
+    assert not is_left.any()
+    for row, value in zip(rows, values):
+        alone = fmpy.simulate_fmu(str(archive(name)), start_values=dict(zip(ranges, row)), stop_time=stop, output_interval=0.1 * stop, output=asked, relative_tolerance=1e-10)
+        for k, result in zip((0, 3, 10), value):
+            expected = np.array(list(alone[k])[1:])
+            np.testing.assert_allclose(result, expected, rtol=2e-9, atol=2e-9)
+
+
+@pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])
+def test_a_run_has_the_same_bits_among_any_others(name):
+    """Whatever its lane, how many lanes there are, and where the others begin and end."""
+    ranges, stop = SYSTEMS[name]
+    rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
+    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
+    for lanes in NUMBERS:
+        one = ensemble(name, ranges, asked, [0, stop], lanes)
+        np.testing.assert_array_equal(one.run(rows)[0], values)
+        order = np.random.default_rng(2).permutation(len(rows))[:37]
+        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
+        np.testing.assert_array_equal(one.run(rows[7:8])[0], values[7:8])
+
+
+def test_pendulums_in_closed_form():
+    """Released at rest, each with an angle and a length of its own."""
+    rows, times = starts({"theta": (-3, 3), "l": (0.3, 3)}, 60), [0.1, 1.0, 7.0]
+    values, _ = ensemble("SimplePendulum", ["theta", "l"], ["theta"], times).run(rows)
+    exact = [[pendulum_angle(theta, np.sqrt(9.81 / l), t) for t in times] for theta, l in rows]
+    np.testing.assert_allclose(values[:, :, 0], exact, atol=1e-9)
+
+
+def test_orbits_in_closed_form():
+    """From their pericentres, with masses of the centre of their own."""
+    rows, time = starts({"mu": (0.5, 0.9), "omega": (1, 1.2)}, 60), 10.0
+    rows = rows[rows[:, 1] ** 2 < 1.8 * rows[:, 0]]
+    values, _ = ensemble("ParticlePolar", ["mu", "omega"], ["r", "theta"], [time]).run(rows)
+    r, theta = values[:, 0].T
+    exact = np.array([kepler(mu, 1, omega, time) for mu, omega in rows])
+    np.testing.assert_allclose(np.array([r * np.cos(theta), r * np.sin(theta)]).T, exact, atol=1e-8)
+    assert len(rows) > 20
+
+
+def test_looser_tolerances_take_lower_orders():
+    rows = starts({"theta": (-3, 3)}, 100)
+    exact, _ = ensemble("SimplePendulum", ["theta"], ["theta"], [5], tolerance=1e-13).run(rows)
+    for tolerance in (1e-4, 1e-7):
+        values, _ = ensemble("SimplePendulum", ["theta"], ["theta"], [5], tolerance=tolerance).run(rows)
+        assert 1e-3 * tolerance < np.max(np.abs(values - exact)) < 100 * tolerance
+
+
+SYSTEM = '<system name="{name}"><coordinate name="x" velocity="v"/><particle name="p" mass="1" x="x"/>{more}<solver method="taylor"/></system>'
+HILL = '<parameter name="k" start="400"/><potential>exp(-k*(x - 1)^2)</potential><output name="inverse">1/x</output><output name="push">der(v)</output>'
+STIFF = '<parameter name="b" start="0"/><potential>b*1e3*x^2/2</potential><dissipation>b*v^2/2</dissipation>'
+
+
+@pytest.fixture(scope="module")
+def of_tests():
+    build_systems("ensembles", {name: SYSTEM.format(name=name, more=more) for name, more in (("Hill", HILL), ("Stiff", STIFF))})
+
+
+def test_a_narrow_hill_is_not_passed_over(of_tests):
+    """On which exp is flat where a particle starts: it takes longer by the integral of 1/sqrt(v0^2 - 2 V) - 1/v0, or is turned back."""
+    values, is_left = ensemble("Hill", ["v"], ["x", "v"], [2.0]).run([[1.3], [1.4143], [1.5], [2.0], [3.0]])
+    assert not is_left.any()
+    assert values[0, 0, 1] == pytest.approx(-1.3, abs=1e-8) and values[0, 0, 0] < 0
+    for speed, value in zip((1.5, 2.0, 3.0), values[2:, 0]):
+        delay = mpmath.quad(lambda x: 1 / mpmath.sqrt(speed**2 - 2 * mpmath.exp(-400 * (x - 1) ** 2)) - 1 / mpmath.mpf(speed), [0, 0.8, 0.9, 1, 1.1, 1.2, 2])
+        assert value == pytest.approx([speed * (2.0 - float(delay)), speed], abs=1e-7)
+
+
+def test_what_follows_from_accelerations(of_tests):
+    """The push of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start alone."""
+    rows = [[0.95], [1.02], [0.0]]
+    values, is_left = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
+    assert list(is_left) == [False, False, True]
+    for (x,), value in zip(rows[:2], values):
+        assert value[0] == pytest.approx([800 * (x - 1) * np.exp(-400 * (x - 1) ** 2), 1 / x], rel=1e-12)
+
+
+def test_a_stiff_run_is_left_alone(of_tests):
+    """x' = -1000 x nearly, which takes a million steps; the FMU says what is the matter. Its neighbour moves freely."""
+    values, is_left = ensemble("Stiff", ["b", "x", "v"], ["x"], [10.0]).run([[1e5, 1e-3, 0.0], [0.0, 1.0, 2.0]])
+    assert list(is_left) == [True, False] and values[1, 0, 0] == pytest.approx(21, rel=1e-14)
+
+
+def test_where_auto_may_hand_over_is_left_to_it():
+    """Springs so stiff that they bound the steps of the series, beside soft ones."""
+    rows = np.array([[1e6, 1e4], [50.0, 1.0], [1e5, 1e4]])
+    values, is_left = ensemble("ElasticPendulum", ["k", "c"], states("ElasticPendulum"), [2.0]).run(rows)
+    assert list(is_left) == [True, False, True] and np.all(np.isfinite(values[1]))
+
+
+def test_what_the_fmu_refuses_is_left_to_it():
+    """A length below its minimum, with which there would be a motion; and masses so different that there is none to 14 digits."""
+    assert list(ensemble("SimplePendulum", ["l"], ["theta"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
+    one = ensemble("DoublePendulum", ["m1", "theta1", "theta2"], ["theta1"], [0.1])
+    assert list(one.run([[1e-15, 1.0, 1.0], [1.0, 1.0, 1.0]])[1]) == [True, False]
+
+
+def test_tolerances_beyond_rounding():
+    """Defects that rounding explains do not end a run; sums of many steps carry along what it takes from them."""
+    rows, time = starts({"theta": (-3, 3)}, 30), 20.0
+    values, is_left = ensemble("SimplePendulum", ["theta"], ["theta"], [time], tolerance=1e-16).run(rows)
+    exact = [pendulum_angle(theta, np.sqrt(9.81), time) for (theta,) in rows]
+    assert not is_left.any()
+    np.testing.assert_allclose(values[:, 0, 0], exact, atol=1e-12)
+
+
+def test_runs_without_a_solution_are_left_alone():
+    """A particle on the axis of its coordinates, a mass that may not be, and no number: they spoil no other run."""
+    ranges, asked = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
+    rows = starts(ranges, 40)
+    one = ensemble("ParticleSpherical", ranges, asked, [0, 1])
+    values, is_left = one.run(rows)
+    assert not is_left.any()
+    bad = rows.copy()
+    bad[3, 0], bad[4, 1], bad[17, 1], bad[39, 0] = 0.0, 0.0, -1.0, np.nan
+    others, is_left = one.run(bad)
+    assert list(np.flatnonzero(is_left)) == [3, 4, 17, 39] and np.all(np.isnan(others[is_left]))
+    np.testing.assert_array_equal(others[~is_left], values[~is_left])
+
+
+def test_runs_that_end_in_a_singularity_are_left_alone():
+    """Particles that fall into the centre of attraction, from r = 1 after pi/(2 sqrt(2)), and some that pass it by."""
+    rows = np.array([[0.0], [0.5], [0.0], [1.0]])
+    values, is_left = ensemble("ParticlePolar", ["omega"], ["r", "vr"], [1.0, 1.2]).run(rows)
+    assert list(is_left) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
+
+
+def test_what_lanes_do_not_serve():
+    """Methods that are exact, events, constraints, and masses that are factored as they run; and values that are no Real or no state."""
+    for name in ("ParticleCartesian", "BouncingBall", "FourBar", "ChainPendulum", "Rope", "StateFeedback"):
+        assert source_of(archive(name)) is None, name
+    assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
+    assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
+    assert ensemble("SimplePendulum", ["theta"], ["theta", "kineticEnergy"], [1]).serves()
+
+
+FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(x)", "tan(x/2)", "asin(x/3)", "acos(x/3)", "atan(2*x)", "sinh(x)", "cosh(x)", "tanh(4*x)",
+             "asinh(x)", "acosh(3 + x)", "atanh(x/3)", "sqrt(2 + x)", "1/sqrt(2 + x)", "(3 + x)^2.5", "(2 + x^2)^n", "x^3", "1/(2 + x)", "1/(2 + x)^2", "1/(2 + x)^3", "x^5", "x^4",
+             "1/(4 + x)^4", "atan2(x, 1 + x^2)", "(1 + x^2)/(3 - x)", "sin(time + x)"]  # fmt: skip
+
+
+def test_functions_and_their_series():
+    """A particle for each function, in it as a potential, whose force is its derivative; and a start that follows from a parameter."""
+    particles = "".join(
+        f'<coordinate name="x{i}" velocity="v{i}" start="n/{i + 3}"/><particle name="p{i}" mass="m" x="x{i}"/><potential>{function.replace("exp", "EXP").replace("x", f"x{i}").replace("EXP", "exp")}</potential>'
+        for i, function in enumerate(FUNCTIONS)
+    )
+    head = '<parameter name="m" start="1"/><parameter name="n" start="1.5"/>'
+    build_systems("ensembles", {"Functions": f'<system name="Functions">{head}{particles}<solver method="taylor"/></system>'})
+    ranges = {"m": (1, 2), "n": (0.5, 2.5), **{f"x{i}": (-0.7, 0.7) for i in range(len(FUNCTIONS) - 3)}}
+    rows, asked = starts(ranges, HERE + 3), states("Functions")
+    values, is_left = ensemble("Functions", ranges, asked, [0.4]).run(rows)
+    assert not is_left.any()
+    for row, value in zip(rows, values):
+        alone = fmpy.simulate_fmu(str(archive("Functions")), start_values=dict(zip(ranges, row)), stop_time=0.4, output_interval=0.4, output=asked, relative_tolerance=1e-10)
+        np.testing.assert_allclose(value[0], list(alone[-1])[1:], rtol=1e-9, atol=1e-9)
+
+
+SINES = """
+#include "lane_functions.h"
+void sines(size_t count, const double *x, double *s, double *c) {
+  for (size_t i = 0; i < count; i += LANES) {
+    Lanes lanes, sine, cosine;
+    memcpy(&lanes, x + i, sizeof lanes);
+    sine = lanes_sin(lanes);
+    cosine = lanes_cos(lanes);
+    memcpy(s + i, &sine, sizeof sine);
+    memcpy(c + i, &cosine, sizeof cosine);
+  }
+}
+"""
+
+
+def test_sines(tmp_path):
+    """To less than 1.5 units in the last place, also beside the multiples of quarter turns, far out, and where there is none."""
+    (tmp_path / "sines.c").write_text(SINES)
+    subprocess.run(["cc", *map(str, words(ROOT, HERE, tmp_path / "sines.c", tmp_path / "sines.so")), "-fvisibility=default", "-lm"], check=True)
+    generator = np.random.default_rng(3)
+    quarters = np.arange(-2000, 2000) * (np.pi / 2)
+    x = np.concatenate([generator.uniform(-4, 4, 4000), generator.uniform(-1.1e5, 1.1e5, 4000), quarters, quarters * (1 + 1e-15), 10.0 ** generator.uniform(-300, 300, 4000)])
+    s, c = np.empty_like(x), np.empty_like(x)
+    ctypes.CDLL(str(tmp_path / "sines.so")).sines(ctypes.c_size_t(len(x)), *(ctypes.c_void_p(a.ctypes.data) for a in (x, s, c)))
+    with mpmath.workprec(1200):
+        for function, values in ((mpmath.sin, s), (mpmath.cos, c)):
+            exact = [function(mpmath.mpf(a)) for a in x]
+            errors = [abs(value - e) / np.spacing(abs(float(e))) for value, e in zip(values, exact)]
+            assert max(errors) < 1.5
+    nowhere = np.full(8, np.inf)
+    ctypes.CDLL(str(tmp_path / "sines.so")).sines(ctypes.c_size_t(8), *(ctypes.c_void_p(a.ctypes.data) for a in (nowhere, s, c)))
+    assert np.all(np.isnan(s[:8]) & np.isnan(c[:8]))
