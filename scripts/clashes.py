@@ -22,7 +22,7 @@ def generated_names():
     """Of what may stand outside of functions in system.c: what lagc writes as static, alone or as a list of numbers, and functions."""
     folder = ROOT / "src" / "compiler" / "write"
     texts = "".join(path.read_text() for path in folder.glob("*.c"))
-    found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'write_sizes\(file, "\w+", "(\w+)"', texts)
+    found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'write_(?:sizes\(file, "\w+"|whole_numbers\(file|truths\(file), "(\w+)"', texts)
     found += re.findall(r'"([a-z]+(?:_[a-z]+)*)"', (ROOT / "src" / "compiler" / "program" / "generated_functions.c").read_text())
     return sorted(set(found) - {"double", "int", "void"})
 
