@@ -19,8 +19,10 @@ SITE = ROOT / "build" / "gallery"
 
 def test_the_gallery():
     with alone(ROOT / "build" / "gallery.lock"):
+        subprocess.run([ROOT / "scripts" / "build-laboratory"], check=True)
         subprocess.run([sys.executable, ROOT / "scripts" / "gallery.py"], check=True)
     cards = (SITE / "gallery.html").read_text()
+    assert (SITE / "laboratory.html").exists() and 'href="laboratory.html"' in cards
     links = re.findall(r'(?:href|src)="(systems/[^"]*)"', cards)
     assert {link.split("/")[1] for link in links} == set(fmu.all_names())
     assert [link for link in links if not (SITE / unquote(link)).exists()] == []

@@ -188,4 +188,4 @@ except lagrange_fmu.Problem as problem:
     printed = succeed(package.python(folder, "script.py", cwd=tmp_path)).splitlines()
     assert printed == ["swing.html 2 (10,) 1.0", "Motor has no particles, bodies, frames or points to be drawn; expected some in the system"]
     page = (tmp_path / "swing.html").read_text()
-    assert '"recording":{' in page and re.search(r'"name":"theta",[^}]*"start":1.0[,}]', page)
+    assert '"recording":{' in page and re.search(r'"start":{[^}]*"theta":1.0[,}]', page)
