@@ -137,11 +137,12 @@ function typed() {
   timer = setTimeout(check, PAUSE);
 }
 
-// Two spaces for a tab, and the indentation of a line for the next.
+// Two spaces for a tab, and the indentation of a line for the next. Behind Escape, a tab leaves the text.
 function typeSpaces(event) {
-  const source = $("source"), before = source.value.slice(0, source.selectionStart);
+  const source = $("source"), before = source.value.slice(0, source.selectionStart), mayLeave = escaped;
+  escaped = event.key === "Escape";
   if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) run();
-  else if (event.key === "Tab" && !event.shiftKey) document.execCommand("insertText", false, "  ");
+  else if (event.key === "Tab" && !event.shiftKey && !mayLeave) document.execCommand("insertText", false, "  ");
   else if (event.key === "Enter") document.execCommand("insertText", false, `\n${/[ \t]*(?=[^\n]*$)/.exec(before.slice(before.lastIndexOf("\n") + 1))[0]}`);
   else return;
   event.preventDefault();
@@ -177,6 +178,7 @@ function addActions() {
 }
 
 let pageText;
+let escaped = false; // the last key was Escape
 
 async function begin() {
   pageText = new TextDecoder().decode(await unpacked(data.page));
