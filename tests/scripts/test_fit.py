@@ -29,10 +29,13 @@ BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parame
   <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
 
+TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
+  <particle name="p[i]" mass="1" y="h[i]"/><contact name="floor[i]" gap="h[i]" unit="m" restitution="0.5"/></for><gravity y="-9.81"/></system>"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT})
+    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT})
 
 
 @pytest.fixture(scope="module")
@@ -109,6 +112,14 @@ def test_derivatives_through_impacts(lagrange_fmu):
             for place, name in enumerate(at):
                 along = lambda value: bounce(mpmath.mpf(t), *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())], [0, 0, 1, 2, 3][i])
                 assert found.derivatives["h", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), rel=1e-7, abs=1e-9), (t, name)
+
+
+def test_events_at_once(lagrange_fmu):
+    """Of two balls that land together, neighbours land one after the other, in either order."""
+    with pytest.raises(lagrange_fmu.Problem, match="several events at once at 0.45"):
+        lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]"], ["h[1]"], [0, 1])
+    apart = lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]", "h[2]"], ["h[1]"], [0, 0.7], {"h[2]": 1.1})
+    assert apart.derivatives["h[2]", "h[1]"][1] == pytest.approx(0, abs=1e-9)
 
 
 def belt(times, k, F, u):
