@@ -104,7 +104,7 @@ class Mesh(ctypes.Structure):
 def library():
     """The room of lagc alone."""
     sources = [*(ROOT / "src/compiler/read/meshes").glob("*.c"), ROOT / "src/compiler/model/mesh.c"]
-    sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "sorting", "platform")]
+    sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "paths", "platform", "sorting")]
     path = BUILD / "meshes" / "room.so"
     with alone(BUILD / "meshes" / "room.lock"):
         subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-D_XOPEN_SOURCE=700", f"-I{ROOT}/src/compiler", *sources, "-lm", "-o", path], check=True)
@@ -235,7 +235,7 @@ def test_what_other_programs_write(tmp_path):
         ('type="mesh" file="a.stl" scale="1e-12"', "no further than 1e-9 m; expected another scale"),
         ('type="mesh" file="a.stl" radius="1"', "the shape 's' is a mesh, which has no radius"),
         ('type="sphere" radius="1" file="a.stl"', "the shape 's' is a sphere, which has no file"),
-        ('type="sphere" radius="1" color="red"', "color"),
+        ('type="sphere" radius="1" color="red"', 'color="red" of <shape> is not a color; expected one such as #ff8000'),
     ],
 )
 def test_messages(attributes, message, tmp_path):
