@@ -57,6 +57,7 @@ CASES = [
     ("mesh", 11, '<geom type="mesh" mesh="m"/>', 11, "the inertia of a <geom> of type mesh is not known; expected an <inertial>"),
     ("plane between", 11, '<geom type="plane" fromto="0 0 0 1 1 1"/>', 11, "fromto of a <geom> gives no place"),
     ("two inertias", 11, '<inertial mass="1" diaginertia="1 1 1" fullinertia="1 1 1 0 0 0"/>', 11, "<inertial> has diaginertia and fullinertia"),
+    ("kinds of actuators", 3, '<default><position kp="4"/><default class="a"/></default>', 15, "<motor> inherits the <position> of a <default>"),
     ("no joint", 15, '<actuator><motor joint="wrist"/></actuator>', 15, "there is no joint 'wrist' for an actuator"),
     ("muscle", 15, '<actuator><muscle joint="elbow"/></actuator>', 15, f"<muscle> {UNKNOWN} <motor>, <position>, <velocity> or <general>"),
     ("dynamics", 15, '<actuator><general dyntype="filter" joint="elbow"/></actuator>', 15, 'dyntype="filter" of <general> is not known'),

@@ -60,6 +60,22 @@ EACH = """\
 </mujoco>
 """
 
+COUPLED = """\
+<mujoco model="coupled">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="a"><joint name="lead" axis="0 1 0" ref="0.3" damping="0.1"/><geom size="0.1" pos="0.3 0 0"/>
+      <body name="b" pos="0.4 0 0">
+        <joint name="follow" axis="0 1 1" ref="0.2" stiffness="3" springref="0.1" damping="0.2" armature="0.3"/><geom size="0.1" pos="0 0 0.3"/>
+        <body name="c" pos="0 0 0.4"><joint name="end" axis="1 0 0"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.2 0"/></body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position name="pull" joint="follow" gear="2" kp="5" kv="0.3"/><motor name="push" joint="end"/></actuator>
+  <equality><joint joint1="follow" joint2="lead" polycoef="0.1 -0.5 0 0 0"/></equality>
+</mujoco>
+"""
+
 
 class Generator:
     """Random files: trees of at most five bodies."""
@@ -149,9 +165,10 @@ FILES = {"Each": EACH} | {f"Random{seed}": Generator(seed).text() for seed in ra
 @pytest.fixture(scope="module", autouse=True)
 def robots(tmp_path_factory):
     folder = tmp_path_factory.mktemp("mjcf")
-    for name, text in FILES.items():
+    files = FILES | {"Coupled": COUPLED}
+    for name, text in files.items():
         (folder / f"{name}.xml").write_text(text)
-    build_systems("mujoco", {name: f'<system name="{name}"><include file="{folder / name}.xml" as="r"/></system>' for name in FILES})
+    build_systems("mujoco", {name: f'<system name="{name}"><include file="{folder / name}.xml" as="r"/></system>' for name in files})
 
 
 def product(a, b):
@@ -237,4 +254,33 @@ def test_accelerations(name, open_fmu):
         instance.fmu.enterContinuousTimeMode()
         instance.fmu.getDerivatives(derivatives, len(derivatives))
         found = np.array(derivatives)[order][len(names) :]
+        assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))
+
+
+def test_joints_that_follow_others(open_fmu):
+    """MuJoCo's own constraint is soft: here its mass matrix and forces are reduced to the velocities that the constraint leaves."""
+    reference, instance = Reference(COUPLED), open_fmu("Coupled", kind=FMU2Model)
+    model, data = reference.model, reference.data
+    share = np.array([[1.0, 0.0], [-0.5, 0.0], [0.0, 1.0]])
+    random = np.random.default_rng(1)
+    instance.initialize({})
+    instance.fmu.enterContinuousTimeMode()
+    names = fmu.states_of("Coupled")
+    state, derivatives = (c_double * 4)(), (c_double * 4)()
+    for _ in range(STATES):
+        free, rates = random.uniform(-1, 1, 2), random.uniform(-2, 2, 2)
+        data.qpos, data.qvel = [free[0], 0.2 + 0.1 - 0.5 * (free[0] - 0.3), free[1]], share @ rates
+        data.ctrl = random.uniform(-3, 3, 2)
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((3, 3))
+        for i in range(3):  # columns of the mass matrix
+            mujoco.mj_mulM(model, data, mass[i], np.eye(3)[i])
+        forces = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
+        expected = np.linalg.solve(share.T @ mass @ share, share.T @ forces)
+        instance.set({"r.pull_control": data.ctrl[0], "r.push_control": data.ctrl[1]})
+        values = {"r.lead": free[0], "r.end": free[1], "r.lead_velocity": rates[0], "r.end_velocity": rates[1]}
+        state[:] = [values[name] for name in names]
+        instance.fmu.setContinuousStates(state, 4)
+        instance.fmu.getDerivatives(derivatives, 4)
+        found = [derivatives[names.index(f"r.{name}_velocity")] for name in ("lead", "end")]
         assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))

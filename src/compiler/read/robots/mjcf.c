@@ -241,23 +241,17 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
   }
 }
 
-/* Of the kinds of actuators only <general> may say what is general; defaults of one kind hold for all others in MuJoCo. */
+/* In MuJoCo the defaults of one kind of actuator hold for all others too, by what they mean there. */
 static void check_kinds(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const kinds[] = {"motor", "position", "velocity", "general"};
-  size_t found = 0, named = 0;
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-    bool has_defaults = false;
-    for (xmlNodePtr n = mjcf->root->children; n != NULL; n = n->next) {
-      if (!is_element(n, "default")) continue;
-      for (xmlNodePtr c = n->children; c != NULL; c = c->next) has_defaults |= is_element(c, kinds[i]);
-    }
-    found += has_defaults;
-    named += has_defaults && is_element(node, kinds[i]);
-  }
-  if (found > named)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                 "<%s> inherits the <default> of another kind of actuator; expected defaults in classes of their own",
-                 (const char *)node->name);
+  static const char *const kinds[] = {"motor",    "position", "velocity", "general",  "intvelocity",
+                                      "cylinder", "damper",   "muscle",   "adhesion", "dcmotor"};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (!is_element(node, kinds[i]) && mjcf_inherits(mjcf, node, kinds[i]))
+      report_error(
+          mjcf->file.diagnostics, xmlGetLineNo(node),
+          "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of its "
+          "own",
+          (const char *)node->name, kinds[i]);
 }
 
 /* Gain and bias, in MuJoCo's words. */

@@ -28,26 +28,45 @@ static const char *class_of(xmlNodePtr node) {
   return name;
 }
 
-/* What the <default>s among the children say; the class of all may be in several. */
-static const char *default_text(xmlNodePtr class, const char *element, const char *name) {
-  const char *text = NULL;
-  for (xmlNodePtr node = class->children; node != NULL; node = node->next)
-    if (is_element(node, element) && has_attribute(node, name)) text = attribute(node, name);
-  return text;
+/* The class after this one: the one in which it is; all those of the outermost level are one, of all elements. */
+static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
+  if (class != NULL && class->parent != mjcf->root) {
+    if (class->parent->parent != mjcf->root) return class->parent;
+    class = NULL;
+  }
+  xmlNodePtr node = class != NULL ? class->prev : mjcf->root->last;
+  while (node != NULL && !is_element(node, "default")) node = node->prev;
+  return node;
+}
+
+/* The first class of an element; NULL where there is none. */
+static xmlNodePtr first_class(const struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *name = class_of(node);
+  xmlNodePtr class = name != NULL ? find_class(mjcf->root, name) : NULL;
+  return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, NULL);
+}
+
+/* Of the elements of a class the last that has the attribute, or of any where this is NULL; NULL for none. */
+static xmlNodePtr of_class(xmlNodePtr class, const char *element, const char *name) {
+  xmlNodePtr node = class->last;
+  while (node != NULL && !(is_element(node, element) && (name == NULL || has_attribute(node, name)))) node = node->prev;
+  return node;
 }
 
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  const char *text = attribute(node, name), *class_name = text == NULL ? class_of(node) : NULL;
   const char *element = (const char *)node->name;
-  xmlNodePtr class = class_name != NULL ? find_class(mjcf->root, class_name) : NULL;
-  for (; text == NULL && class != NULL && class->parent != mjcf->root; class = class->parent)
-    text = default_text(class, element, name);
-  if (text != NULL) return text;
-  for (xmlNodePtr outermost = mjcf->root->children; outermost != NULL; outermost = outermost->next) {
-    const char *said = is_element(outermost, "default") ? default_text(outermost, element, name) : NULL;
-    if (said != NULL) text = said;
+  if (has_attribute(node, name)) return attribute(node, name);
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class)) {
+    xmlNodePtr found = of_class(class, element, name);
+    if (found != NULL) return attribute(found, name);
   }
-  return text;
+  return NULL;
+}
+
+bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element) {
+  xmlNodePtr class = first_class(mjcf, node);
+  while (class != NULL && of_class(class, element, NULL) == NULL) class = next_class(mjcf, class);
+  return class != NULL;
 }
 
 static void check_class(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {

@@ -21,6 +21,9 @@ struct Mjcf {
 /* An attribute of the element, or of its class or what this inherits; NULL where none of them has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
 
+/* Whether the element's class, or one that this inherits, says anything of elements of a kind. */
+bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element);
+
 /* Reports classes that are not defined, or twice, in an element and all that is in it. */
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node);
 
