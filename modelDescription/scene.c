@@ -7,10 +7,18 @@
 #include "base/memory.h"
 #include "scene/formulas.h"
 #include "scene/links.h"
+#include "scene/packed_mesh.h"
 #include "scene/surfaces.h"
 #include "xml_output.h"
 
 enum { BASE = 0 }; /* among the model's frames */
+
+/* To ten digits, which are the same wherever lagc runs. */
+static void write_rounded(xmlTextWriterPtr writer, const char *name, double value) {
+  char text[32];
+  snprintf(text, sizeof text, "%.10g", fabs(value) < 1e-12 ? 0.0 : value);
+  write_attribute(writer, name, text);
+}
 
 static void write_formula(xmlTextWriterPtr writer, const struct Graph *graph, const char *name, Node node) {
   if (node == ZERO) return;
@@ -57,13 +65,33 @@ static void write_body(xmlTextWriterPtr writer, const struct Model *model, const
   xmlTextWriterEndElement(writer);
 }
 
+/* The place of the first shape that draws the mesh. */
+static size_t first_with(const struct Mechanism *mechanism, const struct Mesh *mesh) {
+  size_t i = 0;
+  while (mechanism->shapes[i].mesh != mesh || mechanism->shapes[i].is_hidden) i++;
+  return i;
+}
+
+static char *mesh_id(const struct Model *model, const struct Mesh *mesh) {
+  return format_text("%zu", first_with(&model->mechanism, mesh) + 1);
+}
+
+static void write_mesh(xmlTextWriterPtr writer, const struct Model *model, const struct Mesh *mesh) {
+  struct PackedMesh packed = pack_mesh(mesh);
+  xmlTextWriterStartElement(writer, BAD_CAST "mesh");
+  write_attribute(writer, "id", mesh_id(model, mesh));
+  for (int i = 0; i < 3; i++) write_rounded(writer, axes[i], packed.least[i]);
+  write_rounded(writer, "step", packed.step);
+  write_attribute(writer, "points", packed.points);
+  write_attribute(writer, "triangles", packed.triangles);
+  xmlTextWriterEndElement(writer);
+}
+
 /* What it is part of is the base where nothing is named. */
 static void write_shape(xmlTextWriterPtr writer, const struct Model *model, const struct ContactShape *shape) {
-  static const char *const types[] = {[SHAPE_PLANE] = "plane",
-                                      [SHAPE_SPHERE] = "sphere",
-                                      [SHAPE_BOX] = "box",
-                                      [SHAPE_CYLINDER] = "cylinder",
-                                      [SHAPE_CAPSULE] = "capsule"};
+  static const char *const types[] = {
+      [SHAPE_PLANE] = "plane",       [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
+      [SHAPE_CYLINDER] = "cylinder", [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh"};
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const angles[] = {"roll", "pitch", "yaw"};
   const struct Graph *graph = model->graph;
   xmlTextWriterStartElement(writer, BAD_CAST "shape");
@@ -78,7 +106,20 @@ static void write_shape(xmlTextWriterPtr writer, const struct Model *model, cons
   }
   write_formula(writer, graph, "radius", shape->radius);
   write_formula(writer, graph, "length", shape->length);
+  if (shape->mesh != NULL) write_attribute(writer, "mesh", mesh_id(model, shape->mesh));
+  if (shape->color != NULL) write_attribute(writer, "color", shape->color);
   xmlTextWriterEndElement(writer);
+}
+
+/* Those that are drawn, and before the first one that has it each mesh. */
+static void write_shapes(xmlTextWriterPtr writer, const struct Model *model) {
+  const struct Mechanism *mechanism = &model->mechanism;
+  for (size_t i = 0; i < mechanism->shape_count; i++) {
+    const struct ContactShape *shape = &mechanism->shapes[i];
+    if (shape->is_hidden) continue;
+    if (shape->mesh != NULL && first_with(mechanism, shape->mesh) == i) write_mesh(writer, model, shape->mesh);
+    write_shape(writer, model, shape);
+  }
 }
 
 static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
@@ -91,13 +132,6 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
 
 static void write_thing(xmlTextWriterPtr writer, const char *name, const struct Samples *samples, size_t thing) {
   if (samples->things[thing].name != NULL) write_attribute(writer, name, samples->things[thing].name);
-}
-
-/* To ten digits, which are the same wherever lagc runs. */
-static void write_rounded(xmlTextWriterPtr writer, const char *name, double value) {
-  char text[32];
-  snprintf(text, sizeof text, "%.10g", fabs(value) < 1e-12 ? 0.0 : value);
-  write_attribute(writer, name, text);
 }
 
 static char *force_name(const struct Samples *samples, size_t constraint) {
@@ -170,7 +204,7 @@ void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   write_gravity(writer, model);
   write_frames(writer, model);
   for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
-  for (size_t i = 0; i < model->mechanism.shape_count; i++) write_shape(writer, model, &model->mechanism.shapes[i]);
+  write_shapes(writer, model);
   write_what_holds(writer, model);
   xmlTextWriterEndElement(writer);
 }

@@ -31,6 +31,7 @@ LAGC = House(
     src/compiler/read/tables
     src/compiler/read/expressions
     src/compiler/read/xml
+    src/compiler/read/meshes
     src/compiler/read/robots
     src/compiler/read/context
     src/compiler/read/space

@@ -11,6 +11,7 @@ from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page
 HERE = Path(__file__).resolve().parent
 LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, in the tree
 STYLE, SCRIPTS = "editor.css", ("unpacking.js", "editor.js")
+MESHES = (".stl", ".obj")
 CHECKER = ("laboratory.js", "checker.js")
 WORKER = (*COMMON_WORKER[:-1], "laboratory.js", COMMON_WORKER[-1])
 
@@ -28,6 +29,9 @@ def files_of(system):
     """The texts of a system's files by their paths below one folder, and the path of the system's own among them."""
     found = [Path(system).resolve()]
     for file in found:
+        mesh = next((other for other in _named_in(file) if other.suffix.lower() in MESHES), None)
+        if mesh is not None:
+            raise Problem(f"{file.name} names the mesh {mesh.name}, which a page that changes systems cannot hold; expected other shapes, or a page without --edit")
         found += [other for other in _named_in(file) if other not in found]
     folder = Path(os.path.commonpath([file.parent for file in found]))
     if folder == found[0].parent:

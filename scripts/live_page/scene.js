@@ -8,6 +8,25 @@ const TRAILS = 8; // at most
 // It turns about one axis alone: only that moment of inertia is given.
 const isPlanarBody = (thing) => thing.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in thing);
 
+// The numbers of 16 bits in a text of base64.
+function numbersOf(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return Array.from({ length: bytes.length / 2 }, (_, i) => bytes[2 * i] + 256 * bytes[2 * i + 1]);
+}
+
+// Of a <mesh>, see modelDescription/scene/packed_mesh.h; x, y and z of its points and the corners of its triangles.
+function surfaceOf(mesh) {
+  const least = AXES.map((axis) => Number(mesh[axis] || 0)), step = Number(mesh.step);
+  return { points: numbersOf(mesh.points).map((number, i) => least[i % 3] + number * step), corners: numbersOf(mesh.triangles) };
+}
+
+// How far its points are from the origin at most.
+function reachOf({ points }) {
+  let most = 0;
+  for (let i = 0; i < points.length; i += 3) most = Math.max(most, Math.hypot(points[i], points[i + 1], points[i + 2]));
+  return most;
+}
+
 class Scene {
   // things: the elements of <scene>; column(name): the place of a variable in a sample, -1 for none; value(formula): of parameters.
   constructor(container, things, column, value) {
@@ -20,6 +39,7 @@ class Scene {
     this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
     this.holders.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
     this.shapes = things.filter((thing) => thing.tag === "shape");
+    this.meshes = new Map(things.filter((thing) => thing.tag === "mesh").map((mesh) => [mesh.id, surfaceOf(mesh)]));
     this.surfaces = things.filter((thing) => thing.tag === "surface");
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
@@ -214,11 +234,31 @@ class Scene {
     return mesh;
   }
 
+  // In its own colour, or in that of what it is part of.
+  materialOfShape(shape, i) {
+    if (shape.color) {
+      const opacity = shape.color.length > 7 ? parseInt(shape.color.slice(7), 16) / 255 : 1;
+      return this.material(shape.color.slice(0, 7), { transparent: opacity < 1, opacity });
+    }
+    return this.material(i === undefined ? (this.isDark ? 0x7a8699 : 0x9aa5b4) : this.colorOf(i), { transparent: true, opacity: 0.92 });
+  }
+
+  // Each triangle in one shade, from both sides: files do not tell where a surface is smooth, and some turn triangles over.
+  addSurface(mesh, { points, corners }, material) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
+    geometry.setIndex(corners);
+    material.flatShading = true;
+    material.side = THREE.DoubleSide;
+    mesh.add(new THREE.Mesh(geometry, material));
+  }
+
   meshOfShape(shape, i) {
-    const measure = (name) => this.value(shape[name] || "0"), material = this.material(i === undefined ? (this.isDark ? 0x7a8699 : 0x9aa5b4) : this.colorOf(i), { transparent: true, opacity: 0.92 });
+    const measure = (name) => this.value(shape[name] || "0"), material = this.materialOfShape(shape, i);
     const mesh = new THREE.Group(), axis = AXES.indexOf(shape.axis), add = (geometry) => mesh.children[mesh.add(new THREE.Mesh(geometry, material)).children.length - 1];
     const [radius, length] = [measure("radius"), measure("length")], part = new THREE.Group();
     if (shape.type === "box") add(new THREE.BoxBufferGeometry(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(name) || 0.02 * this.radius)));
+    else if (shape.type === "mesh") this.addSurface(mesh, this.meshes.get(shape.mesh), material);
     else if (shape.type === "sphere") {
       add(new THREE.SphereBufferGeometry(radius, 32, 24));
       add(new THREE.TorusBufferGeometry(radius, 0.03 * radius, 8, 48)).material = this.material(this.isDark ? 0x14171c : 0xffffff); // to see it turn
@@ -228,7 +268,7 @@ class Scene {
       if (shape.type === "capsule") for (const end of [-1, 1]) add(new THREE.SphereBufferGeometry(radius, 32, 16)).position.y = (end * length) / 2;
     }
     // three's axis of cylinders is y.
-    if (shape.type !== "box" && shape.type !== "sphere") mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
+    if (!["box", "sphere", "mesh"].includes(shape.type)) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
     part.add(mesh);
     part.position.set(...AXES.map(measure));
     part.rotation.set(...["roll", "pitch", "yaw"].map(measure), "ZYX");
@@ -239,6 +279,7 @@ class Scene {
   sizeOfShapes() {
     const measure = (shape, name) => this.value(shape[name] || "0");
     const sizes = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => {
+      if (shape.type === "mesh") return Math.hypot(...AXES.map((axis) => measure(shape, axis))) + reachOf(this.meshes.get(shape.mesh));
       const half = Math.hypot(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(shape, name))) / 2;
       return Math.hypot(...AXES.map((axis) => measure(shape, axis))) + Math.max(half, measure(shape, "radius") + measure(shape, "length") / 2);
     });

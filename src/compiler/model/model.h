@@ -4,6 +4,7 @@
 #include "algebra/units/quantity.h"
 #include "base/diagnostics.h"
 #include "model/kinematics.h"
+#include "model/mesh.h"
 #include "model/methods.h"
 #include "model/switches.h"
 #include "variable_type.h"
@@ -96,7 +97,8 @@ struct GivenMotion {
   const struct Variable *constraint; /* one that moves in a given way, so that it does work; NULL for none */
 };
 
-enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE };
+enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH };
+enum { SHAPE_TYPES = SHAPE_MESH + 1 };
 
 /* What is drawn, and touches. A plane is where its axis is 0, and open above it. */
 struct ContactShape {
@@ -111,6 +113,9 @@ struct ContactShape {
   Node angles[3];       /* rad, of that about the frame's x, y and z, one after the other */
   Node radius, length;  /* m; of a capsule without its round ends */
   struct Vector size;   /* m, of a box along the frame's axes */
+  struct Mesh *mesh;    /* NULL of other types */
+  bool is_hidden;       /* touches, and is not drawn */
+  char *color; /* such as "#ff8000", or "#ff800080" where half of it is seen through; NULL for the page's choice */
 };
 
 #define NO_PARTICLE ((size_t)-1)

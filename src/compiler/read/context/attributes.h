@@ -41,6 +41,7 @@ struct Reader {
   struct Names *bodies;         /* name -> struct NamedBody */
   struct Names *frames;         /* name -> size_t, its place among the model's */
   struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
+  struct Names *meshes;         /* path and scale -> struct Mesh, see shape_meshes.h; NULL before the first one */
   struct Source *source;        /* the file being read */
   struct Includes *includes;    /* all files that are included */
   struct Diagnostics *diagnostics;

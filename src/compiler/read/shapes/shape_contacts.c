@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "read/context/variables.h"
 #include "read/names/pieces_of_functions.h"
+#include "read/shapes/shape_meshes.h"
 #include "read/shapes/shapes.h"
 #include "read/shapes/touches.h"
 #include "read/space/forces.h"
@@ -52,7 +53,15 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
     report_at(reader, node, "a <contact> of '%s' with itself; expected two shapes", shapes[0]->name);
     return false;
   }
+  for (int i = 0; i < 2; i++)
+    if (shapes[1 - i]->type == SHAPE_PLANE && !prepare_corners(reader, node, shapes[i])) return false;
   if (count_touches(shapes[0], shapes[1]) > 0) return true;
+  if (shapes[0]->type == SHAPE_MESH || shapes[1]->type == SHAPE_MESH) {
+    report_at(reader, node,
+              "there is no <contact> between '%s' and '%s', of which one is a mesh; expected a plane for it",
+              shapes[0]->name, shapes[1]->name);
+    return false;
+  }
   report_at(reader, node,
             "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or capsule as one of them, "
             "or a plane",

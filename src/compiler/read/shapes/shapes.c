@@ -5,6 +5,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/names/similar.h"
+#include "read/shapes/shape_meshes.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
@@ -24,13 +25,13 @@ static const struct Measure measures[] = {
     {"sizeY", TYPE(SHAPE_BOX), false},
     {"sizeZ", TYPE(SHAPE_BOX), false},
 };
+static const char *const of_meshes[] = {"file", "scale"};
+static const unsigned without_axis = TYPE(SHAPE_SPHERE) | TYPE(SHAPE_BOX) | TYPE(SHAPE_MESH);
 enum { MEASURE_COUNT = sizeof measures / sizeof *measures };
 
-static const char *const type_names[] = {[SHAPE_PLANE] = "plane",
-                                         [SHAPE_SPHERE] = "sphere",
-                                         [SHAPE_BOX] = "box",
-                                         [SHAPE_CYLINDER] = "cylinder",
-                                         [SHAPE_CAPSULE] = "capsule"};
+static const char *const type_names[] = {
+    [SHAPE_PLANE] = "plane",       [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
+    [SHAPE_CYLINDER] = "cylinder", [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh"};
 
 static const struct ContactShape *find_shape(const struct Reader *reader, const char *name) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
@@ -59,7 +60,14 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
       report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", type_names[shape->type], shape->name,
                 measure->name, measure->name);
   }
-  if (has_attribute(node, "axis") && (shape->type == SHAPE_SPHERE || shape->type == SHAPE_BOX))
+  for (int i = 0; i < 2; i++)
+    if (has_attribute(node, of_meshes[i]) && shape->type != SHAPE_MESH)
+      report_at(reader, node, "the shape '%s' is a %s, which has no %s", shape->name, type_names[shape->type],
+                of_meshes[i]);
+  if (shape->type == SHAPE_MESH && !has_attribute(node, "file"))
+    report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
+              shape->name);
+  if (has_attribute(node, "axis") && (TYPE(shape->type) & without_axis) != 0)
     report_at(reader, node, "the shape '%s' is a %s, which has no axis", shape->name, type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
@@ -73,6 +81,9 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   struct ContactShape shape = {
       .name = name, .type = type_of(node), .particle = NO_PARTICLE, .axis = 2, .offset = {{ZERO, ZERO, ZERO}}};
   check_measures(reader, node, &shape);
+  if (shape.type == SHAPE_MESH) shape.mesh = mesh_of_shape(reader, node);
+  shape.color = attribute(node, "color");
+  shape.is_hidden = attribute_is(node, "drawn", "false") || attribute_is(node, "drawn", "0");
   for (int i = 0; i < 3; i++) shape.size.along[i] = has_attribute(node, measures[2 + i].name) ? ONE : ZERO;
   reader->present->number = mechanism->shape_count;
   mechanism->shapes = make_room(mechanism->shapes, mechanism->shape_count, sizeof *mechanism->shapes);

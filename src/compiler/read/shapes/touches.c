@@ -5,7 +5,7 @@
 #include "read/names/pieces_of_functions.h"
 
 /* Of each rim of a cylinder on a plane. */
-enum { RIM_POINTS = 8, MOST_POINTS = 2 * RIM_POINTS };
+enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };
 
 /* What joins the two: nodes are made in its graph and their pieces in its scope. */
 struct Pair {
@@ -68,10 +68,20 @@ static void append_rims(struct Graph *graph, struct Points *points, const struct
   static const double circle[RIM_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
                                                {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
   int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
-  for (int i = 0; i < MOST_POINTS; i++) {
+  for (int i = 0; i < RIMS_POINTS; i++) {
     struct Vector place = along_axis(shape, scale(graph, i < RIM_POINTS ? 0.5 : -0.5, shape->length));
     place.along[across] = scale(graph, circle[i % RIM_POINTS][0], shape->radius);
     place.along[beside] = scale(graph, circle[i % RIM_POINTS][1], shape->radius);
+    append_point(graph, points, shape, place);
+  }
+}
+
+static void append_mesh_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+  const struct Mesh *mesh = shape->mesh;
+  for (size_t i = 0; i < mesh->corner_count; i++) {
+    struct Vector place;
+    for (int axis = 0; axis < 3; axis++)
+      place.along[axis] = graph_constant(graph, mesh->points[mesh->corners[i]][axis]);
     append_point(graph, points, shape, place);
   }
 }
@@ -90,6 +100,7 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
     break;
   case SHAPE_BOX: append_corners(graph, &points, shape); break;
   case SHAPE_CYLINDER: append_rims(graph, &points, shape); break;
+  case SHAPE_MESH: append_mesh_corners(graph, &points, shape); break;
   case SHAPE_PLANE: break;
   }
   return points;
@@ -216,11 +227,12 @@ static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
 typedef void TouchFunction(const struct Pair *pair, struct Touches *touches);
 
 /* By the types of the first and the second; those of the other order are found by exchanging them. */
-static TouchFunction *const functions[SHAPE_CAPSULE + 1][SHAPE_CAPSULE + 1] = {
+static TouchFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
     [SHAPE_SPHERE] = {touch_plane, touch_sphere, touch_box, touch_cylinder, touch_capsule},
     [SHAPE_BOX] = {touch_plane},
     [SHAPE_CYLINDER] = {touch_plane},
     [SHAPE_CAPSULE] = {[SHAPE_PLANE] = touch_plane, [SHAPE_CAPSULE] = touch_capsules},
+    [SHAPE_MESH] = {touch_plane},
 };
 
 static size_t point_count(const struct ContactShape *shape) {
@@ -229,8 +241,9 @@ static size_t point_count(const struct ContactShape *shape) {
   case SHAPE_BOX:
     for (int i = 0; i < 3; i++) corners *= shape->size.along[i] != ZERO ? 2 : 1;
     return corners;
-  case SHAPE_CYLINDER: return MOST_POINTS;
+  case SHAPE_CYLINDER: return RIMS_POINTS;
   case SHAPE_CAPSULE: return 2;
+  case SHAPE_MESH: return shape->mesh != NULL ? shape->mesh->corner_count : 0;
   default: return 1;
   }
 }

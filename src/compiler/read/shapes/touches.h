@@ -23,7 +23,7 @@ struct Side {
 
 struct Side side_of_contact(struct Reader *reader, long line, const struct ContactShape *shape);
 
-/* How many touches two shapes have, also before they are placed; 0 where there is no closed form. */
+/* How many touches two shapes have, also before they are placed, but after a mesh's corners are found; 0 where there is no closed form. */
 size_t count_touches(const struct ContactShape *first, const struct ContactShape *second);
 
 /* As many of them. */

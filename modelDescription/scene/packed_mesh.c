@@ -1,0 +1,115 @@
+#include "scene/packed_mesh.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/sorting.h"
+
+enum { STEPS = 65535, COARSE = 512 };
+
+/* A point's cell on a grid, and its place in the mesh. */
+struct Cell {
+  uint64_t key;
+  size_t point;
+};
+
+static int compare_cells(const void *first, const void *second) {
+  const struct Cell *a = first, *b = second;
+  if (a->key != b->key) return a->key < b->key ? -1 : 1;
+  return compare_sizes(&a->point, &b->point);
+}
+
+static uint64_t number_of(const struct PackedMesh *packed, const struct Mesh *mesh, size_t point, int axis) {
+  return (uint64_t)llround((mesh->points[point][axis] - packed->least[axis]) / packed->step);
+}
+
+/* For each point the first one in its cell, where a side has so many cells. */
+static void merge_points(const struct PackedMesh *packed, const struct Mesh *mesh, uint64_t cells, struct Cell *sorted,
+                         size_t *merged) {
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    sorted[i] = (struct Cell){0, i};
+    for (int axis = 0; axis < 3; axis++)
+      sorted[i].key = sorted[i].key << 16 | number_of(packed, mesh, i, axis) * cells / STEPS;
+  }
+  qsort(sorted, mesh->point_count, sizeof *sorted, compare_cells);
+  for (size_t i = 0, first = 0; i < mesh->point_count; i++) {
+    if (sorted[i].key != sorted[first].key) first = i;
+    merged[sorted[i].point] = sorted[first].point;
+  }
+}
+
+/* Whether the triangle has three corners still. */
+static bool is_left(const struct Mesh *mesh, size_t triangle, const size_t *merged, size_t corners[3]) {
+  for (int k = 0; k < 3; k++) corners[k] = merged[mesh->triangles[triangle][k]];
+  return corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
+}
+
+static size_t count_left(const struct Mesh *mesh, const size_t *merged) {
+  size_t count = 0, corners[3];
+  for (size_t i = 0; i < mesh->triangle_count; i++) count += is_left(mesh, i, merged, corners);
+  return count;
+}
+
+/* A list of numbers of 16 bits. */
+struct Numbers {
+  unsigned char *bytes;
+  size_t length;
+};
+
+static void append_number(struct Numbers *numbers, uint64_t number) {
+  for (int shift = 0; shift < 16; shift += 8) {
+    numbers->bytes = make_room(numbers->bytes, numbers->length, 1);
+    numbers->bytes[numbers->length++] = (unsigned char)(number >> shift & 0xff);
+  }
+}
+
+/* In base64 without padding: the numbers come in threes, which are 6 bytes. */
+static char *text_of_numbers(const struct Numbers *numbers) {
+  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  char *text = allocate(numbers->length / 3 * 4 + 1, 1), *next = text;
+  for (size_t i = 0; i < numbers->length; i += 3) {
+    unsigned three = (unsigned)numbers->bytes[i] << 16 | (unsigned)numbers->bytes[i + 1] << 8 | numbers->bytes[i + 2];
+    for (int shift = 18; shift >= 0; shift -= 6) *next++ = digits[three >> shift & 63];
+  }
+  return text;
+}
+
+/* Points are numbered as triangles name them. */
+static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, const size_t *merged) {
+  struct Numbers points = {NULL, 0}, triangles = {NULL, 0};
+  size_t *numbers = allocate(mesh->point_count, sizeof *numbers), count = 0, corners[3];
+  for (size_t i = 0; i < mesh->triangle_count; i++) {
+    if (!is_left(mesh, i, merged, corners)) continue;
+    for (int k = 0; k < 3; k++) {
+      if (numbers[corners[k]] == 0) {
+        numbers[corners[k]] = ++count;
+        for (int axis = 0; axis < 3; axis++) append_number(&points, number_of(packed, mesh, corners[k], axis));
+      }
+      append_number(&triangles, numbers[corners[k]] - 1);
+    }
+  }
+  packed->points = text_of_numbers(&points);
+  packed->triangles = text_of_numbers(&triangles);
+  release(numbers);
+}
+
+struct PackedMesh pack_mesh(const struct Mesh *mesh) {
+  struct PackedMesh packed = {.points = NULL};
+  packed.step = mesh_side(mesh, packed.least) / STEPS;
+  if (!(packed.step > 0.0)) packed.step = 1.0;
+  size_t *merged = allocate(mesh->point_count, sizeof *merged);
+  struct Cell *sorted = allocate(mesh->point_count, sizeof *sorted);
+  uint64_t cells = STEPS;
+  merge_points(&packed, mesh, cells, sorted, merged);
+  while (count_left(mesh, merged) > MOST_DRAWN) {
+    cells = cells > COARSE ? COARSE : cells * 7 / 10;
+    merge_points(&packed, mesh, cells, sorted, merged);
+  }
+  write_numbers(&packed, mesh, merged);
+  release(sorted);
+  release(merged);
+  return packed;
+}

@@ -1,0 +1,247 @@
+#include "read/meshes/hull.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/sorting.h"
+
+/* On this grid a determinant of three differences is below 6 * 2^60 in size, which 64 bits hold. */
+enum { STEPS = 1 << 20, MOST_FACES = 2 * MOST_CORNERS };
+static const double tolerance = 1e-5 * STEPS, tie = 2.0; /* steps */
+
+/* A point on the grid. */
+struct Site {
+  int64_t at[3];
+  size_t point; /* of the mesh */
+};
+
+/* Seen from outside its corners run anticlockwise. */
+struct Face {
+  const struct Site *corners[3];
+  int64_t normal[3]; /* outwards */
+  double length;     /* of that */
+};
+
+struct Hull {
+  struct Face faces[2 * MOST_FACES]; /* with room for those that replace others */
+  size_t face_count;
+  const struct Site *corners[MOST_CORNERS];
+  size_t corner_count;
+};
+
+static void difference(const struct Site *a, const struct Site *b, int64_t result[3]) {
+  for (int i = 0; i < 3; i++) result[i] = a->at[i] - b->at[i];
+}
+
+static void cross(const int64_t a[3], const int64_t b[3], int64_t result[3]) {
+  for (int i = 0; i < 3; i++) result[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static double length_of(const int64_t vector[3]) {
+  return hypot(hypot((double)vector[0], (double)vector[1]), (double)vector[2]);
+}
+
+static double distance(const struct Site *a, const struct Site *b) {
+  int64_t between[3];
+  difference(a, b, between);
+  return length_of(between);
+}
+
+static struct Face face_of(const struct Site *a, const struct Site *b, const struct Site *c) {
+  struct Face face = {.corners = {a, b, c}};
+  int64_t along[3], across[3];
+  difference(b, a, along);
+  difference(c, a, across);
+  cross(along, across, face.normal);
+  face.length = length_of(face.normal);
+  return face;
+}
+
+/* Its sign is exact: above 0 beyond the face. */
+static int64_t height_over(const struct Face *face, const struct Site *site) {
+  int64_t up[3];
+  difference(site, face->corners[0], up);
+  return face->normal[0] * up[0] + face->normal[1] * up[1] + face->normal[2] * up[2];
+}
+
+/* How far it is beyond the face that it is farthest from, in steps; not above 0 in the hull. */
+static double beyond(const struct Hull *hull, const struct Site *site, const struct Face **farthest) {
+  double most = -INFINITY;
+  for (size_t i = 0; i < hull->face_count; i++) {
+    double height = (double)height_over(&hull->faces[i], site) / hull->faces[i].length;
+    if (!(height > most)) continue;
+    most = height;
+    *farthest = &hull->faces[i];
+  }
+  return most;
+}
+
+/* Whether one of these faces has the edge from a to b. */
+static bool has_edge(const struct Face *faces, size_t count, const struct Site *a, const struct Site *b) {
+  for (size_t i = 0; i < count; i++)
+    for (int k = 0; k < 3; k++)
+      if (faces[i].corners[k] == a && faces[i].corners[(k + 1) % 3] == b) return true;
+  return false;
+}
+
+/* The faces that see the site give way to those from it to their rim. What lies in its plane does not see it. */
+static void add_corner(struct Hull *hull, const struct Site *site) {
+  struct Face seeing[2 * MOST_FACES];
+  size_t seeing_count = 0, kept = 0;
+  for (size_t i = 0; i < hull->face_count; i++)
+    if (height_over(&hull->faces[i], site) > 0) seeing[seeing_count++] = hull->faces[i];
+    else hull->faces[kept++] = hull->faces[i];
+  for (size_t i = 0; i < seeing_count; i++)
+    for (int k = 0; k < 3; k++) {
+      const struct Site *from = seeing[i].corners[k], *to = seeing[i].corners[(k + 1) % 3];
+      if (!has_edge(seeing, seeing_count, to, from)) hull->faces[kept++] = face_of(from, to, site);
+    }
+  hull->face_count = kept;
+  hull->corners[hull->corner_count++] = site;
+}
+
+/* A tetrahedron of sites that are far from each other; false where all are within the tolerance of a plane. */
+static bool begin_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest) {
+  const struct Site *corners[4] = {sites, sites, sites, sites};
+  double most[4] = {0.0};
+  for (size_t i = 0; i < count; i++) {
+    double far = distance(&sites[i], corners[0]);
+    if (!(far > most[1])) continue;
+    corners[1] = &sites[i];
+    most[1] = far;
+  }
+  for (size_t i = 0; i < count; i++) {
+    double far = face_of(corners[0], corners[1], &sites[i]).length / most[1];
+    if (!(far > most[2])) continue;
+    corners[2] = &sites[i];
+    most[2] = far;
+  }
+  struct Face base = face_of(corners[0], corners[1], corners[2]);
+  for (size_t i = 0; i < count; i++) {
+    double far = fabs((double)height_over(&base, &sites[i])) / base.length;
+    if (!(far > most[3])) continue;
+    corners[3] = &sites[i];
+    most[3] = far;
+  }
+  if (!(most[2] > nearest && most[3] > nearest)) return false;
+  bool is_above = height_over(&base, corners[3]) > 0;
+  const struct Site *a = corners[0], *b = corners[is_above ? 2 : 1], *c = corners[is_above ? 1 : 2], *d = corners[3];
+  *hull = (struct Hull){.faces = {face_of(a, b, c), face_of(b, a, d), face_of(c, b, d), face_of(a, c, d)},
+                        .face_count = 4,
+                        .corners = {a, b, c, d},
+                        .corner_count = 4};
+  return true;
+}
+
+/* Of those as far as the farthest, to roundings, the one that is farthest from the middle of its face: a corner of them. */
+static const struct Site *choose_farthest(const struct Site **sites, size_t count, const struct Face *face,
+                                          double height) {
+  const struct Site *chosen = sites[0];
+  double most = -1.0;
+  for (size_t i = 0; i < count; i++) {
+    if ((double)height_over(face, sites[i]) / face->length < height - tie) continue;
+    double far = 0.0;
+    for (int k = 0; k < 3; k++) far += pow(distance(sites[i], face->corners[k]), 2.0);
+    if (!(far > most)) continue;
+    chosen = sites[i];
+    most = far;
+  }
+  return chosen;
+}
+
+/* False where the sites are in a plane. *lack: how far the farthest that is left out lies beyond a face, in steps. */
+static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest, double *lack) {
+  if (!begin_hull(hull, sites, count, nearest)) return false;
+  const struct Site **outside = allocate(count, sizeof(struct Site *));
+  for (size_t i = 0; i < count; i++) outside[i] = &sites[i];
+  for (;;) {
+    const struct Face *farthest = &hull->faces[0];
+    size_t left = 0;
+    *lack = 0.0;
+    for (size_t i = 0; i < count; i++) {
+      const struct Face *face = farthest;
+      double height = beyond(hull, outside[i], &face);
+      if (height > 0.0) outside[left++] = outside[i];
+      if (!(height > *lack)) continue;
+      *lack = height;
+      farthest = face;
+    }
+    count = left;
+    if (!(*lack > nearest) || hull->corner_count == MOST_CORNERS) break;
+    add_corner(hull, choose_farthest(outside, count, farthest, *lack));
+  }
+  release(outside);
+  return true;
+}
+
+/* Whether the hull of the others reaches as far, to the tolerance: a point in a face or an edge, by roundings beyond it. */
+static bool is_needless(const struct Hull *hull, size_t corner) {
+  struct Site others[MOST_CORNERS];
+  size_t count = 0;
+  for (size_t i = 0; i < hull->corner_count; i++)
+    if (i != corner) others[count++] = *hull->corners[i];
+  struct Hull rest;
+  double lack;
+  const struct Face *face;
+  return grow_hull(&rest, others, count, 0.0, &lack) && beyond(&rest, hull->corners[corner], &face) <= tolerance;
+}
+
+static int compare_sites(const void *first, const void *second) {
+  const struct Site *a = first, *b = second;
+  for (int i = 0; i < 3; i++)
+    if (a->at[i] != b->at[i]) return a->at[i] < b->at[i] ? -1 : 1;
+  return compare_sizes(&a->point, &b->point);
+}
+
+/* On the grid, each site once, by the first of its points. */
+static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *step) {
+  double least[3], side = mesh_side(mesh, least);
+  *step = side > 0.0 ? side / STEPS : 1.0;
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    sites[i].point = i;
+    for (int axis = 0; axis < 3; axis++) sites[i].at[axis] = llround((mesh->points[i][axis] - least[axis]) / *step);
+  }
+  qsort(sites, mesh->point_count, sizeof *sites, compare_sites);
+  size_t count = 0;
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    bool is_another = count == 0;
+    for (int axis = 0; axis < 3 && !is_another; axis++) is_another = sites[i].at[axis] != sites[count - 1].at[axis];
+    if (is_another) sites[count++] = sites[i];
+  }
+  return count;
+}
+
+/* Takes a site out of the list, whose order stays. */
+static void drop_site(struct Site *sites, size_t *count, const struct Site *site) {
+  size_t place = (size_t)(site - sites);
+  --*count;
+  for (size_t i = place; i < *count; i++) sites[i] = sites[i + 1];
+}
+
+/* Among the corners; their number where none is. */
+static size_t first_needless(const struct Hull *hull) {
+  size_t i = 0;
+  while (i < hull->corner_count && !is_needless(hull, i)) i++;
+  return i;
+}
+
+bool mesh_find_corners(struct Mesh *mesh) {
+  if (mesh->corner_count > 0) return true;
+  struct Site *sites = allocate(mesh->point_count, sizeof *sites);
+  double step, lack = 0.0;
+  size_t count = find_sites(mesh, sites, &step), needless = 0;
+  struct Hull hull = {.corner_count = 0};
+  bool is_solid = grow_hull(&hull, sites, count, tolerance, &lack);
+  while (is_solid && (needless = first_needless(&hull)) < hull.corner_count) {
+    drop_site(sites, &count, hull.corners[needless]);
+    is_solid = grow_hull(&hull, sites, count, tolerance, &lack);
+  }
+  mesh->corner_count = is_solid ? hull.corner_count : 0;
+  mesh->lack = lack * step;
+  for (size_t i = 0; i < mesh->corner_count; i++) mesh->corners[i] = hull.corners[i]->point;
+  sort_sizes(mesh->corners, mesh->corner_count);
+  release(sites);
+  return is_solid;
+}
