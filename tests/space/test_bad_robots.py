@@ -168,8 +168,7 @@ def test_left_out(tmp_path):
     result = compile_robot(text, tmp_path)
     assert result.returncode == 0
     assert result.stderr == (
-        "robot.urdf: warning: left out, since the motion does not depend on them: visual, collision, effort of limit, velocity of limit, gazebo, "
-        "material\n"
+        "robot.urdf: warning: left out, since the motion does not depend on them: collision, visual, effort of limit, velocity of limit, gazebo\n"
     )
 
 

@@ -79,12 +79,13 @@ def test_where_shapes_are():
         instance.free()
 
 
-def test_a_mesh_is_told_of(tmp_path):
-    """Where it touches nothing, though there is a ground; without one, all that is left out is told in a line."""
+def test_a_mesh_that_is_missing(tmp_path):
+    """It is told where it touches nothing, though there is a ground; without one, all that is left out is told in a line."""
     mesh = re.sub("<geometry>.*</geometry>", '<geometry><mesh filename="roller.stl"/></geometry>', ROUND.format(INERTIA.format(0.1)))
     (tmp_path / "roller.urdf").write_text(mesh)
     (tmp_path / "system.xml").write_text(ROLLER)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 0 and "a <collision> of the link 'roller' is a mesh" in result.stderr
+    assert result.returncode == 0 and "a <collision> of the link 'roller' touches nothing: the mesh 'roller.stl' is not there; expected a path" in result.stderr
     (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
-    assert "left out, since the motion does not depend on them: collision" in lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
+    told = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
+    assert "left out, since the motion does not depend on them: collision" in told and "1 mesh is not drawn; the first: the mesh 'roller.stl'" in told

@@ -8,11 +8,14 @@
 
 enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
 
-/* What a link touches with: a <shape> of this type, in the link's frame. */
+/* What a link touches with, or looks like: a <shape> of this type, in the link's frame. */
 struct Collision {
   const char *type;
   struct Placement place;
   double radius, length, size[3]; /* m, of a cylinder along its z, of a box */
+  char *file;                     /* of a mesh, relative to the robot's; NULL of other types */
+  double scale[3];                /* of a mesh: m for each unit of the file */
+  char *color;                    /* such as "#ff8000ff"; NULL where the file gives none */
   long line;
 };
 
@@ -20,9 +23,9 @@ struct Link {
   char *name;   /* as in the file */
   char *symbol; /* the same as a name of the language */
   long line;
-  struct Collision *collisions;
-  size_t collision_count;
-  struct RigidBody body; /* in the link's frame; without inertia where the file gives none */
+  struct Collision *collisions, *visuals;
+  size_t collision_count, visual_count; /* with visuals, these are drawn in place of the others */
+  struct RigidBody body;                /* in the link's frame; without inertia where the file gives none */
   /* What robot_connect() finds: */
   struct Joint *joint;                     /* that carries the link; NULL of the root */
   struct Link *first_child, *next_sibling; /* in the order of the file */

@@ -100,6 +100,9 @@ void tell_left_out(struct RobotFile *file) {
     list = format_text("%s%s%s", list, i > 0 ? ", " : "", file->left_out[i]);
   if (*list != '\0' && file->diagnostics->errors == 0)
     report_warning(file->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
+  if (file->mesh_problem != NULL && file->diagnostics->errors == 0)
+    report_warning(file->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", file->mesh_problems,
+                   file->mesh_problems == 1 ? " is" : "es are", file->mesh_problem);
 }
 
 void add_link(struct RobotFile *file, struct Link *link) {

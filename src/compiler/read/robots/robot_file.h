@@ -17,6 +17,8 @@ struct RobotFile {
   struct Diagnostics *diagnostics;
   char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
   size_t left_out_count;
+  char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
+  size_t mesh_problems; /* how many there are */
 };
 
 void leave_out(struct RobotFile *file, const char *what);

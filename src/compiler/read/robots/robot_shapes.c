@@ -35,25 +35,39 @@ static void write_contact(const struct Writer *writer, const struct Link *link, 
   set_attribute(contact, "friction", copy_text("ground_friction"));
 }
 
-void write_shapes(struct Writer *writer, const struct Link *link, bool moves) {
+static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, const struct Collision *collision,
+                              char *name) {
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const names[] = {"roll", "pitch", "yaw"};
+  const double *scale = collision->scale;
+  double angles[3];
+  placement_angles(&collision->place, angles);
+  writer->line = collision->line;
+  xmlNodePtr shape = write_element(writer, "shape");
+  set_attribute(shape, "name", name);
+  set_attribute(shape, "in", copy_text(link->symbol));
+  set_attribute(shape, "type", copy_text(collision->type));
+  for (int axis = 0; axis < 3; axis++) {
+    set_number(shape, axes[axis], collision->place.translation[axis]);
+    set_number(shape, sizes[axis], collision->size[axis]);
+    set_number(shape, names[axis], angles[axis]);
+  }
+  set_number(shape, "radius", collision->radius);
+  set_number(shape, "length", collision->length);
+  if (collision->color != NULL) set_attribute(shape, "color", copy_text(collision->color));
+  if (collision->file == NULL) return shape;
+  char *x = number(scale[0]), *y = number(scale[1]), *z = number(scale[2]);
+  set_attribute(shape, "file", copy_text(collision->file));
+  set_attribute(shape, "scale", format_text("%s %s %s", x, y, z));
+  return shape;
+}
+
+void write_shapes(struct Writer *writer, const struct Link *link, bool moves) {
   for (size_t i = 0; i < link->collision_count; i++) {
-    const struct Collision *collision = &link->collisions[i];
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
-    double angles[3];
-    placement_angles(&collision->place, angles);
-    writer->line = collision->line;
-    xmlNodePtr shape = write_element(writer, "shape");
-    set_attribute(shape, "name", copy_text(name));
-    set_attribute(shape, "in", copy_text(link->symbol));
-    set_attribute(shape, "type", copy_text(collision->type));
-    for (int axis = 0; axis < 3; axis++) {
-      set_number(shape, axes[axis], collision->place.translation[axis]);
-      set_number(shape, sizes[axis], collision->size[axis]);
-      set_number(shape, names[axis], angles[axis]);
-    }
-    set_number(shape, "radius", collision->radius);
-    set_number(shape, "length", collision->length);
+    xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
+    if (link->visual_count > 0) set_attribute(shape, "drawn", copy_text("false"));
     if (moves && writer->options->has_ground) write_contact(writer, link, name, i + 1);
   }
+  for (size_t i = 0; i < link->visual_count; i++)
+    write_shape(writer, link, &link->visuals[i], format_text("%s_visual%zu", link->symbol, i + 1));
 }

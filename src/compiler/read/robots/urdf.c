@@ -6,6 +6,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/paths.h"
+#include "read/meshes/hull.h"
+#include "read/meshes/mesh_file.h"
+#include "read/meshes/package_path.h"
 #include "read/robots/robot_file.h"
 #include "read/xml/nodes.h"
 
@@ -49,10 +53,48 @@ static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct Link *
   link->body = body_seen_from(&place, &body);
 }
 
-/* False of what has no shape here, such as a <mesh>. */
-static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, struct Collision *collision) {
+/* The one child of this name; NULL where there is none, or there are several. */
+static xmlNodePtr only_child_of(xmlNodePtr parent, const char *name) {
+  xmlNodePtr found = NULL;
+  size_t count = 0;
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (!is_element(node, name)) continue;
+    found = node;
+    count++;
+  }
+  return count == 1 ? found : NULL;
+}
+
+/* Why a <mesh> cannot be used; NULL where it can. Robots are read without their meshes too, so that mistakes are no errors. */
+static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision) {
+  const char *robot = urdf->diagnostics->file;
+  char *named = attribute(node, "filename"), *scale = attribute(node, "scale"), *problem = NULL;
+  double *factors = collision->scale;
+  for (int i = 0; i < 3; i++) factors[i] = 1;
+  if (scale != NULL && (parse_numbers(scale, 3, factors) != 3 || factors[0] * factors[1] * factors[2] == 0))
+    return format_text("the scale '%.60s' of a <mesh>; expected three numbers other than 0", scale);
+  char *path = named != NULL ? path_in_package(robot, named) : NULL;
+  if (path == NULL)
+    return format_text(
+        "the mesh '%s' is not there; expected a path relative to this file, or that of a package here or "
+        "in a folder above",
+        named != NULL ? named : "");
+  struct Mesh *mesh = mesh_read(path_beside_file(robot, path), factors, &problem);
+  if (mesh == NULL) return problem;
+  if (touches && !mesh_find_corners(mesh)) problem = format_text("the mesh '%s' is flat; expected a volume", named);
+  release(mesh->points);
+  release(mesh->triangles);
+  collision->type = "mesh";
+  collision->file = path;
+  return problem;
+}
+
+/* False of what has no shape here; in *problem is why a mesh is none, else NULL. */
+static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision,
+                          char **problem) {
   xmlNodePtr sphere = child_of(urdf, node, "sphere"), box = child_of(urdf, node, "box");
   xmlNodePtr round = child_of(urdf, node, "cylinder"), capsule = round == NULL ? child_of(urdf, node, "capsule") : NULL;
+  xmlNodePtr mesh = only_child_of(node, "mesh");
   if (round == NULL) round = capsule;
   if (sphere != NULL) {
     collision->type = "sphere";
@@ -64,34 +106,127 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, struct Collis
     collision->type = capsule != NULL ? "capsule" : "cylinder";
     collision->radius = required_number(urdf, round, "radius");
     collision->length = required_number(urdf, round, "length");
-  }
-  return collision->type != NULL;
+  } else if (mesh != NULL) *problem = read_mesh(urdf, mesh, touches, collision);
+  return collision->type != NULL && *problem == NULL;
+}
+
+static void note_mesh_problem(struct RobotFile *urdf, char *problem) {
+  if (problem == NULL) return;
+  if (urdf->mesh_problem == NULL) urdf->mesh_problem = problem;
+  urdf->mesh_problems++;
 }
 
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
-  if (geometry == NULL || !read_geometry(urdf, geometry, &collision)) {
-    if (!urdf->options->has_ground) leave_out(urdf, "collision");
-    else
-      report_warning(urdf->diagnostics, collision.line,
-                     "a <collision> of the link '%s' is a mesh, or has no geometry, and touches nothing; expected a "
-                     "<box>, <sphere>, <cylinder> or <capsule>",
-                     link->name);
+  char *problem = NULL;
+  bool has_ground = urdf->options->has_ground;
+  if (geometry == NULL || !read_geometry(urdf, geometry, has_ground, &collision, &problem)) {
+    if (has_ground)
+      report_warning(
+          urdf->diagnostics, collision.line, "a <collision> of the link '%s' touches nothing: %s", link->name,
+          problem != NULL ? problem
+                          : "it has no geometry; expected a <box>, <sphere>, <cylinder>, <capsule> or <mesh>");
+    else {
+      leave_out(urdf, "collision");
+      note_mesh_problem(urdf, problem);
+    }
     return;
   }
   link->collisions = make_room(link->collisions, link->collision_count, sizeof *link->collisions);
   link->collisions[link->collision_count++] = collision;
 }
 
+/* Whether an attribute has as many numbers, none of which is negative unless it may be. */
+static bool has_numbers(xmlNodePtr node, const char *name, size_t count, bool may_be_negative) {
+  double values[4];
+  char *text = attribute(node, name);
+  bool is_right = text != NULL && parse_numbers(text, count, values) == count;
+  for (size_t i = 0; i < count && is_right; i++) is_right = may_be_negative || values[i] >= 0;
+  return is_right;
+}
+
+/* The motion does not depend on a <visual>, and so its mistakes are no errors. */
+static bool is_sound_visual(xmlNodePtr visual) {
+  static const struct {
+    const char *type, *attribute;
+    size_t count;
+  } needed[] = {{"sphere", "radius", 1},   {"box", "size", 3},       {"cylinder", "radius", 1},
+                {"cylinder", "length", 1}, {"capsule", "radius", 1}, {"capsule", "length", 1}};
+  xmlNodePtr geometry = only_child_of(visual, "geometry");
+  for (xmlNodePtr node = visual->children; node != NULL; node = node->next)
+    for (int i = 0; i < 2 && is_element(node, "origin"); i++) {
+      const char *name = i == 0 ? "xyz" : "rpy";
+      if (node != only_child_of(visual, "origin")) return false;
+      if (has_attribute(node, name) && !has_numbers(node, name, 3, true)) return false;
+    }
+  size_t count = 0;
+  for (xmlNodePtr node = geometry != NULL ? geometry->children : NULL; node != NULL; node = node->next) {
+    count += node->type == XML_ELEMENT_NODE;
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
+      if (is_element(node, needed[i].type) && !has_numbers(node, needed[i].attribute, needed[i].count, false))
+        return false;
+  }
+  return count == 1;
+}
+
+/* The <color> of a material of this name, anywhere in the file; NULL where there is none. */
+static xmlNodePtr find_color(xmlNodePtr node, const char *name) {
+  xmlNodePtr color = NULL;
+  if (is_element(node, "material") && attribute_is(node, "name", name)) color = only_child_of(node, "color");
+  for (xmlNodePtr child = node->children; child != NULL && color == NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) color = find_color(child, name);
+  return color;
+}
+
+/* As pages have it; NULL where the file gives none. */
+static char *read_color(xmlNodePtr visual) {
+  xmlNodePtr material = only_child_of(visual, "material");
+  xmlNodePtr color = material != NULL ? only_child_of(material, "color") : NULL;
+  if (material != NULL && color == NULL && has_attribute(material, "name"))
+    color = find_color(xmlDocGetRootElement(visual->doc), attribute(material, "name"));
+  double rgba[4];
+  if (color == NULL || !has_attribute(color, "rgba") || parse_numbers(attribute(color, "rgba"), 4, rgba) != 4)
+    return NULL;
+  char *text = copy_text("#");
+  for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
+  return text;
+}
+
+/* False where it cannot be drawn. */
+static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+  char *problem = NULL;
+  struct Collision visual = {.line = xmlGetLineNo(node)};
+  bool is_right = is_sound_visual(node);
+  if (is_right) {
+    visual.place = read_origin(urdf, node);
+    visual.color = read_color(node);
+    is_right = read_geometry(urdf, child_of(urdf, node, "geometry"), false, &visual, &problem);
+  }
+  note_mesh_problem(urdf, problem);
+  if (!is_right) leave_out(urdf, "visual");
+  link->visuals = make_room(link->visuals, link->visual_count, sizeof *link->visuals);
+  if (is_right) link->visuals[link->visual_count++] = visual;
+  return is_right;
+}
+
+/* Where not all can be drawn, shapes that touch show more of the link. */
+static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+  bool is_whole = true;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_element(child, "visual")) is_whole &= read_visual(urdf, child, link);
+  if (!is_whole && link->collision_count > 0) link->visual_count = 0;
+}
+
 static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
-  static const char *const known[] = {"inertial", "collision", NULL};
+  static const char *const known[] = {"inertial", "visual", "collision", NULL};
   struct Link *link = allocate(1, sizeof *link);
   link->name = required_attribute(urdf, node, "name");
   link->line = xmlGetLineNo(node);
   leave_out_others(urdf, node, known);
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (is_element(child, "collision")) read_collision(urdf, child, link);
+  read_visuals(urdf, node, link);
   xmlNodePtr inertial = child_of(urdf, node, "inertial");
   if (inertial != NULL) read_inertial(urdf, inertial, link);
   add_link(urdf, link);
@@ -216,7 +351,7 @@ static xmlNodePtr find_xacro(xmlNodePtr node) {
 
 struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   struct RobotFile urdf = {.robot = allocate(1, sizeof *urdf.robot), .options = options, .diagnostics = diagnostics};
-  static const char *const known[] = {"link", "joint", NULL};
+  static const char *const known[] = {"link", "joint", "material", NULL};
   xmlNodePtr xacro = find_xacro(root);
   urdf.robot->line = xmlGetLineNo(root);
   urdf.robot->gravity[2] = -9.81;

@@ -1,0 +1,125 @@
+"""Robots whose links are meshes: where these are found, what touches and what is drawn, and that mistakes in what is only drawn are none."""
+
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import fmu
+from building import build_systems
+from fmu import lagc
+from meshes import CUBE, SQUARES, obj_text, stl_text, triangles_of
+
+INERTIA = '<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>'
+ORIGIN = '<origin xyz="0.1 0 0.05" rpy="0.2 0.1 0.3"/>'
+CUBE_STL, CUBE_OBJ = stl_text(CUBE, triangles_of(CUBE)), obj_text(CUBE, SQUARES)
+ROBOT = """<robot name="roller"><material name="sand"><color rgba="1 0.5 0 1"/></material>
+  <link name="roller"><inertial><mass value="3"/>{INERTIA}</inertial>{}</link></robot>""".replace("{INERTIA}", INERTIA)
+SYSTEM = '<system name="{}"><include file="{}" as="r" base="floating" ground="true"/></system>'
+COLLISION = f'<collision>{ORIGIN}<geometry>{{}}</geometry></collision>'
+SEEN = "<visual>{}<geometry>{}</geometry>{}</visual>"
+MESH = '<mesh filename="package://roller_description/meshes/cube.stl" scale="0.4 0.6 -0.2"/>'
+WITHOUT_GROUND = ' ground="true"'
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts = {"RollerOfBox": SYSTEM.format("RollerOfBox", "roller.urdf"), "RollerOfMesh": SYSTEM.format("RollerOfMesh", "a/urdf/roller.urdf")}
+    files = {
+        "RollerOfBox/roller.urdf": ROBOT.format(COLLISION.format('<box size="0.4 0.6 0.2"/>')),
+        "RollerOfMesh/a/urdf/roller.urdf": ROBOT.format(COLLISION.format(MESH)),
+        "RollerOfMesh/a/meshes/cube.stl": CUBE_STL,
+    }
+    build_systems("robots-with-meshes", texts, files=files)
+
+
+def test_a_cube_is_a_box():
+    """The same force in every position."""
+    for i, turn in enumerate(Rotation.random(8, random_state=1)):
+        forces = []
+        for name in ("RollerOfBox", "RollerOfMesh"):
+            x, y, z, w = turn.as_quat()
+            instance = fmu.Instance(name, logging=False)
+            try:
+                instance.initialize({"r.base_z": 0.02 * i, "r.base_qw": w, "r.base_qx": x, "r.base_qy": y, "r.base_qz": z})
+                forces.append(instance.get("r.roller_ground1.force"))
+            finally:
+                instance.free()
+        assert forces[0] > 0 and forces[1] == pytest.approx(forces[0], rel=1e-9)
+
+
+def scene_of(tmp_path, parts, ground=False):
+    """What is drawn, and what lagc says."""
+    (tmp_path / "robot.urdf").write_text(ROBOT.format(parts))
+    (tmp_path / "system.xml").write_text(SYSTEM.format("Told", "robot.urdf").replace(*([WITHOUT_GROUND, ""] if not ground else ["", ""])))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    tree = ElementTree.parse(tmp_path / "out" / "modelDescription.xml")
+    return [element for element in tree.iter() if element.tag in ("shape", "mesh") and element.get("type") != "plane"], result.stderr
+
+
+def test_visuals_are_drawn(tmp_path):
+    """In their colours, in place of what touches; a mesh that is named twice is there once."""
+    (tmp_path / "cube.obj").write_text(CUBE_OBJ)
+    parts = COLLISION.format('<sphere radius="0.3"/>')
+    parts += SEEN.format(ORIGIN, '<mesh filename="cube.obj"/>', '<material name="sand"/>') + SEEN.format("", '<mesh filename="file://cube.obj"/>', "")
+    parts += SEEN.format("", '<box size="0.1 0.2 0.3"/>', '<material name=""><color rgba="0 0 2 0.5"/></material>')
+    things, told = scene_of(tmp_path, parts, ground=True)
+    assert [thing.tag for thing in things] == ["mesh", "shape", "shape", "shape"] and told == ""
+    assert [thing.get("color") for thing in things[1:]] == ["#ff8000ff", None, "#0000ff80"]
+    assert things[1].get("mesh") == things[2].get("mesh") == things[0].get("id")
+    assert [float(things[1].get(name)) for name in ("x", "z", "roll", "pitch", "yaw")] == pytest.approx([0.1, 0.05, 0.2, 0.1, 0.3])
+    assert "roller_ground1.force" in (tmp_path / "out" / "modelDescription.xml").read_text()
+
+
+@pytest.mark.parametrize("folder", ["roller_description/meshes", "meshes", "../roller_description/meshes", "../../meshes", "../meshes"])
+def test_packages(tmp_path, folder):
+    """Beside the robot's file and upwards, with the package's name and without."""
+    home = tmp_path / "a" / "b"
+    (home / folder).mkdir(parents=True)
+    (home / folder / "cube.stl").write_text(CUBE_STL)
+    things, told = scene_of(home, COLLISION.format(MESH))
+    assert [thing.tag for thing in things] == ["mesh", "shape"] and told == ""
+
+
+@pytest.mark.parametrize(
+    "mesh, problem",
+    [
+        ('<mesh filename="package://nowhere/cube.stl"/>', "the mesh 'package://nowhere/cube.stl' is not there; expected a path relative to this file, or"),
+        ('<mesh filename="arm.dae"/>', "the mesh 'arm.dae' is none that is read; expected STL or OBJ"),
+        ('<mesh filename="short.stl"/>', "the mesh 'short.stl' is too short for STL"),
+        ('<mesh filename="cube.obj" scale="1 2"/>', "the scale '1 2' of a <mesh>; expected three numbers other than 0"),
+        ('<mesh filename="cube.obj" scale="1 0 1"/>', "the scale '1 0 1' of a <mesh>"),
+        ("<mesh/>", "the mesh '' is not there"),
+        ('<box size="1 2"/>', None),
+        ('<sphere radius="-1"/>', None),
+        ('<box size="1 1 1"/><box size="2 1 1"/>', None),
+        ("", None),
+    ],
+)  # fmt: skip
+def test_visuals_that_are_wrong(tmp_path, mesh, problem):
+    """A robot needs none; what it touches with is drawn then."""
+    for name, text in {"arm.dae": "<COLLADA/>", "short.stl": "", "cube.obj": CUBE_OBJ}.items():
+        (tmp_path / name).write_text(text)
+    good = SEEN.format("", '<sphere radius="0.2"/>', "")
+    things, told = scene_of(tmp_path, COLLISION.format('<sphere radius="0.3"/>') + SEEN.format("", mesh, "") + good)
+    assert [thing.get("radius") for thing in things] == ["0.3"] and "depend on them: visual (included" in told
+    assert problem is None or f"1 mesh is not drawn; the first: {problem}" in told
+    things, told = scene_of(tmp_path, SEEN.format("", mesh, "") + good)
+    assert [thing.get("radius") for thing in things] == ["0.2"]
+
+
+def test_what_cannot_touch(tmp_path):
+    """A flat mesh is drawn, and touches nothing; a round one touches at some of its corners, which is told."""
+    (tmp_path / "cube.obj").write_text(obj_text(CUBE * [1, 1, 0], SQUARES))
+    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'))
+    assert len(things) == 2 and told == ""
+    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
+    assert things == [] and "a <collision> of the link 'roller' touches nothing: the mesh 'cube.obj' is flat; expected a volume" in told
+    ball = np.random.default_rng(1).normal(size=(200, 3))
+    ball /= np.linalg.norm(ball, axis=1)[:, None]
+    (tmp_path / "cube.obj").write_text(obj_text(ball, triangles_of(ball)))
+    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
+    assert len(things) == 2 and re.search(r"touches at 32 of them; it reaches up to 0\.\d+ m beyond these", told)
