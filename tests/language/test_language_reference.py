@@ -13,8 +13,8 @@ pytestmark = pytest.mark.release
 
 REFERENCE = (ROOT / "fmu" / "README.md").read_text()
 EXAMPLES = {
-    re.search(r' name="(\w+)"', text).group(1): text
-    for text in re.findall(r"```xml\n(<(?:system|robot|linearization) .*?)```", REFERENCE, re.S)
+    re.search(r' (?:name|model)="(\w+)"', text).group(1): text
+    for text in re.findall(r"```xml\n(<(?:system|robot|mujoco|linearization) .*?)```", REFERENCE, re.S)
 }
 
 
@@ -165,6 +165,10 @@ def swing(t):
     return {"hinge": 0, "tool_z": 1, "tool_x": 0, "hinge_beyond": 0}
 
 
+def torsion(t):
+    return {"twist": 0.3 * (1 - np.cos(np.sqrt(0.5 / 0.12) * t))}
+
+
 def swing_in_orbit(t):
     theta = 0.5 * np.cos(2 * t)
     return {"robot.hinge": theta, "reach": np.sin(theta), "robot.tool_z": 2}
@@ -214,6 +218,7 @@ MOTIONS = {
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),
     "Swing": (swing, 0.0),
+    "Torsion": (torsion, 1e-9),
     "SwingInOrbit": (swing_in_orbit, 1e-6),
     "LimitedGain": (lambda t: {"F": -4.0}, 0.0),
     "StiffDamper": (stiff, 1e-5),

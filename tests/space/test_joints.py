@@ -313,7 +313,7 @@ BAD = [
     ('<output name="o">dot(bob, tip)</output>', "there is no point 'tip'"),
     ('<output name="o">dot(bob)</output>', "expected ',' between the two vectors of dot"),
     ('<output name="o">norm(bob, bob)</output>', "expected ')' after the vector of norm"),
-    ('<output name="o">norm(2*bob)</output>', "or a vector such as arm.axisX, tip.v or cross(...), found '2'"),
+    ('<output name="o">norm(+bob)</output>', "or a vector such as arm.axisX, tip.v or cross(...), found '+'"),
     ('<output name="o">cross(bob, bob)</output>', "cross(...) is a vector; expected it in dot(...) or norm(...)"),
     ('<parameter name="d" start="1" unit="m"/><output name="o">norm(bob + base.axisX)</output>', "m and 1 in one sum"),
     ('<output name="o">distance(bob, base.axisX)</output>', "distance(...) is between two points"),

@@ -93,12 +93,14 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   xmlNodePtr root = xmlDocGetRootElement(document);
   if (!is_element(root, "system"))
     report_error(diagnostics, xmlGetLineNo(root),
-                 "a <%s> cannot be included; expected the file of a <system> or <robot>", (const char *)root->name);
+                 "a <%s> cannot be included; expected the file of a <system>, <robot> or <mujoco>",
+                 (const char *)root->name);
   else
     for (size_t i = 0; i < ROBOT_WORDS; i++)
       if (has_attribute(source->include, of_robots[i]))
         report_error(diagnostics, xmlGetLineNo(root),
-                     "%s=\"...\" of <include> is for robots; expected a file that begins with <robot>", of_robots[i]);
+                     "%s=\"...\" of <include> is for robots; expected a file that begins with <robot> or <mujoco>",
+                     of_robots[i]);
   if (diagnostics->errors == 0) return document;
   xmlFreeDoc(document);
   return NULL;

@@ -350,7 +350,7 @@ static struct Quantity parse_primary(struct Parser *parser) {
   return nothing;
 }
 
-static struct Quantity parse_power(struct Parser *parser) {
+struct Quantity parse_power(struct Parser *parser) {
   struct Quantity base = parse_primary(parser);
   if (parser->failed || !accept_character(parser, '^')) return base;
   enter(parser);

@@ -15,13 +15,17 @@
  *            | "distance" "(" vector "," vector ")" | "dot" "(" vector "," vector ")" | "norm" "(" vector ")"
  *   name     = part { "." part }
  *   part     = identifier [ "[" index expression "]" ]
- *   vector   = [ "-" ] arrow { ("+" | "-") arrow }
+ *   vector   = [ "-" ] scaled { ("+" | "-") scaled }
+ *   scaled   = [ power { ("*" | "/") power } "*" ] arrow { ("*" | "/") power }, where the first power is no parenthesis
  *   arrow    = name | "cross" "(" vector "," vector ")" | "(" vector ")"
  */
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
 
 /* The same from the reading position on, as far as it goes. */
 struct Quantity parse_sum(struct Parser *parser);
+
+/* A power or primary, as a factor of a product. */
+struct Quantity parse_power(struct Parser *parser);
 
 /* A name at the reading position, its indices worked out. */
 char *read_name(struct Parser *parser);

@@ -24,9 +24,9 @@ static bool is_known(const struct Parser *parser, const char *name) {
 
 /* The components that a thing has, such as "bob.x or bob.y"; "" where there is none of this name. */
 static char *components_of(const struct Parser *parser, const char *body, size_t length) {
-  static const char *const components[] = {"x",      "y",      "z",      "angle",  "vx",     "vy",
-                                           "vz",     "ax",     "ay",     "az",     "omegaX", "omegaY",
-                                           "omegaZ", "alphaX", "alphaY", "alphaZ", "R11",    "R33"};
+  static const char *const components[] = {"x",      "y",      "z",  "angle",  "vx",     "vy",     "vz",
+                                           "ax",     "ay",     "az", "omegaX", "omegaY", "omegaZ", "alphaX",
+                                           "alphaY", "alphaZ", "wx", "wy",     "wz",     "R11",    "R33"};
   char *list = copy_text("");
   for (size_t i = 0; i < sizeof components / sizeof *components; i++) {
     char *name = format_text("%.*s.%s", (int)length, body, components[i]);

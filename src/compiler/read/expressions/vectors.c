@@ -60,8 +60,10 @@ static bool find_part(struct Parser *parser, const char *name, struct Arrow *arr
   if (part == NULL) return false;
   char *of = format_text("%.*s", (int)(part - name), name);
   bool is_axis = strlen(part) == strlen(".axisX") && strncmp(part, ".axis", 5) == 0 && strchr("XYZ", part[5]) != NULL;
-  arrow->dimension = is_axis ? dimension_one : unit_of("m/s");
+  bool is_turning = strcmp(part, ".omega") == 0;
+  arrow->dimension = is_axis ? dimension_one : unit_of(is_turning ? "rad/s" : "m/s");
   if (is_axis) return find_axis(parser, of, part[5] - 'X', &arrow->vector);
+  if (is_turning) return find_components(parser, of, "w", &arrow->vector);
   return strcmp(part, ".v") == 0 && find_components(parser, of, "v", &arrow->vector);
 }
 
@@ -103,6 +105,63 @@ static struct Arrow parse_arrow(struct Parser *parser) {
   return parser->failed ? no_arrow : parse_named_arrow(parser, name);
 }
 
+/* Whether a number comes next: a literal, a call, or a name that has a value of its own. */
+static bool is_number_ahead(struct Parser *parser) {
+  skip_space(parser);
+  const char *begin = parser->next;
+  if (isdigit((unsigned char)*begin) || *begin == '.') return true;
+  if (parser->failed || (!isalpha((unsigned char)*begin) && *begin != '_')) return false;
+  char *name = read_name(parser);
+  if (parser->failed) return false;
+  bool is_call = accept_character(parser, '(');
+  parser->next = begin;
+  if (is_call) return strcmp(name, "cross") != 0;
+  char *full_name = scope_full_name(parser->scope, name);
+  return scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+}
+
+static struct Arrow scaled_by(struct Parser *parser, struct Arrow arrow, struct Quantity factor, bool is_product) {
+  struct Quantity scaled = {.node = ZERO};
+  for (int i = 0; i < 3 && !parser->failed; i++) {
+    struct Quantity component = {.node = arrow.vector.along[i], .dimension = arrow.dimension};
+    scaled = (is_product ? quantity_multiply : quantity_divide)(parser, component, factor);
+    arrow.vector.along[i] = scaled.node;
+  }
+  arrow.dimension = scaled.dimension;
+  return arrow;
+}
+
+/* The numbers before a vector, as one. */
+static struct Quantity parse_factors(struct Parser *parser) {
+  struct Quantity product = parse_power(parser);
+  while (!parser->failed) {
+    bool is_quotient = accept_character(parser, '/');
+    if (!is_quotient && !accept_character(parser, '*')) {
+      FAIL(parser, "%s: a number is no vector; expected * and a vector after it, or %s", parser->place.what, expected);
+      break;
+    }
+    if (!is_quotient && !is_number_ahead(parser)) break;
+    struct Quantity factor = parse_power(parser);
+    if (!parser->failed) product = (is_quotient ? quantity_divide : quantity_multiply)(parser, product, factor);
+  }
+  return product;
+}
+
+static struct Arrow parse_scaled(struct Parser *parser) {
+  bool is_scaled = is_number_ahead(parser);
+  struct Quantity before = {.node = ONE};
+  if (is_scaled) before = parse_factors(parser);
+  struct Arrow arrow = parse_arrow(parser);
+  if (is_scaled && !parser->failed) arrow = scaled_by(parser, arrow, before, true);
+  while (!parser->failed) {
+    bool is_product = accept_character(parser, '*');
+    if (!is_product && !accept_character(parser, '/')) break;
+    struct Quantity factor = parse_power(parser);
+    if (!parser->failed) arrow = scaled_by(parser, arrow, factor, is_product);
+  }
+  return arrow;
+}
+
 static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct Arrow b, bool is_plus) {
   for (int i = 0; i < 3 && !parser->failed; i++) {
     struct Quantity first = {.node = a.vector.along[i], .dimension = a.dimension};
@@ -120,12 +179,12 @@ static struct Arrow parse_vector(struct Parser *parser) {
     FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->place.what, NESTING_LIMIT);
   if (parser->failed) return no_arrow;
   bool is_negative = accept_character(parser, '-');
-  struct Arrow sum = parse_arrow(parser);
+  struct Arrow sum = parse_scaled(parser);
   if (is_negative) sum.vector = vector_scale(parser->graph, graph_constant(parser->graph, -1.0), sum.vector);
   while (!parser->failed) {
     bool is_plus = accept_character(parser, '+');
     if (!is_plus && !accept_character(parser, '-')) break;
-    struct Arrow term = parse_arrow(parser);
+    struct Arrow term = parse_scaled(parser);
     if (!parser->failed) sum = sum_of_arrows(parser, sum, term, is_plus);
   }
   parser->nesting--;

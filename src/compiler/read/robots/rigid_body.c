@@ -35,6 +35,19 @@ struct Placement placement_of(const double translation[3], const double angles[3
       .translation = {translation[0], translation[1], translation[2]}};
 }
 
+struct Matrix3 rotation_about(const double axis[3], double angle) {
+  double s, c;
+  sine_and_cosine(exact_quarter_turns(angle), &s, &c);
+  struct Matrix3 rotation;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    rotation.at[i][i] = c + axis[i] * axis[i] * (1 - c);
+    rotation.at[i][j] = axis[i] * axis[j] * (1 - c) - axis[k] * s;
+    rotation.at[i][k] = axis[i] * axis[k] * (1 - c) + axis[j] * s;
+  }
+  return rotation;
+}
+
 /*
  * Pitch and roll are those that fit the yaw, so that the three are right together where the pitch is a quarter turn, which
  * leaves only the sum or the difference of the other two determined.
@@ -53,7 +66,7 @@ static void turn(const struct Matrix3 *rotation, const double vector[3], double 
     turned[i] = rotation->at[i][0] * vector[0] + rotation->at[i][1] * vector[1] + rotation->at[i][2] * vector[2];
 }
 
-static struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second) {
+struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second) {
   struct Matrix3 both;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)

@@ -24,6 +24,12 @@ extern const struct Placement no_displacement;
 /* By angles about the fixed axes x, y, z in this order (roll, pitch, yaw): Rz(yaw) Ry(pitch) Rx(roll). */
 struct Placement placement_of(const double translation[3], const double angles[3]);
 
+/* By an angle about an axis of length 1. */
+struct Matrix3 rotation_about(const double axis[3], double angle);
+
+/* Of two matrices. */
+struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second);
+
 /* The angles of placement_of(). */
 void placement_angles(const struct Placement *placement, double angles[3]);
 

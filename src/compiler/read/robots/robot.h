@@ -1,4 +1,4 @@
-/* A robot as its URDF describes it: links, and joints that connect them to a tree. */
+/* A robot as its URDF or MJCF describes it: links, and joints that connect them to a tree. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,7 +6,7 @@
 
 #include "read/robots/rigid_body.h"
 
-enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, JOINT_TYPES };
+enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
 
 /* What a link touches with, or looks like: a <shape> of this type, in the link's frame. */
 struct Collision {
@@ -45,6 +45,10 @@ struct Joint {
   double axis[3];          /* of length 1, in the child */
   double lower, upper;     /* NAN: no limit */
   double damping, friction;
+  double armature;        /* inertia of the motor, along the coordinate */
+  double stiffness, rest; /* of a spring, and where it is relaxed */
+  double start[7];     /* of the coordinate; of a FLOATING joint x, y, z and the quaternion; all 0: the usual start */
+  bool has_motor;      /* an input for its force or torque; what a file's actuators do comes beside this */
   double effort;       /* the largest force or torque of its motor; NAN: no limit */
   char *mimicked_name; /* NULL unless the joint's position is multiplier*(that of the mimicked one) + offset */
   double multiplier, offset;
@@ -54,6 +58,15 @@ struct Joint {
       leader; /* the joint with the coordinate that gives the position ratio*(that of the leader) + shift; itself mostly */
   double ratio, shift;
   bool is_mimicked;
+};
+
+/* It pushes a joint with gear*(gain*control + bias[0] + bias[1]*gear*position + bias[2]*gear*velocity). */
+struct Actuator {
+  char *name, *joint_name;
+  struct Joint *joint; /* set by robot_connect() */
+  long line;
+  double gear, gain, bias[3];
+  double control[2], force[2]; /* limits of the control, and of the force before the gear; NAN: none */
 };
 
 /* What an <include> says of a robot beyond its file. */
@@ -72,6 +85,8 @@ struct Robot {
   long line;
   struct Link **links;
   struct Joint **joints;
-  size_t link_count, joint_count;
+  struct Actuator *actuators;
+  size_t link_count, joint_count, actuator_count;
+  double gravity[3]; /* m/s2 */
   struct Link *root;
 };

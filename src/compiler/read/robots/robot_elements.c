@@ -83,6 +83,12 @@ char *number(double value) {
   return copy_text(text);
 }
 
+char *clamped(const double limits[2], char *expression) {
+  if (isnan(limits[0])) return expression;
+  char *lower = number(limits[0]), *upper = number(limits[1]);
+  return format_text("max(%s, min(%s, %s))", lower, upper, expression);
+}
+
 char *term(double factor, const char *name) {
   if (factor == 1) return copy_text(name);
   if (factor == -1) return format_text("-%s", name);

@@ -27,6 +27,9 @@ void write_output(const struct Writer *writer, char *name, const char *unit, cha
 /* A coordinate and NAME_velocity. */
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);
 
+/* What keeps an expression between two limits; the expression itself where they are NAN. */
+char *clamped(const double limits[2], char *expression);
+
 /*
  * The same with the input NAME_force, or NAME_torque for an angle, of which no more than the effort acts; NAN for all of it.
  * Returns the coordinate.

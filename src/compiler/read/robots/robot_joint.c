@@ -79,6 +79,25 @@ static void write_friction(const struct Writer *writer, const struct Joint *join
                                  is_sliding(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
 }
 
+/* What stores energy: a motor's own inertia and a spring. */
+static void write_stores(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+  const char *name = joint->symbol;
+  if (joint->armature > 0) {
+    write_parameter(writer, format_text("%s_armature", name), joint->armature, is_sliding(joint) ? "kg" : "kg.m2",
+                    format_text("inertia of the motor of %s", name));
+    set_content(write_element(writer, "kinetic"), format_text("%s_armature*%s^2/2", name, motion->velocity));
+  }
+  if (joint->stiffness > 0) {
+    char *position = position_of(joint), *rest = number(fabs(joint->rest));
+    write_parameter(writer, format_text("%s_stiffness", name), joint->stiffness, is_sliding(joint) ? "N/m" : "N.m/rad",
+                    format_text("stiffness of %s", name));
+    set_content(write_element(writer, "potential"),
+                joint->rest == 0
+                    ? format_text("%s_stiffness*%s^2/2", name, position)
+                    : format_text("%s_stiffness*(%s %c %s)^2/2", name, position, joint->rest < 0 ? '+' : '-', rest));
+  }
+}
+
 static void write_losses(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
   if (joint->damping > 0) {
@@ -125,11 +144,15 @@ static void write_single(const struct Writer *writer, const struct Joint *joint,
   struct Motion motion;
   if (joint->leader == joint) {
     double effort = writer->options->is_effort_limited ? joint->effort : NAN;
-    xmlNodePtr coordinate = write_motor(writer, joint->symbol, unit_of_joint(joint), effort, description);
+    const char *name = joint->symbol, *unit = unit_of_joint(joint);
+    xmlNodePtr coordinate = joint->has_motor ? write_motor(writer, name, unit, effort, description)
+                                             : write_coordinate(writer, name, unit, description);
     if (writer->options->has_stops && (joint->lower > 0 || joint->upper < 0))
       set_attribute(coordinate, "start", number(joint->lower > 0 ? joint->lower : joint->upper));
+    else set_number(coordinate, "start", joint->start[0]);
     motion = (struct Motion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);
+  write_stores(writer, joint, &motion);
   write_losses(writer, joint, &motion);
   write_limits(writer, joint);
 }
@@ -140,13 +163,27 @@ static void write_planar(const struct Writer *writer, const struct Joint *joint,
     write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], NAN, description);
 }
 
-void write_free_coordinates(const struct Writer *writer, const char *name, const char *description) {
+/* From the first component on: 3 for a quaternion alone. */
+static void write_components(const struct Writer *writer, const char *name, int first, const double *start,
+                             const char *description) {
   static const char *const components[7] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
-  for (int i = 0; i < 7; i++) {
+  static const double not_displaced[7] = {[3] = 1};
+  if (start == NULL) start = not_displaced;
+  for (int i = first; i < 7; i++) {
     char *full_name = format_text("%s_%s", name, components[i]);
     xmlNodePtr coordinate = write_coordinate(writer, full_name, i < 3 ? "m" : "1", description);
-    if (i == 3) set_attribute(coordinate, "start", number(1)); /* not turned */
+    set_number(coordinate, "start", start[i]);
   }
+}
+
+void write_free_coordinates(const struct Writer *writer, const char *name, const double *start,
+                            const char *description) {
+  write_components(writer, name, 0, start, description);
+}
+
+/* Whether the joint says where it starts. */
+static bool has_start(const struct Joint *joint) {
+  return joint->start[3] != 0 || joint->start[4] != 0 || joint->start[5] != 0 || joint->start[6] != 0;
 }
 
 void write_joint(const struct Writer *writer, const struct Joint *joint) {
@@ -154,7 +191,49 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
                                   joint->parent->name, joint->child->name);
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
-  else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, description);
+  else if (joint->type == FLOATING)
+    write_free_coordinates(writer, joint->symbol, has_start(joint) ? joint->start : NULL, description);
+  else if (joint->type == BALL) write_components(writer, joint->symbol, 3, NULL, description);
+}
+
+/* A control that a spring follows is a position, one that a damper follows a velocity; any other is the force itself, or scales it. */
+void write_actuator(const struct Writer *writer, const struct Actuator *actuator) {
+  const struct Joint *joint = actuator->joint;
+  bool slides = is_sliding(joint), has_spring = actuator->bias[1] != 0, has_damper = actuator->bias[2] != 0;
+  bool is_servo = has_spring && actuator->gain == -actuator->bias[1];
+  bool is_drive = !has_spring && has_damper && actuator->gain == -actuator->bias[2];
+  const char *position = position_of(joint);
+  char *name = format_text("%s_control", robot_symbol(actuator->name)), *gear = number(actuator->gear);
+  char *ratio = joint->leader != joint ? ratio_of(joint) : number(1);
+  char *velocity = format_text("%s*%s_velocity", ratio, joint->leader->symbol);
+  char *control = clamped(actuator->control, name), *gain = number(actuator->gain);
+  char *force = is_servo   ? format_text("%s_stiffness*%s", name, control)
+                : is_drive ? format_text("%s_damping*%s", name, control)
+                           : format_text("%s*%s", gain, control);
+  const char *unit = slides ? "N" : "N.m";
+  if (has_spring) {
+    write_parameter(writer, format_text("%s_stiffness", name), -actuator->bias[1], slides ? "N/m" : "N.m/rad",
+                    format_text("force of the actuator '%s' by position", actuator->name));
+    force = format_text("%s - %s_stiffness*(%s*%s)", force, name, gear, position);
+  }
+  if (has_damper) {
+    write_parameter(writer, format_text("%s_damping", name), -actuator->bias[2], slides ? "N.s/m" : "N.m.s/rad",
+                    format_text("force of the actuator '%s' by velocity", actuator->name));
+    force = format_text("%s - %s_damping*(%s*%s)", force, name, gear, velocity);
+  }
+  if (actuator->bias[0] != 0) {
+    write_parameter(writer, format_text("%s_bias", name), actuator->bias[0], unit,
+                    format_text("constant force of the actuator '%s'", actuator->name));
+    force = format_text("%s + %s_bias", force, name);
+  }
+  xmlNodePtr input = write_element(writer, "input"), node = write_element(writer, "force");
+  if (is_servo) unit = slides ? "m" : "rad";
+  if (is_drive) unit = slides ? "m/s" : "rad/s";
+  set_attribute(input, "name", name);
+  set_attribute(input, "unit", copy_text(unit));
+  set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
+  set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
+  set_content(node, format_text("%s*%s*(%s)", gear, ratio, clamped(actuator->force, force)));
 }
 
 /* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */
@@ -201,15 +280,20 @@ static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, c
   write_turn(writer, frame, joint->axis, format_text("%s_angle", joint->symbol));
 }
 
+static void write_quaternion(const struct Writer *writer, xmlNodePtr frame, const char *name) {
+  set_attribute(write_element_in(writer, frame, "rotate"), "quaternion",
+                format_text("%s_qw %s_qx %s_qy %s_qz", name, name, name, name));
+}
+
 void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name) {
-  xmlNodePtr translation = write_element_in(writer, frame, "translate"),
-             rotation = write_element_in(writer, frame, "rotate");
+  xmlNodePtr translation = write_element_in(writer, frame, "translate");
   for (int i = 0; i < 3; i++) set_attribute(translation, axes[i], format_text("%s_%s", name, axes[i]));
-  set_attribute(rotation, "quaternion", format_text("%s_qw %s_qx %s_qy %s_qz", name, name, name, name));
+  write_quaternion(writer, frame, name);
 }
 
 void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
   if (joint->type == FLOATING) write_free_motion(writer, frame, joint->symbol);
+  else if (joint->type == BALL) write_quaternion(writer, frame, joint->symbol);
   else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);
   else if (joint_is_single(joint)) {
     char *position = position_of(joint);

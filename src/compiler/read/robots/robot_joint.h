@@ -10,8 +10,15 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
 /* Coordinates and what else there is of a joint beside its frame. */
 void write_joint(const struct Writer *writer, const struct Joint *joint);
 
-/* The six degrees of freedom of a free body, in coordinates whose names begin with this one. */
-void write_free_coordinates(const struct Writer *writer, const char *name, const char *description);
+/* The input NAME_control of an actuator, and what it makes of it. */
+void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
+
+/*
+ * The six degrees of freedom of a free body, in coordinates whose names begin with this one; from x, y, z and the quaternion at the
+ * start, or NULL for no displacement.
+ */
+void write_free_coordinates(const struct Writer *writer, const char *name, const double *start,
+                            const char *description);
 
 /* Turns and moves the frame of the joint's child by the coordinates. */
 void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint);

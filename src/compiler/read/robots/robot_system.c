@@ -1,14 +1,17 @@
 #include "read/robots/robot_system.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "model/kinematics.h"
+#include "read/robots/mjcf.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_shapes.h"
 #include "read/robots/robot_tree.h"
 #include "read/robots/urdf.h"
+#include "read/xml/nodes.h"
 #include "read/xml/schema.h"
 
 /* Of a floating base, and of the point at the tool. */
@@ -58,7 +61,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
     write_joint(writer, joint);
   }
   writer->line = link->line;
-  if (joint == NULL && floats) write_free_coordinates(writer, base, "free motion of the base");
+  if (joint == NULL && floats) write_free_coordinates(writer, base, NULL, "free motion of the base");
   xmlNodePtr frame = write_element(writer, "frame");
   set_attribute(frame, "name", copy_text(link->symbol));
   if (joint != NULL) {
@@ -99,18 +102,36 @@ static void write_tool(struct Writer *writer, const struct Link *link) {
 /* Whether damping, or friction that creeps, may make the robot stiff. */
 static bool has_losses(const struct Robot *robot, const struct RobotOptions *options) {
   for (size_t i = 0; i < robot->joint_count; i++)
-    if (robot->joints[i]->damping > 0 || (robot->joints[i]->friction > 0 && !options->sticks)) return true;
+    if (robot->joints[i]->damping > 0 || robot->joints[i]->stiffness > 0 ||
+        (robot->joints[i]->friction > 0 && !options->sticks))
+      return true;
+  for (size_t i = 0; i < robot->actuator_count; i++)
+    if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
   return false;
+}
+
+static void write_gravity(const struct Writer *writer, const double gravity[3]) {
+  double size = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
+  bool is_down = gravity[0] == 0 && gravity[1] == 0 && gravity[2] <= 0;
+  write_parameter(writer, copy_text("g"), size, "m/s2",
+                  copy_text(is_down ? "gravitational acceleration, along -z" : "gravitational acceleration"));
+  xmlNodePtr node = write_element(writer, "gravity");
+  if (is_down) set_attribute(node, "z", copy_text("-g"));
+  for (int i = 0; i < 3 && !is_down; i++)
+    if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
 }
 
 static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
-  write_parameter(writer, copy_text("g"), 9.81, "m/s2", copy_text("gravitational acceleration, along -z"));
-  set_attribute(write_element(writer, "gravity"), "z", copy_text("-g"));
+  write_gravity(writer, robot->gravity);
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  for (size_t i = 0; i < robot->actuator_count; i++) {
+    writer->line = robot->actuators[i].line;
+    write_actuator(writer, &robot->actuators[i]);
+  }
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */
@@ -135,7 +156,9 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
 
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
-  struct Robot *robot = urdf_read(xmlDocGetRootElement(document), options, diagnostics);
+  xmlNodePtr root = xmlDocGetRootElement(document);
+  struct Robot *robot =
+      is_element(root, "mujoco") ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
   const struct Link *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);

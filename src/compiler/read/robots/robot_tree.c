@@ -245,6 +245,22 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
 
+static void connect_actuators(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->actuator_count; i++) {
+    struct Actuator *actuator = &robot->actuators[i];
+    const struct Entry *entry =
+        find(connection, &connection->joints, actuator->joint_name, "an actuator", actuator->line);
+    if (entry == NULL) continue;
+    actuator->joint = robot->joints[entry->index];
+    if (!joint_is_single(actuator->joint))
+      report_error(connection->diagnostics, actuator->line,
+                   "the actuator '%s' is at the joint '%s', which has more than one degree of freedom; expected a "
+                   "hinge or slide",
+                   actuator->name, actuator->joint_name);
+  }
+}
+
 /* A joint that has a coordinate must move some inertia with it, its own link's or that of what hangs on it. */
 static void check_inertia(struct Connection *connection) {
   struct Robot *robot = connection->robot;
@@ -257,7 +273,9 @@ static void check_inertia(struct Connection *connection) {
   }
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct Joint *joint = robot->joints[i];
-    if (!joint_moves(joint) || joint->is_mimicked || joint->leader != joint || joint->child->moves_inertia) continue;
+    if (!joint_moves(joint) || joint->is_mimicked || joint->leader != joint || joint->child->moves_inertia ||
+        joint->armature > 0)
+      continue;
     report_error(connection->diagnostics, joint->line,
                  "the joint '%s' moves no inertia: neither the link '%s' nor what hangs on it has a mass; expected an "
                  "<inertial> there, or type=\"fixed\"",
@@ -287,6 +305,7 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
   for (size_t i = 0; i < robot->joint_count && diagnostics->errors == errors; i++)
     find_leader(&connection, robot->joints[i]);
   if (diagnostics->errors == errors) join_fixed_links(&connection);
+  if (diagnostics->errors == errors) connect_actuators(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
   return diagnostics->errors == errors;
 }

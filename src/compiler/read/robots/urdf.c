@@ -10,113 +10,13 @@
 #include "read/meshes/hull.h"
 #include "read/meshes/mesh_file.h"
 #include "read/meshes/package_path.h"
+#include "read/robots/robot_file.h"
 #include "read/xml/nodes.h"
 
-const char *const joint_types[JOINT_TYPES] = {"fixed", "revolute", "continuous", "prismatic", "floating", "planar"};
+const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
+                                              "floating", "planar",   "ball"};
 
-enum { LEFT_OUT_LIMIT = 20 };
-
-struct Urdf {
-  struct Robot *robot;
-  const struct RobotOptions *options;
-  struct Diagnostics *diagnostics;
-  char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
-  size_t left_out_count;
-  char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
-  size_t mesh_problems; /* how many there are */
-};
-
-static void leave_out(struct Urdf *urdf, const char *what) {
-  for (size_t i = 0; i < urdf->left_out_count; i++)
-    if (strcmp(urdf->left_out[i], what) == 0) return;
-  if (urdf->left_out_count < LEFT_OUT_LIMIT) urdf->left_out[urdf->left_out_count++] = copy_text(what);
-}
-
-/* Notes the elements inside that are none of these names, of which the last is NULL. */
-static void leave_out_others(struct Urdf *urdf, xmlNodePtr parent, const char *const *names) {
-  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (node->type != XML_ELEMENT_NODE) continue;
-    size_t i = 0;
-    while (names[i] != NULL && !is_element(node, names[i])) i++;
-    if (names[i] == NULL) leave_out(urdf, (const char *)node->name);
-  }
-}
-
-/* The one element of this name in another one; NULL where there is none. */
-static xmlNodePtr child_of(struct Urdf *urdf, xmlNodePtr parent, const char *name) {
-  xmlNodePtr found = NULL;
-  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (!is_element(node, name)) continue;
-    if (found != NULL)
-      report_error(urdf->diagnostics, xmlGetLineNo(node), "a second <%s> in <%s>; expected one", name,
-                   (const char *)parent->name);
-    else found = node;
-  }
-  return found;
-}
-
-static xmlNodePtr required_child_of(struct Urdf *urdf, xmlNodePtr parent, const char *name) {
-  xmlNodePtr found = child_of(urdf, parent, name);
-  if (found == NULL)
-    report_error(urdf->diagnostics, xmlGetLineNo(parent), "<%s> has no <%s>; expected one in it",
-                 (const char *)parent->name, name);
-  return found;
-}
-
-/* "" after reporting that there is none. */
-static char *required_attribute(struct Urdf *urdf, xmlNodePtr node, const char *name) {
-  char *text = attribute(node, name);
-  if (text != NULL && *text != '\0') return text;
-  report_error(urdf->diagnostics, xmlGetLineNo(node), "<%s> needs the attribute '%s'; expected %s=\"...\"",
-               (const char *)node->name, name, name);
-  return text != NULL ? text : copy_text("");
-}
-
-/* Decimal numbers with blanks between them; false where the text is anything else. */
-static bool parse_numbers(const char *text, size_t count, double *values) {
-  static const char blanks[] = " \t\r\n";
-  text += strspn(text, blanks);
-  for (size_t i = 0; i < count; i++) {
-    char *end;
-    size_t decimal = strspn(text, "+-.0123456789eE"); /* strtod also reads 0x1 and nan */
-    values[i] = strtod(text, &end);
-    if (end == text || (size_t)(end - text) > decimal || !isfinite(values[i])) return false;
-    text = end + strspn(end, blanks);
-    if (text == end && *text != '\0') return false;
-  }
-  return *text == '\0';
-}
-
-/* Leaves the values as they are where there is no such attribute, or no such element (NULL); returns whether there is. */
-static bool read_numbers(struct Urdf *urdf, xmlNodePtr node, const char *name, size_t count, double *values) {
-  char *text = node != NULL ? attribute(node, name) : NULL;
-  if (text == NULL) return false;
-  double read[3] = {0};
-  if (parse_numbers(text, count, read)) memcpy(values, read, count * sizeof *values);
-  else
-    report_error(urdf->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
-                 (const char *)node->name,
-                 count == 1 ? "a number such as 2, -0.5 or 1e-3" : "three numbers such as 0 0.5 -1e-3");
-  return true;
-}
-
-static double required_number(struct Urdf *urdf, xmlNodePtr node, const char *name) {
-  double value = 0;
-  char *text = required_attribute(urdf, node, name);
-  if (*text != '\0') read_numbers(urdf, node, name, 1, &value);
-  return value;
-}
-
-static double number_not_negative(struct Urdf *urdf, xmlNodePtr node, const char *name) {
-  double value = 0;
-  read_numbers(urdf, node, name, 1, &value);
-  if (value < 0)
-    report_error(urdf->diagnostics, xmlGetLineNo(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
-                 value, (const char *)node->name);
-  return value;
-}
-
-static struct Placement read_origin(struct Urdf *urdf, xmlNodePtr parent) {
+static struct Placement read_origin(struct RobotFile *urdf, xmlNodePtr parent) {
   double translation[3] = {0}, angles[3] = {0};
   xmlNodePtr origin = child_of(urdf, parent, "origin");
   read_numbers(urdf, origin, "xyz", 3, translation);
@@ -124,7 +24,7 @@ static struct Placement read_origin(struct Urdf *urdf, xmlNodePtr parent) {
   return placement_of(translation, angles);
 }
 
-static struct Matrix3 read_tensor(struct Urdf *urdf, xmlNodePtr node) {
+static struct Matrix3 read_tensor(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
   struct Matrix3 tensor;
   for (int i = 0; i < 3; i++)
@@ -132,14 +32,15 @@ static struct Matrix3 read_tensor(struct Urdf *urdf, xmlNodePtr node) {
   return tensor;
 }
 
-static void check_inertial(struct Urdf *urdf, xmlNodePtr node, const struct Link *link, const struct RigidBody *body) {
+static void check_inertial(struct RobotFile *urdf, xmlNodePtr node, const struct Link *link,
+                           const struct RigidBody *body) {
   long line = xmlGetLineNo(node);
   if (body->mass < 0)
     report_error(urdf->diagnostics, line, "the mass %g of the link '%s' is negative; expected 0 or more", body->mass,
                  link->name);
 }
 
-static void read_inertial(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
+static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   static const char *const known[] = {"origin", "mass", "inertia", NULL};
   leave_out_others(urdf, node, known);
   xmlNodePtr mass = required_child_of(urdf, node, "mass"), inertia = required_child_of(urdf, node, "inertia");
@@ -165,12 +66,12 @@ static xmlNodePtr only_child_of(xmlNodePtr parent, const char *name) {
 }
 
 /* Why a <mesh> cannot be used; NULL where it can. Robots are read without their meshes too, so that mistakes are no errors. */
-static char *read_mesh(const struct Urdf *urdf, xmlNodePtr node, bool touches, struct Collision *collision) {
+static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision) {
   const char *robot = urdf->diagnostics->file;
   char *named = attribute(node, "filename"), *scale = attribute(node, "scale"), *problem = NULL;
   double *factors = collision->scale;
   for (int i = 0; i < 3; i++) factors[i] = 1;
-  if (scale != NULL && (!parse_numbers(scale, 3, factors) || factors[0] * factors[1] * factors[2] == 0))
+  if (scale != NULL && (parse_numbers(scale, 3, factors) != 3 || factors[0] * factors[1] * factors[2] == 0))
     return format_text("the scale '%.60s' of a <mesh>; expected three numbers other than 0", scale);
   char *path = named != NULL ? path_in_package(robot, named) : NULL;
   if (path == NULL)
@@ -189,7 +90,7 @@ static char *read_mesh(const struct Urdf *urdf, xmlNodePtr node, bool touches, s
 }
 
 /* False of what has no shape here; in *problem is why a mesh is none, else NULL. */
-static bool read_geometry(struct Urdf *urdf, xmlNodePtr node, bool touches, struct Collision *collision,
+static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision,
                           char **problem) {
   xmlNodePtr sphere = child_of(urdf, node, "sphere"), box = child_of(urdf, node, "box");
   xmlNodePtr round = child_of(urdf, node, "cylinder"), capsule = round == NULL ? child_of(urdf, node, "capsule") : NULL;
@@ -209,13 +110,13 @@ static bool read_geometry(struct Urdf *urdf, xmlNodePtr node, bool touches, stru
   return collision->type != NULL && *problem == NULL;
 }
 
-static void note_mesh_problem(struct Urdf *urdf, char *problem) {
+static void note_mesh_problem(struct RobotFile *urdf, char *problem) {
   if (problem == NULL) return;
   if (urdf->mesh_problem == NULL) urdf->mesh_problem = problem;
   urdf->mesh_problems++;
 }
 
-static void read_collision(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
+static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
   char *problem = NULL;
@@ -240,7 +141,7 @@ static void read_collision(struct Urdf *urdf, xmlNodePtr node, struct Link *link
 static bool has_numbers(xmlNodePtr node, const char *name, size_t count, bool may_be_negative) {
   double values[4];
   char *text = attribute(node, name);
-  bool is_right = text != NULL && parse_numbers(text, count, values);
+  bool is_right = text != NULL && parse_numbers(text, count, values) == count;
   for (size_t i = 0; i < count && is_right; i++) is_right = may_be_negative || values[i] >= 0;
   return is_right;
 }
@@ -285,14 +186,15 @@ static char *read_color(xmlNodePtr visual) {
   if (material != NULL && color == NULL && has_attribute(material, "name"))
     color = find_color(xmlDocGetRootElement(visual->doc), attribute(material, "name"));
   double rgba[4];
-  if (color == NULL || !has_attribute(color, "rgba") || !parse_numbers(attribute(color, "rgba"), 4, rgba)) return NULL;
+  if (color == NULL || !has_attribute(color, "rgba") || parse_numbers(attribute(color, "rgba"), 4, rgba) != 4)
+    return NULL;
   char *text = copy_text("#");
   for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
   return text;
 }
 
 /* False where it cannot be drawn. */
-static bool read_visual(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
+static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   char *problem = NULL;
   struct Collision visual = {.line = xmlGetLineNo(node)};
   bool is_right = is_sound_visual(node);
@@ -309,16 +211,15 @@ static bool read_visual(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
 }
 
 /* Where not all can be drawn, shapes that touch show more of the link. */
-static void read_visuals(struct Urdf *urdf, xmlNodePtr node, struct Link *link) {
+static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   bool is_whole = true;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (is_element(child, "visual")) is_whole &= read_visual(urdf, child, link);
   if (!is_whole && link->collision_count > 0) link->visual_count = 0;
 }
 
-static void read_link(struct Urdf *urdf, xmlNodePtr node) {
+static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"inertial", "visual", "collision", NULL};
-  struct Robot *robot = urdf->robot;
   struct Link *link = allocate(1, sizeof *link);
   link->name = required_attribute(urdf, node, "name");
   link->line = xmlGetLineNo(node);
@@ -328,24 +229,23 @@ static void read_link(struct Urdf *urdf, xmlNodePtr node) {
   read_visuals(urdf, node, link);
   xmlNodePtr inertial = child_of(urdf, node, "inertial");
   if (inertial != NULL) read_inertial(urdf, inertial, link);
-  robot->links = make_room(robot->links, robot->link_count, sizeof(struct Link *));
-  robot->links[robot->link_count++] = link;
+  add_link(urdf, link);
 }
 
-static enum JointType read_type(struct Urdf *urdf, xmlNodePtr node) {
+static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   char *text = required_attribute(urdf, node, "type");
-  int type = 0;
-  while (type < JOINT_TYPES && strcmp(text, joint_types[type]) != 0) type++;
-  if (type == JOINT_TYPES && *text != '\0')
+  int type = 0; /* URDF has no ball */
+  while (type < BALL && strcmp(text, joint_types[type]) != 0) type++;
+  if (type == BALL && *text != '\0')
     report_error(
         urdf->diagnostics, xmlGetLineNo(node),
         "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar",
         text);
-  return type < JOINT_TYPES ? (enum JointType)type : FIXED;
+  return type < BALL ? (enum JointType)type : FIXED;
 }
 
 /* Along x where the file gives none. */
-static void read_axis(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr axis = child_of(urdf, node, "axis");
   joint->axis[0] = 1;
   read_numbers(urdf, axis, "xyz", 3, joint->axis);
@@ -359,7 +259,7 @@ static void read_axis(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
   for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] /= length;
 }
 
-static void read_effort(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->effort = NAN;
   if (limit == NULL || !has_attribute(limit, "effort") || joint->type == FIXED) return;
@@ -369,7 +269,7 @@ static void read_effort(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint)
 }
 
 /* A missing one of the two is 0, as in the format's definition; a file that gives neither has no limits. */
-static void read_limit(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->lower = joint->upper = NAN;
   if (limit == NULL || (joint->type != REVOLUTE && joint->type != PRISMATIC)) return;
@@ -389,7 +289,7 @@ static void read_limit(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) 
   joint->upper = upper;
 }
 
-static void read_dynamics(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr dynamics = child_of(urdf, node, "dynamics");
   if (dynamics == NULL || joint->type == FIXED) return;
   double damping = number_not_negative(urdf, dynamics, "damping");
@@ -402,7 +302,7 @@ static void read_dynamics(struct Urdf *urdf, xmlNodePtr node, struct Joint *join
   joint->friction = friction;
 }
 
-static void read_mimic(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_mimic(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr mimic = child_of(urdf, node, "mimic");
   joint->multiplier = 1;
   if (mimic == NULL || joint->type == FIXED) return;
@@ -411,18 +311,18 @@ static void read_mimic(struct Urdf *urdf, xmlNodePtr node, struct Joint *joint) 
   read_numbers(urdf, mimic, "offset", 1, &joint->offset);
 }
 
-static char *read_end(struct Urdf *urdf, xmlNodePtr joint, const char *name) {
+static char *read_end(struct RobotFile *urdf, xmlNodePtr joint, const char *name) {
   xmlNodePtr node = required_child_of(urdf, joint, name);
   return node != NULL ? required_attribute(urdf, node, "link") : copy_text("");
 }
 
-static void read_joint(struct Urdf *urdf, xmlNodePtr node) {
+static void read_joint(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", NULL};
-  struct Robot *robot = urdf->robot;
   struct Joint *joint = allocate(1, sizeof *joint);
   joint->name = required_attribute(urdf, node, "name");
   joint->line = xmlGetLineNo(node);
   joint->type = read_type(urdf, node);
+  joint->has_motor = true;
   joint->parent_name = read_end(urdf, node, "parent");
   joint->child_name = read_end(urdf, node, "child");
   joint->origin = read_origin(urdf, node);
@@ -432,8 +332,7 @@ static void read_joint(struct Urdf *urdf, xmlNodePtr node) {
   read_dynamics(urdf, node, joint);
   read_mimic(urdf, node, joint);
   leave_out_others(urdf, node, known);
-  robot->joints = make_room(robot->joints, robot->joint_count, sizeof(struct Joint *));
-  robot->joints[robot->joint_count++] = joint;
+  add_joint(urdf, joint);
 }
 
 /* A macro or an expression of xacro, which other programs expand; NULL for none. */
@@ -450,22 +349,12 @@ static xmlNodePtr find_xacro(xmlNodePtr node) {
   return NULL;
 }
 
-static void tell_left_out(struct Urdf *urdf) {
-  char *list = copy_text("");
-  for (size_t i = 0; i < urdf->left_out_count; i++)
-    list = format_text("%s%s%s", list, i > 0 ? ", " : "", urdf->left_out[i]);
-  if (*list != '\0' && urdf->diagnostics->errors == 0)
-    report_warning(urdf->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
-  if (urdf->mesh_problem != NULL && urdf->diagnostics->errors == 0)
-    report_warning(urdf->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", urdf->mesh_problems,
-                   urdf->mesh_problems == 1 ? " is" : "es are", urdf->mesh_problem);
-}
-
 struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
-  struct Urdf urdf = {.robot = allocate(1, sizeof *urdf.robot), .options = options, .diagnostics = diagnostics};
+  struct RobotFile urdf = {.robot = allocate(1, sizeof *urdf.robot), .options = options, .diagnostics = diagnostics};
   static const char *const known[] = {"link", "joint", "material", NULL};
   xmlNodePtr xacro = find_xacro(root);
   urdf.robot->line = xmlGetLineNo(root);
+  urdf.robot->gravity[2] = -9.81;
   urdf.robot->name = required_attribute(&urdf, root, "name");
   if (xacro != NULL)
     report_error(

@@ -14,8 +14,8 @@ static const char *const frame_components[] = {"x",   "y",   "z",   "R11", "R12"
 static const char *const point_components[] = {"x", "y", "z", "vx", "vy", "vz", "ax", "ay", "az", NULL};
 static const char *const particle_components[] = {"x", "y", "z", "vx", "vy", "vz", NULL};
 static const char *const planar_components[] = {"x", "y", "z", "angle", NULL};
-static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy",     "vz", "omegaX",
-                                              "omegaY", "omegaZ", "alphaX", "alphaY", "alphaZ", NULL};
+static const char *const body_components[] = {"x",      "y",      "z",      "vx",     "vy", "vz", "omegaX", "omegaY",
+                                              "omegaZ", "alphaX", "alphaY", "alphaZ", "wx", "wy", "wz",     NULL};
 
 bool is_spatial(xmlNodePtr node) {
   if (is_element(node, "frame") || is_element(node, "point")) return true;
@@ -256,6 +256,7 @@ static struct Vector vector_of(struct Scope *scope, const struct Pose *pose, con
                                const char *component) {
   struct Graph *graph = scope->graph;
   if (strncmp(component, "omega", 5) == 0) return pose->angular_velocity;
+  if (component[0] == 'w') return matrix_apply(graph, &pose->rotation, pose->angular_velocity);
   if (strncmp(component, "alpha", 5) == 0) return derivative_of(scope, pose->angular_velocity);
   if (component[0] == 'v') return matrix_apply(graph, &pose->rotation, point->velocity);
   if (component[0] == 'a') return matrix_apply(graph, &pose->rotation, acceleration_of(scope, pose, point->velocity));
@@ -265,7 +266,7 @@ static struct Vector vector_of(struct Scope *scope, const struct Pose *pose, con
 static const char *unit_of_component(const char *component) {
   if (component[0] == 'R') return "1";
   if (strcmp(component, "angle") == 0) return "rad";
-  if (strncmp(component, "omega", 5) == 0) return "rad/s";
+  if (strncmp(component, "omega", 5) == 0 || component[0] == 'w') return "rad/s";
   if (strncmp(component, "alpha", 5) == 0) return "rad/s2";
   return component[0] == 'v' ? "m/s" : component[0] == 'a' ? "m/s2" : "m";
 }
@@ -315,7 +316,7 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
   for (size_t i = 0; components[i] != NULL; i++) {
     char *full_name = format_text("%s.%s", name, components[i]);
     const struct Quantity *value = scope_find(reader->scope, full_name);
-    if (value == NULL) continue;
+    if (value == NULL || components[i][0] == 'w') continue; /* in expressions alone: omegaX, ... tell it already */
     struct Variable place = {.name = full_name,
                              .description = description_of(name, components[i]),
                              .unit = copy_text(unit_of_component(components[i])),

@@ -38,5 +38,6 @@ char *text_of(xmlNodePtr node) {
 }
 
 bool is_robot(xmlDocPtr document) {
-  return xmlStrEqual(xmlDocGetRootElement(document)->name, (const xmlChar *)"robot");
+  const xmlNode *root = xmlDocGetRootElement(document);
+  return is_element(root, "robot") || is_element(root, "mujoco");
 }

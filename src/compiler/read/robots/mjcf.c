@@ -1,0 +1,384 @@
+#include "read/robots/mjcf.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/robots/mjcf_geoms.h"
+#include "read/robots/mjcf_values.h"
+#include "read/xml/nodes.h"
+
+static const char world[] = "world";
+
+/* Each with what to do about it. */
+static void report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy) {
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "<%s> is not read, and would change the motion; expected %s",
+               (const char *)node->name, remedy);
+}
+
+/* Reports elements, at any depth, that would change the motion. */
+static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const refused[][2] = {
+      {"include", "one file, as MuJoCo's mj_saveLastXML writes it"},
+      {"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
+      {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+      {"composite", "rigid bodies"},
+      {"flexcomp", "rigid bodies"},
+      {"flex", "rigid bodies"},
+      {"plugin", "a file without it"},
+      {"tendon", "a <spring>, or a <joint type=\"distance\">, in a <system> that includes the robot"}};
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (child->type != XML_ELEMENT_NODE || is_element(child, "sensor") || is_element(child, "asset")) continue;
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+      if (is_element(child, refused[i][0])) report_unknown(mjcf, child, refused[i][1]);
+    check_elements(mjcf, child);
+  }
+}
+
+static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
+  static const char *const refused[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia",
+                                        "inertiagrouprange"};
+  if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
+  if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
+  if (has_attribute(node, "inertiafromgeom"))
+    mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "coordinate=\"%s\" of <compiler>; expected local",
+                 attribute(node, "coordinate"));
+  const char *sequence = attribute(node, "eulerseq");
+  if (sequence == NULL) return;
+  if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
+  else
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "eulerseq=\"%.60s\" of <compiler>; expected three of the letters x, y, z, X, Y, Z", sequence);
+}
+
+static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const flags[] = {"passive",   "spring", "damper",   "actuation",
+                                      "clampctrl", "limit",  "equality", "frictionloss"};
+  mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
+  mjcf_refuse(mjcf, node, "density");
+  mjcf_refuse(mjcf, node, "viscosity");
+  xmlNodePtr flag = child_of(&mjcf->file, node, "flag");
+  if (flag == NULL) return;
+  if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
+  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+    if (attribute_is(flag, flags[i], "disable"))
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(flag),
+                   "%s=\"disable\" of <flag> is not read; expected a file without what it disables", flags[i]);
+}
+
+static struct Link *new_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
+  struct Link *link = allocate(1, sizeof *link);
+  link->name = name;
+  link->line = xmlGetLineNo(node);
+  add_link(&mjcf->file, link);
+  return link;
+}
+
+static struct Joint *new_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
+                               char *child) {
+  struct Joint *joint = allocate(1, sizeof *joint);
+  joint->name = name;
+  joint->line = xmlGetLineNo(node);
+  joint->type = type;
+  joint->parent_name = parent;
+  joint->child_name = child;
+  joint->origin = no_displacement;
+  joint->axis[2] = 1;
+  joint->lower = joint->upper = joint->effort = NAN;
+  joint->multiplier = 1;
+  add_joint(&mjcf->file, joint);
+  return joint;
+}
+
+static void add_fixed(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place) {
+  new_joint(mjcf, node, FIXED, format_text("%s_fixed", child), parent, child)->origin = *place;
+}
+
+static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+  mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
+  if (make_unit(joint->axis) == 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1", joint->name);
+}
+
+/* A hinge or slide, whose coordinate is ref where its body is as placed. */
+static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+  double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
+  read_axis(mjcf, node, joint);
+  joint->start[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
+  joint->rest = mjcf_number(mjcf, node, "springref", 0) * scale;
+  joint->stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);
+  joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
+  mjcf_refuse(mjcf, node, "springdamper");
+  mjcf_refuse(mjcf, node, "actuatorfrcrange");
+  mjcf_limits(mjcf, node, "range", "limited", limits);
+  joint->lower = limits[0] * scale;
+  joint->upper = limits[1] * scale;
+  struct Placement back = no_displacement;
+  if (joint->type == REVOLUTE) back.rotation = rotation_about(joint->axis, -joint->start[0]);
+  else
+    for (int i = 0; i < 3; i++) back.translation[i] = -joint->axis[i] * joint->start[0];
+  joint->origin = placement_within(&joint->origin, &back);
+}
+
+/* What has a coordinate for each degree of freedom in the language has no place for what acts along them. */
+static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+  static const char *const refused[] = {"stiffness", "damping", "armature", "frictionloss", "springdamper"};
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+}
+
+/* The body of a free joint starts where it is placed. */
+static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *place) {
+  double angles[3], s[3], c[3];
+  if (strcmp(joint->parent_name, world) != 0)
+    report_error(mjcf->file.diagnostics, joint->line,
+                 "the free joint '%s' is in the body '%s'; expected it in a <body> of the <worldbody>", joint->name,
+                 joint->child_name);
+  placement_angles(place, angles);
+  for (int i = 0; i < 3; i++) {
+    joint->start[i] = place->translation[i];
+    s[i] = sin(angles[i] / 2);
+    c[i] = cos(angles[i] / 2);
+  }
+  joint->start[3] = c[0] * c[1] * c[2] + s[0] * s[1] * s[2];
+  joint->start[4] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
+  joint->start[5] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];
+  joint->start[6] = c[0] * c[1] * s[2] - s[0] * s[1] * c[2];
+}
+
+/* The joints of a body one after the other, each of which but the last moves a link without mass. */
+struct Chain {
+  char *body, *parent;    /* the link at which it has arrived */
+  struct Placement place; /* in it: of the body where all joints that are left are at their ref */
+  size_t count;
+  bool is_free, has_body;
+};
+
+static bool is_joint(xmlNodePtr node) {
+  return is_element(node, "joint") || is_element(node, "freejoint");
+}
+
+static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain, bool is_last) {
+  static const char *const words[] = {"hinge", "slide", "ball", "free", NULL};
+  static const enum JointType types[] = {REVOLUTE, PRISMATIC, BALL, FLOATING};
+  enum JointType type = is_element(node, "freejoint") ? FLOATING : types[mjcf_word(mjcf, node, "type", words)];
+  char *name = attribute(node, "name");
+  struct Placement anchor = no_displacement, back = no_displacement;
+  if (type != FLOATING) mjcf_numbers(mjcf, node, "pos", 3, 3, anchor.translation);
+  for (int i = 0; i < 3; i++) back.translation[i] -= anchor.translation[i];
+  bool is_offset = back.translation[0] != 0 || back.translation[1] != 0 || back.translation[2] != 0;
+  if (name == NULL)
+    name = type == FLOATING ? copy_text(chain->body) : format_text("%s_joint%zu", chain->body, chain->count + 1);
+  char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
+  struct Joint *joint = new_joint(mjcf, node, type, name, chain->parent, child);
+  chain->is_free |= type == FLOATING;
+  if (type == FLOATING) read_free(mjcf, joint, &chain->place);
+  else joint->origin = placement_within(&chain->place, &anchor);
+  if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
+  else read_several(mjcf, node, joint);
+  if (child != chain->body) new_link(mjcf, node, child);
+  chain->has_body = child == chain->body;
+  chain->parent = child;
+  chain->place = back;
+  chain->count++;
+}
+
+static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain) {
+  xmlNodePtr last = NULL;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_joint(child)) last = child;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
+  if (chain->is_free && chain->count > 1)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
+  if (!chain->has_body) add_fixed(mjcf, node, chain->parent, chain->body, &chain->place);
+}
+
+static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer);
+
+static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  char *name = attribute(node, "name");
+  if (name == NULL) name = format_text("body%zu", ++mjcf->unnamed_count);
+  struct Placement place = mjcf_placement(mjcf, node);
+  struct Chain chain = {.body = name, .parent = parent, .place = placement_within(outer, &place)};
+  struct Link *link = new_link(mjcf, node, name);
+  mjcf_refuse(mjcf, node, "gravcomp");
+  mjcf_refuse(mjcf, node, "mocap");
+  read_joints(mjcf, node, &chain);
+  mjcf_read_body(mjcf, node, link);
+  read_children(mjcf, node, name, &no_displacement);
+}
+
+static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  char *name = attribute(node, "name");
+  if (name == NULL) return;
+  struct Placement place = mjcf_placement(mjcf, node);
+  place = placement_within(outer, &place);
+  new_link(mjcf, node, name);
+  add_fixed(mjcf, node, parent, name, &place);
+}
+
+/* Bodies and sites, also in <frame>s, which place them. */
+static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (is_element(child, "body")) read_body(mjcf, child, parent, outer);
+    else if (is_element(child, "site")) read_site(mjcf, child, parent, outer);
+    else if (is_element(child, "frame")) {
+      struct Placement inner = mjcf_placement(mjcf, child);
+      inner = placement_within(outer, &inner);
+      read_children(mjcf, child, parent, &inner);
+    } else if (is_joint(child) && !is_element(node, "body"))
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(child), "a <%s> is in a <%s>; expected it in a <body>",
+                   (const char *)child->name, (const char *)node->name);
+  }
+}
+
+/* In MuJoCo the defaults of one kind of actuator hold for all others too, by what they mean there. */
+static void check_kinds(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const kinds[] = {"motor",    "position", "velocity", "general",  "intvelocity",
+                                      "cylinder", "damper",   "muscle",   "adhesion", "dcmotor"};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (!is_element(node, kinds[i]) && mjcf_inherits(mjcf, node, kinds[i]))
+      report_error(
+          mjcf->file.diagnostics, xmlGetLineNo(node),
+          "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of its "
+          "own",
+          (const char *)node->name, kinds[i]);
+}
+
+/* Gain and bias, in MuJoCo's words. */
+static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  static const char *const biases[] = {"none", "affine", NULL};
+  actuator->gain = 1;
+  if (is_element(node, "position")) {
+    actuator->gain = mjcf_number_not_negative(mjcf, node, "kp", 1);
+    actuator->bias[1] = -actuator->gain;
+    actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
+  } else if (is_element(node, "velocity")) {
+    actuator->gain = mjcf_number_not_negative(mjcf, node, "kv", 1);
+    actuator->bias[2] = -actuator->gain;
+  } else if (is_element(node, "general")) {
+    static const char *const gains[] = {"fixed", NULL}, *const dynamics[] = {"none", NULL};
+    double gain[10] = {1}, bias[10] = {0};
+    mjcf_word(mjcf, node, "dyntype", dynamics);
+    mjcf_word(mjcf, node, "gaintype", gains);
+    mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
+    mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
+    actuator->gain = gain[0];
+    if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
+  }
+}
+
+static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const refused[] = {"dampratio", "timeconst", "inheritrange", "actdim",
+                                        "delay",     "damping",   "armature"};
+  struct Robot *robot = mjcf->file.robot;
+  if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
+      !is_element(node, "general")) {
+    report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint");
+    return;
+  }
+  struct Actuator actuator = {.joint_name = required_attribute(&mjcf->file, node, "joint"), .line = xmlGetLineNo(node)};
+  actuator.name = attribute(node, "name");
+  if (actuator.name == NULL) actuator.name = actuator.joint_name;
+  double gear[6] = {1};
+  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
+  actuator.gear = gear[0];
+  check_kinds(mjcf, node);
+  read_law(mjcf, node, &actuator);
+  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
+  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
+  robot->actuators[robot->actuator_count++] = actuator;
+}
+
+static struct Joint *find_joint(const struct Robot *robot, const char *name) {
+  for (size_t i = 0; i < robot->joint_count; i++)
+    if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];
+  return NULL;
+}
+
+/* A joint whose distance from its ref is a linear function of another's mimics that. */
+static void read_equality(struct Mjcf *mjcf, xmlNodePtr node) {
+  if (attribute_is(node, "active", "false")) return;
+  if (!is_element(node, "joint")) {
+    report_unknown(mjcf, node, "a <joint> that closes the loop, in a <system> that includes the robot");
+    return;
+  }
+  double c[5] = {0, 1};
+  char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
+  struct Joint *joints[2] = {find_joint(mjcf->file.robot, names[0]), find_joint(mjcf->file.robot, names[1])};
+  mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
+  for (int i = 0; i < 2; i++)
+    if (joints[i] == NULL && *names[i] != '\0')
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "there is no joint '%s' for an <equality>; expected one of the file", names[i]);
+  if (c[2] != 0 || c[3] != 0 || c[4] != 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
+  if (joints[0] == NULL || joints[1] == NULL) return;
+  if (joints[0]->mimicked_name != NULL)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", names[0],
+                 joints[0]->mimicked_name);
+  joints[0]->mimicked_name = names[1];
+  joints[0]->multiplier = c[1];
+  joints[0]->offset = joints[0]->start[0] + c[0] - c[1] * joints[1]->start[0];
+}
+
+typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* All sections of this name; each element in them, or these themselves. */
+static void for_each(struct Mjcf *mjcf, const char *section, bool inside, Read *read) {
+  for (xmlNodePtr node = mjcf->root->children; node != NULL; node = node->next) {
+    if (!is_element(node, section)) continue;
+    if (!inside) read(mjcf, node);
+    for (xmlNodePtr child = node->children; inside && child != NULL; child = child->next)
+      if (child->type == XML_ELEMENT_NODE) read(mjcf, child);
+  }
+}
+
+static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
+  mjcf_read_body(mjcf, node, mjcf->file.robot->links[0]);
+  read_children(mjcf, node, mjcf->file.robot->links[0]->name, &no_displacement);
+}
+
+struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  static const char *const known[] = {"compiler", "option", "default", "worldbody", "actuator", "equality", NULL};
+  struct Robot *robot = allocate(1, sizeof *robot);
+  struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
+                      .root = root,
+                      .angle = M_PI / 180,
+                      .euler_sequence = "xyz",
+                      .has_automatic_limits = true};
+  int errors = diagnostics->errors;
+  robot->name = attribute(root, "model");
+  if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
+  robot->line = xmlGetLineNo(root);
+  robot->gravity[2] = -9.81;
+  required_child_of(&mjcf.file, root, "worldbody");
+  if (options->floats)
+    report_error(diagnostics, robot->line,
+                 "base=\"floating\" is for URDF; expected a <freejoint> in the body that moves");
+  mjcf_check_classes(&mjcf, root);
+  check_elements(&mjcf, root);
+  if (diagnostics->errors > errors) return robot;
+  for_each(&mjcf, "compiler", false, read_compiler);
+  for_each(&mjcf, "option", false, read_option);
+  new_link(&mjcf, root, copy_text(world));
+  for_each(&mjcf, "worldbody", false, read_world);
+  for_each(&mjcf, "actuator", true, read_actuator);
+  for_each(&mjcf, "equality", true, read_equality);
+  leave_out_others(&mjcf.file, root, known);
+  tell_left_out(&mjcf.file);
+  return robot;
+}

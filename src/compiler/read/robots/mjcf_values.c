@@ -1,0 +1,271 @@
+#include "read/robots/mjcf_values.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/xml/nodes.h"
+
+enum { NUMBERS_LIMIT = 64 };
+
+/* A <default> of this class, at any depth; NULL where there is none. */
+static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (!is_element(node, "default")) continue;
+    if (attribute_is(node, "class", name)) return node;
+    xmlNodePtr found = find_class(node, name);
+    if (found != NULL) return found;
+  }
+  return NULL;
+}
+
+/* The class that an element names, or else the next body or frame around it; NULL for that of all. */
+static const char *class_of(xmlNodePtr node) {
+  const char *name = attribute(node, "class");
+  for (node = node->parent; name == NULL && node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent)
+    name = attribute(node, "childclass");
+  return name;
+}
+
+/* The class after this one: the one in which it is; all those of the outermost level are one, of all elements. */
+static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
+  if (class != NULL && class->parent != mjcf->root) {
+    if (class->parent->parent != mjcf->root) return class->parent;
+    class = NULL;
+  }
+  xmlNodePtr node = class != NULL ? class->prev : mjcf->root->last;
+  while (node != NULL && !is_element(node, "default")) node = node->prev;
+  return node;
+}
+
+/* The first class of an element; NULL where there is none. */
+static xmlNodePtr first_class(const struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *name = class_of(node);
+  xmlNodePtr class = name != NULL ? find_class(mjcf->root, name) : NULL;
+  return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, NULL);
+}
+
+/* Of the elements of a class the last that has the attribute, or of any where this is NULL; NULL for none. */
+static xmlNodePtr of_class(xmlNodePtr class, const char *element, const char *name) {
+  xmlNodePtr node = class->last;
+  while (node != NULL && !(is_element(node, element) && (name == NULL || has_attribute(node, name)))) node = node->prev;
+  return node;
+}
+
+const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+  const char *element = (const char *)node->name;
+  if (has_attribute(node, name)) return attribute(node, name);
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class)) {
+    xmlNodePtr found = of_class(class, element, name);
+    if (found != NULL) return attribute(found, name);
+  }
+  return NULL;
+}
+
+bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element) {
+  xmlNodePtr class = first_class(mjcf, node);
+  while (class != NULL && of_class(class, element, NULL) == NULL) class = next_class(mjcf, class);
+  return class != NULL;
+}
+
+static void check_class(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+  const char *class = attribute(node, name);
+  if (class != NULL && strcmp(class, "main") != 0 && find_class(mjcf->root, class) == NULL)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "there is no class '%s' for %s of <%s>; expected one that a <default class=\"...\"> defines", class,
+                 name, (const char *)node->name);
+}
+
+static void check_default(struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *class = attribute(node, "class");
+  bool is_outermost = node->parent == mjcf->root;
+  if (class == NULL && !is_outermost)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "a <default> in a <default> has no class; expected class=\"...\"");
+  if (class == NULL || is_outermost) return;
+  xmlNodePtr first = find_class(mjcf->root, class);
+  if (first != node)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the class '%s' is already defined on line %ld; expected another name", class, xmlGetLineNo(first));
+}
+
+void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node) {
+  if (node->type != XML_ELEMENT_NODE) return;
+  if (is_element(node, "default")) check_default(mjcf, node);
+  else check_class(mjcf, node, "class");
+  check_class(mjcf, node, "childclass");
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) mjcf_check_classes(mjcf, child);
+}
+
+size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t least, size_t most, double *values) {
+  const char *text = mjcf_text(mjcf, node, name);
+  double read[NUMBERS_LIMIT];
+  if (text == NULL) return 0;
+  size_t count = parse_numbers(text, most, read);
+  if (count >= least && count > 0) {
+    memcpy(values, read, count * sizeof *values);
+    return count;
+  }
+  char *amount = least == most ? format_text("%zu", most) : format_text("%zu to %zu", least, most);
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
+               (const char *)node->name,
+               most == 1 ? "a number such as 2, -0.5 or 1e-3" : format_text("%s numbers", amount));
+  return 0;
+}
+
+double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual) {
+  mjcf_numbers(mjcf, node, name, 1, 1, &usual);
+  return usual;
+}
+
+double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual) {
+  double value = mjcf_number(mjcf, node, name, usual);
+  if (value < 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
+                 value, (const char *)node->name);
+  return value;
+}
+
+bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value) {
+  const char *text = mjcf_text(mjcf, node, name);
+  return text != NULL && strcmp(text, value) == 0;
+}
+
+size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *const *words) {
+  const char *text = mjcf_text(mjcf, node, name);
+  char *list = copy_text("");
+  for (size_t i = 0; words[i] != NULL; i++) {
+    if (text == NULL || strcmp(text, words[i]) == 0) return i;
+    list = format_text("%s%s%s", list, i > 0 ? ", " : "", words[i]);
+  }
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s> is not known; expected one of %s",
+               name, text, (const char *)node->name, list);
+  return 0;
+}
+
+double make_unit(double vector[3]) {
+  double length = hypot(hypot(vector[0], vector[1]), vector[2]);
+  for (int i = 0; i < 3 && length > 0; i++) vector[i] /= length;
+  return length;
+}
+
+static void cross(const double a[3], const double b[3], double result[3]) {
+  for (int i = 0; i < 3; i++) result[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+struct Matrix3 rotation_of_z(const double direction[3]) {
+  double across = hypot(direction[0], direction[1]), axis[3] = {1, 0, 0};
+  if (across > 0) {
+    axis[0] = -direction[1] / across;
+    axis[1] = direction[0] / across;
+  }
+  return rotation_about(axis, atan2(across, direction[2]));
+}
+
+static struct Matrix3 of_quaternion(const double q[4]) {
+  double axis[3] = {q[1], q[2], q[3]};
+  double length = make_unit(axis);
+  return length > 0 ? rotation_about(axis, 2 * atan2(length, q[0])) : no_displacement.rotation;
+}
+
+/* Capital letters turn about the axes of the parent, small ones about those that the turns before left. */
+static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double angles[3]) {
+  struct Matrix3 rotation = no_displacement.rotation;
+  for (int i = 0; i < 3; i++) {
+    char letter = mjcf->euler_sequence[i];
+    double axis[3] = {0};
+    axis[tolower((unsigned char)letter) - 'x'] = 1;
+    struct Matrix3 turn = rotation_about(axis, angles[i] * mjcf->angle);
+    rotation = isupper((unsigned char)letter) ? product(&turn, &rotation) : product(&rotation, &turn);
+  }
+  return rotation;
+}
+
+/* The second is made orthogonal to the first; false where the two are parallel. */
+static bool of_axes(const double given[6], struct Matrix3 *rotation) {
+  double x[3] = {given[0], given[1], given[2]}, y[3] = {given[3], given[4], given[5]}, z[3];
+  bool is_right = make_unit(x) > 0;
+  cross(x, y, z);
+  is_right &= make_unit(z) > 0;
+  cross(z, x, y);
+  for (int i = 0; i < 3; i++) {
+    rotation->at[i][0] = x[i];
+    rotation->at[i][1] = y[i];
+    rotation->at[i][2] = z[i];
+  }
+  return is_right;
+}
+
+enum { QUATERNION, AXIS_AND_ANGLE, EULER_ANGLES, TWO_AXES, Z_AXIS, ORIENTATIONS };
+
+/* Which orientation the element has, or by its class; ORIENTATIONS for none. */
+static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *const *names) {
+  size_t kind = 0, others;
+  while (kind < ORIENTATIONS && !has_attribute(node, names[kind])) kind++;
+  for (others = kind + 1; others < ORIENTATIONS && !has_attribute(node, names[others]);) others++;
+  if (others < ORIENTATIONS)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "<%s> has %s and %s; expected one of them",
+                 (const char *)node->name, names[kind], names[others]);
+  if (kind < ORIENTATIONS) return kind;
+  kind = 0;
+  while (kind < ORIENTATIONS && mjcf_text(mjcf, node, names[kind]) == NULL) kind++;
+  return kind;
+}
+
+struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const names[ORIENTATIONS] = {"quat", "axisangle", "euler", "xyaxes", "zaxis"};
+  static const size_t counts[ORIENTATIONS] = {4, 4, 3, 6, 3};
+  struct Placement place = no_displacement;
+  double v[6];
+  mjcf_numbers(mjcf, node, "pos", 3, 3, place.translation);
+  size_t kind = orientation_of(mjcf, node, names);
+  if (kind == ORIENTATIONS || mjcf_numbers(mjcf, node, names[kind], counts[kind], counts[kind], v) == 0) return place;
+  bool is_right = true;
+  if (kind == QUATERNION) {
+    is_right = v[0] != 0 || v[1] != 0 || v[2] != 0 || v[3] != 0;
+    place.rotation = of_quaternion(v);
+  } else if (kind == AXIS_AND_ANGLE) {
+    is_right = make_unit(v) > 0;
+    place.rotation = rotation_about(v, v[3] * mjcf->angle);
+  } else if (kind == EULER_ANGLES) place.rotation = of_euler(mjcf, v);
+  else if (kind == TWO_AXES) is_right = of_axes(v, &place.rotation);
+  else {
+    is_right = make_unit(v) > 0;
+    place.rotation = rotation_of_z(v);
+  }
+  if (!is_right)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "%s=\"%s\" of <%s> gives no direction; expected vectors that are not 0, and not parallel", names[kind],
+                 mjcf_text(mjcf, node, names[kind]), (const char *)node->name);
+  return place;
+}
+
+void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]) {
+  static const char *const words[] = {"auto", "true", "false", NULL};
+  size_t word = mjcf_word(mjcf, node, is_limited, words);
+  limits[0] = limits[1] = NAN;
+  double read[2] = {0};
+  bool is_given = mjcf_numbers(mjcf, node, range, 2, 2, read) > 0;
+  if (word == 2 || (word == 0 && !(is_given && mjcf->has_automatic_limits))) return;
+  if (read[0] < read[1]) memcpy(limits, read, sizeof read);
+  else
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "%s of <%s> is from %g to %g; expected the lower one first", range, (const char *)node->name, read[0],
+                 read[1]);
+}
+
+void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+  static const char *const nothing[] = {"false", "none", "auto", "disable"};
+  const char *text = mjcf_text(mjcf, node, name);
+  double values[NUMBERS_LIMIT];
+  if (text == NULL) return;
+  for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
+    if (strcmp(text, nothing[i]) == 0) return;
+  size_t count = parse_numbers(text, NUMBERS_LIMIT, values), i = 0;
+  while (i < count && values[i] == 0) i++;
+  if (count > 0 && i == count) return;
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+               "%s=\"%.60s\" of <%s> is not read, and would change the motion; expected a file without it", name, text,
+               (const char *)node->name);
+}

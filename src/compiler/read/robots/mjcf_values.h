@@ -1,0 +1,57 @@
+/* What attributes of MJCF say: in an element or by its class, in numbers, and as places. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "read/robots/robot_file.h"
+
+enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
+
+struct Mjcf {
+  struct RobotFile file;
+  xmlNodePtr root;
+  double angle; /* rad of the file's unit of angles */
+  const char *euler_sequence;
+  bool has_automatic_limits;
+  enum InertiaFromGeoms inertia_from_geoms;
+  size_t unnamed_count; /* bodies without a name so far */
+};
+
+/* An attribute of the element, or of its class or what this inherits; NULL where none of them has it. */
+const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
+
+/* Whether the element's class, or one that this inherits, says anything of elements of a kind. */
+bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element);
+
+/* Reports classes that are not defined, or twice, in an element and all that is in it. */
+void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* As many numbers as there are, least to most; 0 where there is none, which leaves the values as they are, or after reporting a mistake. */
+size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t least, size_t most, double *values);
+
+/* One number, of which the usual one is given. */
+double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
+
+/* The same, of which a negative one is reported. */
+double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
+
+bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value);
+
+/* Which of the words, the last of which is NULL, the attribute is; the first where it is missing; reports any other. */
+size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *const *words);
+
+/* The place by pos and one of quat, axisangle, euler, xyaxes, zaxis. */
+struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* The turn that brings z along this direction, which is not 0. */
+struct Matrix3 rotation_of_z(const double direction[3]);
+
+/* Divides a vector by its length, and returns this; leaves a 0. */
+double make_unit(double vector[3]);
+
+/* Limits by the range and the attribute that says whether it holds; NAN for none. */
+void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]);
+
+/* Reports an attribute that is not 0, false, none or missing, since it would change the motion. */
+void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name);

@@ -1,0 +1,118 @@
+#include "read/robots/robot_file.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/xml/nodes.h"
+
+void leave_out(struct RobotFile *file, const char *what) {
+  for (size_t i = 0; i < file->left_out_count; i++)
+    if (strcmp(file->left_out[i], what) == 0) return;
+  if (file->left_out_count < LEFT_OUT_LIMIT) file->left_out[file->left_out_count++] = copy_text(what);
+}
+
+void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    size_t i = 0;
+    while (names[i] != NULL && !is_element(node, names[i])) i++;
+    if (names[i] == NULL) leave_out(file, (const char *)node->name);
+  }
+}
+
+xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name) {
+  xmlNodePtr found = NULL;
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (!is_element(node, name)) continue;
+    if (found != NULL)
+      report_error(file->diagnostics, xmlGetLineNo(node), "a second <%s> in <%s>; expected one", name,
+                   (const char *)parent->name);
+    else found = node;
+  }
+  return found;
+}
+
+xmlNodePtr required_child_of(struct RobotFile *file, xmlNodePtr parent, const char *name) {
+  xmlNodePtr found = child_of(file, parent, name);
+  if (found == NULL)
+    report_error(file->diagnostics, xmlGetLineNo(parent), "<%s> has no <%s>; expected one in it",
+                 (const char *)parent->name, name);
+  return found;
+}
+
+char *required_attribute(struct RobotFile *file, xmlNodePtr node, const char *name) {
+  char *text = attribute(node, name);
+  if (text != NULL && *text != '\0') return text;
+  report_error(file->diagnostics, xmlGetLineNo(node), "<%s> needs the attribute '%s'; expected %s=\"...\"",
+               (const char *)node->name, name, name);
+  return text != NULL ? text : copy_text("");
+}
+
+size_t parse_numbers(const char *text, size_t limit, double *values) {
+  static const char blanks[] = " \t\r\n";
+  size_t count = 0;
+  text += strspn(text, blanks);
+  for (; *text != '\0'; count++) {
+    char *end;
+    size_t decimal = strspn(text, "+-.0123456789eE"); /* strtod also reads 0x1 and nan */
+    if (count == limit) return 0;
+    values[count] = strtod(text, &end);
+    if (end == text || (size_t)(end - text) > decimal || !isfinite(values[count])) return 0;
+    text = end + strspn(end, blanks);
+    if (text == end && *text != '\0') return 0;
+  }
+  return count;
+}
+
+bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, size_t count, double *values) {
+  char *text = node != NULL ? attribute(node, name) : NULL;
+  if (text == NULL) return false;
+  double read[3] = {0};
+  if (parse_numbers(text, count, read) == count) memcpy(values, read, count * sizeof *values);
+  else
+    report_error(file->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
+                 (const char *)node->name,
+                 count == 1 ? "a number such as 2, -0.5 or 1e-3" : "three numbers such as 0 0.5 -1e-3");
+  return true;
+}
+
+double required_number(struct RobotFile *file, xmlNodePtr node, const char *name) {
+  double value = 0;
+  char *text = required_attribute(file, node, name);
+  if (*text != '\0') read_numbers(file, node, name, 1, &value);
+  return value;
+}
+
+double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *name) {
+  double value = 0;
+  read_numbers(file, node, name, 1, &value);
+  if (value < 0)
+    report_error(file->diagnostics, xmlGetLineNo(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
+                 value, (const char *)node->name);
+  return value;
+}
+
+void tell_left_out(struct RobotFile *file) {
+  char *list = copy_text("");
+  for (size_t i = 0; i < file->left_out_count; i++)
+    list = format_text("%s%s%s", list, i > 0 ? ", " : "", file->left_out[i]);
+  if (*list != '\0' && file->diagnostics->errors == 0)
+    report_warning(file->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
+  if (file->mesh_problem != NULL && file->diagnostics->errors == 0)
+    report_warning(file->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", file->mesh_problems,
+                   file->mesh_problems == 1 ? " is" : "es are", file->mesh_problem);
+}
+
+void add_link(struct RobotFile *file, struct Link *link) {
+  struct Robot *robot = file->robot;
+  robot->links = make_room(robot->links, robot->link_count, sizeof(struct Link *));
+  robot->links[robot->link_count++] = link;
+}
+
+void add_joint(struct RobotFile *file, struct Joint *joint) {
+  struct Robot *robot = file->robot;
+  robot->joints = make_room(robot->joints, robot->joint_count, sizeof(struct Joint *));
+  robot->joints[robot->joint_count++] = joint;
+}

@@ -1,0 +1,48 @@
+/* What the readers of robots share: a file's numbers and names, and what was left out of it. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <libxml/tree.h>
+
+#include "base/diagnostics.h"
+#include "read/robots/robot.h"
+
+enum { LEFT_OUT_LIMIT = 20 };
+
+struct RobotFile {
+  struct Robot *robot;
+  const struct RobotOptions *options;
+  struct Diagnostics *diagnostics;
+  char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
+  size_t left_out_count;
+  char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
+  size_t mesh_problems; /* how many there are */
+};
+
+void leave_out(struct RobotFile *file, const char *what);
+
+/* Notes the elements inside that are none of these names, of which the last is NULL. */
+void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names);
+
+/* Warns of all that was left out, unless there were errors. */
+void tell_left_out(struct RobotFile *file);
+
+/* The one element of this name in another one; NULL where there is none. */
+xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name);
+xmlNodePtr required_child_of(struct RobotFile *file, xmlNodePtr parent, const char *name);
+
+/* "" after reporting that there is none. */
+char *required_attribute(struct RobotFile *file, xmlNodePtr node, const char *name);
+
+/* Finite decimal numbers with blanks between them, as many as the limit at most; how many; 0 where the text is anything else. */
+size_t parse_numbers(const char *text, size_t limit, double *values);
+
+/* One number or three; leaves the values as they are where there is no such attribute, or no such element (NULL); returns whether there is. */
+bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, size_t count, double *values);
+double required_number(struct RobotFile *file, xmlNodePtr node, const char *name);
+double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *name);
+
+void add_link(struct RobotFile *file, struct Link *link);
+void add_joint(struct RobotFile *file, struct Joint *joint);

@@ -1,0 +1,102 @@
+"""Broken MJCF files: each must give this line and this message, and leave no output."""
+
+import re
+
+import pytest
+
+from fmu import lagc
+
+# A right robot; the cases below replace one line of it (counted from 1).
+RIGHT = """\
+<mujoco model="arm">
+  <compiler angle="radian"/>
+  <default><joint damping="0.1"/><default class="a"><geom density="500"/></default></default>
+  <option gravity="0 0 -9.81"/>
+  <worldbody>
+    <body name="upper">
+      <joint name="shoulder" axis="0 1 0" range="-1 1"/>
+      <geom type="capsule" size="0.05" fromto="0 0 0 0 0 -1"/>
+      <body name="lower" pos="0 0 -1" childclass="a">
+        <joint name="elbow" axis="0 1 0"/>
+        <geom type="box" size="0.1 0.1 0.5"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><motor name="push" joint="elbow" gear="2"/></actuator>
+</mujoco>
+"""
+UNKNOWN = "is not read, and would change the motion; expected"
+
+# What is wrong, the line replaced, its new text, the line and message expected.
+CASES = [
+    ("unit of angles", 2, '<compiler angle="grad"/>', 2, 'angle="grad" of <compiler> is not known; expected one of degree, radian'),
+    ("global coordinates", 2, '<compiler coordinate="global"/>', 2, 'coordinate="global" of <compiler>; expected local'),
+    ("sequence of angles", 2, '<compiler eulerseq="xyw"/>', 2, 'eulerseq="xyw" of <compiler>; expected three of the letters'),
+    ("mass of all", 2, '<compiler settotalmass="3"/>', 2, f'settotalmass="3" of <compiler> {UNKNOWN} a file without it'),
+    ("class twice", 3, '<default><default class="a"/><default class="a"/></default>', 3, "the class 'a' is already defined on line 3"),
+    ("class without name", 3, '<default><default/><default class="a"/></default>', 3, "a <default> in a <default> has no class"),
+    ("class inside itself", 3, '<default><default class="a"><default class="a"/></default></default>', 3, "the class 'a' is already defined on line 3"),
+    ("gravity", 4, '<option gravity="0 0 nan"/>', 4, 'gravity="0 0 nan" of <option>; expected 3 numbers'),
+    ("air", 4, '<option density="1.2"/>', 4, f'density="1.2" of <option> {UNKNOWN}'),
+    ("no damping", 4, '<option><flag passive="disable"/></option>', 4, 'passive="disable" of <flag> is not read'),
+    ("floats", 6, '<body name="upper" gravcomp="1">', 6, f'gravcomp="1" of <body> {UNKNOWN}'),
+    ("unknown class", 9, '<body name="lower" childclass="b">', 9, "there is no class 'b' for childclass of <body>"),
+    ("quaternion 0", 9, '<body name="lower" quat="0 0 0 0">', 9, 'quat="0 0 0 0" of <body> gives no direction'),
+    ("parallel axes", 9, '<body name="lower" xyaxes="1 0 0 2 0 0">', 9, 'xyaxes="1 0 0 2 0 0" of <body> gives no direction'),
+    ("two angles", 9, '<body name="lower" quat="1 0 0 0" euler="1 0 0">', 9, "<body> has quat and euler; expected one of them"),
+    ("position", 9, '<body name="lower" pos="0 1">', 9, 'pos="0 1" of <body>; expected 3 numbers'),
+    ("two bodies of one name", 9, '<body name="upper">', 9, "the link 'upper' is already defined on line 6"),
+    ("type of joint", 10, '<joint name="elbow" type="revolute"/>', 10, 'type="revolute" of <joint> is not known; expected one of hinge, slide, ball, free'),
+    ("axis", 10, '<joint name="elbow" axis="0 0 0"/>', 10, "the axis of the joint 'elbow' has the length 0"),
+    ("free joint in a body", 10, '<freejoint name="elbow"/>', 10, "the free joint 'elbow' is in the body 'lower'; expected it in a <body> of the <worldbody>"),
+    ("range", 10, '<joint name="elbow" range="1 -1"/>', 10, "range of <joint> is from 1 to -1; expected the lower one first"),
+    ("damped ball", 10, '<joint name="elbow" type="ball"/>', 10, f'damping="0.1" of <joint> {UNKNOWN}'),
+    ("damping", 10, '<joint name="elbow" damping="-1"/>', 10, 'damping="-1" of <joint> is negative'),
+    ("no mass", 11, '<geom size="0.1" mass="0"/>', 10, "the joint 'elbow' moves no inertia"),
+    ("no size", 11, "<geom/>", 11, "a <geom> of type sphere has a size of 0"),
+    ("mesh", 11, '<geom type="mesh" mesh="m"/>', 11, "the inertia of a <geom> of type mesh is not known; expected an <inertial>"),
+    ("plane between", 11, '<geom type="plane" fromto="0 0 0 1 1 1"/>', 11, "fromto of a <geom> gives no place"),
+    ("two inertias", 11, '<inertial mass="1" diaginertia="1 1 1" fullinertia="1 1 1 0 0 0"/>', 11, "<inertial> has diaginertia and fullinertia"),
+    ("kinds of actuators", 3, '<default><position kp="4"/><default class="a"/></default>', 15, "<motor> inherits the <position> of a <default>"),
+    ("no joint", 15, '<actuator><motor joint="wrist"/></actuator>', 15, "there is no joint 'wrist' for an actuator"),
+    ("muscle", 15, '<actuator><muscle joint="elbow"/></actuator>', 15, f"<muscle> {UNKNOWN} <motor>, <position>, <velocity> or <general>"),
+    ("dynamics", 15, '<actuator><general dyntype="filter" joint="elbow"/></actuator>', 15, 'dyntype="filter" of <general> is not known'),
+    ("tendon", 15, "<tendon/>", 15, f"<tendon> {UNKNOWN} a <spring>"),
+    ("include", 15, '<include file="x.xml"/>', 15, f"<include> {UNKNOWN} one file"),
+    ("weld", 15, '<equality><weld body1="upper"/></equality>', 15, f"<weld> {UNKNOWN} a <joint> that closes the loop"),
+    ("square", 15, '<equality><joint joint1="elbow" joint2="shoulder" polycoef="0 1 2"/></equality>', 15, "polycoef of <joint> is not linear"),
+]  # fmt: skip
+
+
+def check(folder, text, line, message):
+    (folder / "arm.xml").write_text(text)
+    result = lagc("arm.xml", "-o", "out", cwd=folder)
+    assert result.returncode == 1, result.stderr
+    assert re.search(rf"^arm\.xml:{line}: .*{re.escape(message)}", result.stderr, re.MULTILINE), result.stderr
+    assert not (folder / "out").exists()
+
+
+def test_the_right_robot_is_right(tmp_path):
+    (tmp_path / "arm.xml").write_text(RIGHT)
+    result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and result.stderr == ""
+
+
+@pytest.mark.parametrize("name, replaced, new, line, message", CASES, ids=[case[0] for case in CASES])
+def test_bad_line(name, replaced, new, line, message, tmp_path):
+    lines = RIGHT.splitlines()
+    lines[replaced - 1] = new
+    check(tmp_path, "\n".join(lines), line, message)
+
+
+def test_no_world(tmp_path):
+    check(tmp_path, "<mujoco>\n</mujoco>", 1, "<mujoco> has no <worldbody>; expected one in it")
+    check(tmp_path, "<mujoco>\n<worldbody/></mujoco>", 1, "no joint of the robot moves")
+
+
+def test_entities_that_multiply_are_refused(tmp_path):
+    entities = "".join(f'<!ENTITY a{i} "{"".join(f"&a{i - 1};" for _ in range(10))}">' for i in range(1, 12))
+    text = f'<!DOCTYPE mujoco [<!ENTITY a0 "lol">{entities}]>\n<mujoco model="&a11;"><worldbody/></mujoco>'
+    (tmp_path / "arm.xml").write_text(text)
+    result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and re.search(r"^arm\.xml:\d+: ", result.stderr, re.MULTILINE), result.stderr

@@ -1,0 +1,286 @@
+"""Accelerations of robots in MJCF at random states, against MuJoCo's from the same files, with contacts, limits and friction left out."""
+
+from ctypes import c_double
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Model
+
+import fmu
+from fmu import build_systems
+
+mujoco = pytest.importorskip("mujoco")
+pytestmark = pytest.mark.release
+
+STATES = 20
+CAMPAIGN = 100
+# One of each: units of angles, sequences of angles, places, classes that inherit, joints with anchors and refs, shapes, actuators.
+EACH = """\
+<mujoco model="each">
+  <compiler angle="degree" eulerseq="XYz"/>
+  <option gravity="0.5 -1 -9"/>
+  <default>
+    <joint damping="0.1" armature="0.02"/>
+    <geom density="500"/>
+    <default class="stiff"><joint stiffness="3" springref="20"/><default class="soft"><joint stiffness="1"/></default></default>
+  </default>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <frame pos="0.1 0 0" euler="5 6 7">
+      <body name="stand" pos="0 0 1" euler="10 20 30">
+        <joint name="turn" axis="0 0 1" ref="15"/>
+        <joint name="swing" axis="0 1 0.2" pos="0.1 0 0.2" class="stiff"/>
+        <geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0" axisangle="1 1 0 40"/>
+        <frame pos="0 0 0.3" quat="1 1 0 0"><geom type="cylinder" size="0.1 0.2" mass="2"/></frame>
+        <body name="lower" pos="0.3 0 0" childclass="soft" zaxis="1 0.2 0.3">
+          <joint name="slide" type="slide" axis="1 0 0" ref="0.1"/>
+          <geom type="capsule" fromto="0 0 0 0.1 0.2 0.4" size="0.05"/>
+          <geom type="ellipsoid" size="0.1 0.05 0.2" pos="0 0 0.1" quat="1 2 3 4"/>
+          <body name="tip" pos="0 0 0.4" xyaxes="1 1 0 0 1 1">
+            <joint name="ball" type="ball" damping="0" armature="0" stiffness="0" pos="0 0.1 0"/>
+            <inertial pos="0.05 0 0.1" mass="1.5" fullinertia="0.02 0.03 0.025 0.001 -0.002 0.003"/>
+            <geom type="sphere" size="0.1"/>
+          </body>
+        </body>
+      </body>
+    </frame>
+    <body name="drone" pos="1 2 3" euler="30 40 50">
+      <freejoint/><geom type="cylinder" size="0.2 0.1" pos="0.1 0.2 0"/>
+      <body name="rotor" pos="0 0 0.2">
+        <joint name="rotor" class="main" axis="0 0 -1" springref="30" stiffness="0.2"/><geom type="box" fromto="0 0 0 0.3 0 0" size="0.02"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="m" joint="turn" gear="5" ctrlrange="-1 1"/>
+    <position name="p" joint="swing" kp="10" kv="0.5" gear="2" forcerange="-3 4"/>
+    <velocity joint="slide" kv="7"/>
+    <general joint="rotor" gainprm="2" biastype="affine" biasprm="0.1 -0.3 -0.2"/>
+  </actuator>
+</mujoco>
+"""
+
+COUPLED = """\
+<mujoco model="coupled">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="a"><joint name="lead" axis="0 1 0" ref="0.3" damping="0.1"/><geom size="0.1" pos="0.3 0 0"/>
+      <body name="b" pos="0.4 0 0">
+        <joint name="follow" axis="0 1 1" ref="0.2" stiffness="3" springref="0.1" damping="0.2" armature="0.3"/><geom size="0.1" pos="0 0 0.3"/>
+        <body name="c" pos="0 0 0.4"><joint name="end" axis="1 0 0"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.2 0"/></body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position name="pull" joint="follow" gear="2" kp="5" kv="0.3"/><motor name="push" joint="end"/></actuator>
+  <equality><joint joint1="follow" joint2="lead" polycoef="0.1 -0.5 0 0 0"/></equality>
+</mujoco>
+"""
+
+
+class Generator:
+    """Random files: trees of at most five bodies."""
+
+    def __init__(self, seed):
+        self.random, self.bodies, self.joints, self.singles = np.random.default_rng(seed), 0, 0, []
+
+    def numbers(self, count, low=-1.0, high=1.0):
+        return " ".join(f"{x:.6g}" for x in self.random.uniform(low, high, count))
+
+    def choice(self, *options):
+        return options[self.random.integers(len(options))]
+
+    def turn(self):
+        ways = {"quat": 4, "axisangle": 4, "euler": 3, "xyaxes": 6, "zaxis": 3}
+        way = self.choice("", *ways)
+        return f'{way}="{self.numbers(ways[way])}"' if way else ""
+
+    def geom(self):
+        size, kind = self.numbers(3, 0.05, 0.3), self.choice("sphere", "capsule", "cylinder", "box", "ellipsoid")
+        weight = self.choice("", f'mass="{self.numbers(1, 0.5, 3)}"', f'density="{self.numbers(1, 300, 3000)}"')
+        place = f'pos="{self.numbers(3, -0.3, 0.3)}" {self.turn()}'
+        if kind not in ("sphere",) and self.random.random() < 0.3:
+            place = f'fromto="{self.numbers(6, -0.5, 0.5)}"'
+        return f'<geom type="{kind}" size="{size}" {place} {weight}/>'
+
+    def inertial(self):
+        a, b = self.random.uniform(0.02, 0.1, 2)
+        moments = f"{a:.6g} {b:.6g} {self.random.uniform(max(a, b) - min(a, b) + 0.01, a + b - 0.005):.6g}"
+        if self.random.random() < 0.5:
+            return f'<inertial pos="{self.numbers(3)}" mass="{self.numbers(1, 0.5, 3)}" fullinertia="0.1 0.12 0.11 {self.numbers(3, -0.02, 0.02)}"/>'
+        return f'<inertial pos="{self.numbers(3)}" {self.turn()} mass="{self.numbers(1, 0.5, 3)}" diaginertia="{moments}"/>'
+
+    def joint(self):
+        self.joints += 1
+        name, kind = f"j{self.joints}", self.choice("hinge", "hinge", "slide")
+        self.singles.append(name)
+        ways = {"ref": (-1, 1), "springref": (-1, 1), "stiffness": (0, 9), "damping": (0, 2), "armature": (0, 0.5)}
+        given = " ".join(f'{way}="{self.numbers(1, *limits)}"' for way, limits in ways.items() if self.random.random() < 0.5)
+        classes = self.choice("", 'class="c1"', 'class="c2"')
+        anchor = self.choice("", f'pos="{self.numbers(3)}"')
+        return f'<joint name="{name}" type="{kind}" axis="{self.numbers(3)}" {anchor} {given} {classes}/>'
+
+    def body(self, depth=0):
+        self.bodies += 1
+        name = f"b{self.bodies}"
+        kind = self.choice("fixed" if depth else "single", "single", "single", "several", "ball", "single" if depth else "free")
+        joints = {"fixed": 0, "single": 1, "several": 2}
+        inside = [self.joint() for _ in range(joints.get(kind, 0))]
+        if kind == "free":
+            inside.append("<freejoint/>")
+        if kind == "ball":
+            self.joints += 1
+            plain = 'stiffness="0" damping="0" armature="0"'
+            inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {plain}/>')
+        inside += [self.geom() for _ in range(self.random.integers(1, 3))]
+        if self.random.random() < 0.4:
+            inside.append(self.inertial())
+        while self.bodies < 5 and self.random.random() < 0.6:
+            inside.append(self.body(depth + 1))
+        child_class = self.choice("", 'childclass="c1"', 'childclass="c2"')
+        return f'<body name="{name}" pos="{self.numbers(3)}" {self.turn()} {child_class}>{"".join(inside)}</body>'
+
+    def actuator(self, joint):
+        limits = self.choice("", 'ctrlrange="-1 1.5"', 'forcerange="-2 3"')
+        gear = self.choice("", f'gear="{self.numbers(1, -3, 3)}"')
+        law = self.choice("motor", f'position kp="{self.numbers(1, 1, 9)}" kv="{self.numbers(1, 0, 2)}"', f'velocity kv="{self.numbers(1, 0, 2)}"',
+                          f'general gainprm="{self.numbers(1)}" biastype="affine" biasprm="{self.numbers(3)}"')  # fmt: skip
+        return f'<{law} joint="{joint}" {gear} {limits}/>'
+
+    def text(self):
+        sequence = "".join(self.choice(*"xyzXYZ") for _ in range(3))
+        bodies = "".join(self.body() for _ in range(self.random.integers(1, 3)))
+        actuators = "".join(self.actuator(joint) for joint in self.singles if self.random.random() < 0.7)
+        return (
+            f'<mujoco model="r"><compiler angle="{self.choice("degree", "radian")}" eulerseq="{sequence}"/>'
+            f'<option gravity="{self.choice("0 0 -9.81", self.numbers(3))}"/>'
+            f'<default><joint damping="{self.numbers(1, 0, 1)}"/><geom density="700"/>'
+            f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default></default>'
+            f"</default><worldbody>{bodies}</worldbody><actuator>{actuators}</actuator></mujoco>"
+        )
+
+
+FILES = {"Each": EACH} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def robots(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mjcf")
+    files = FILES | {"Coupled": COUPLED}
+    for name, text in files.items():
+        (folder / f"{name}.xml").write_text(text)
+    build_systems("mujoco", {name: f'<system name="{name}"><include file="{folder / name}.xml" as="r"/></system>' for name in files})
+
+
+def product(a, b):
+    """Of quaternions, the real part first."""
+    return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
+
+
+def turning(quaternion, angular_velocity):
+    """Of a quaternion, by the angular velocity along the body's axes."""
+    return product(quaternion, np.array([0, *angular_velocity])) / 2
+
+
+class Reference:
+    """MuJoCo's model at the states of the FMU."""
+
+    def __init__(self, text):
+        self.model = mujoco.MjModel.from_xml_string(text)
+        flags = mujoco.mjtDisableBit
+        self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_LIMIT | flags.mjDSBL_FRICTIONLOSS
+        self.data = mujoco.MjData(self.model)
+
+    def names(self):
+        """Of the FMU's coordinates, each with its place in qpos."""
+        names = []
+        for i in range(self.model.njnt):
+            joint = self.model.joint(i)
+            name = joint.name or self.model.body(joint.bodyid[0]).name
+            ends = {0: ["_x", "_y", "_z", "_qw", "_qx", "_qy", "_qz"], 1: ["_qw", "_qx", "_qy", "_qz"]}.get(joint.type[0], [""])
+            names += [f"r.{name}{end}" for end in ends]
+        return names
+
+    def draw(self, random):
+        """A state of MuJoCo's and its controls."""
+        self.data.qpos, self.data.qvel = random.uniform(-1, 1, self.model.nq), random.uniform(-2, 2, self.model.nv)
+        mujoco.mj_normalizeQuat(self.model, self.data.qpos)
+        self.data.ctrl = random.uniform(-3, 3, self.model.nu)
+        mujoco.mj_forward(self.model, self.data)
+
+    def coordinates(self):
+        """The FMU's coordinates, their velocities and accelerations."""
+        position, velocity, acceleration = [], [], []
+        for i in range(self.model.njnt):
+            kind, q, v = self.model.jnt_type[i], self.model.jnt_qposadr[i], self.model.jnt_dofadr[i]
+            if kind == 0:
+                position += [*self.data.qpos[q : q + 3]]
+                velocity += [*self.data.qvel[v : v + 3]]
+                acceleration += [*self.data.qacc[v : v + 3]]
+                q, v = q + 3, v + 3
+            if kind in (0, 1):
+                turned, omega, alpha = self.data.qpos[q : q + 4], self.data.qvel[v : v + 3], self.data.qacc[v : v + 3]
+                rate = turning(turned, omega)
+                position += [*turned]
+                velocity += [*rate]
+                acceleration += [*(turning(rate, omega) + turning(turned, alpha))]
+            else:
+                position.append(self.data.qpos[q])
+                velocity.append(self.data.qvel[v])
+                acceleration.append(self.data.qacc[v])
+        return np.array(position), np.array(velocity), np.array(acceleration)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_accelerations(name, open_fmu):
+    reference, instance = Reference(FILES[name]), open_fmu(name, kind=FMU2Model)
+    instance.initialize({})
+    instance.fmu.enterContinuousTimeMode()
+    states, inputs, names = fmu.states_of(name), fmu.names_of(name, "input"), reference.names()
+    order = [states.index(joint) for joint in names]
+    order += [states.index(f"{joint}_velocity") for joint in names]
+    assert len(order) == len(states) and len(inputs) == reference.model.nu
+    random = np.random.default_rng(1)
+    state, derivatives = (c_double * len(states))(), (c_double * len(states))()
+    for _ in range(STATES):
+        reference.draw(random)
+        position, velocity, expected = reference.coordinates()
+        instance.set(dict(zip(inputs, reference.data.ctrl)))
+        values = np.zeros(len(states))
+        values[order] = [*position, *velocity]
+        state[:] = values
+        instance.fmu.setContinuousStates(state, len(state))
+        instance.fmu.enterEventMode()  # where the limits of controls and forces are seen
+        instance.fmu.newDiscreteStates()
+        instance.fmu.enterContinuousTimeMode()
+        instance.fmu.getDerivatives(derivatives, len(derivatives))
+        found = np.array(derivatives)[order][len(names) :]
+        assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))
+
+
+def test_joints_that_follow_others(open_fmu):
+    """MuJoCo's own constraint is soft: here its mass matrix and forces are reduced to the velocities that the constraint leaves."""
+    reference, instance = Reference(COUPLED), open_fmu("Coupled", kind=FMU2Model)
+    model, data = reference.model, reference.data
+    share = np.array([[1.0, 0.0], [-0.5, 0.0], [0.0, 1.0]])
+    random = np.random.default_rng(1)
+    instance.initialize({})
+    instance.fmu.enterContinuousTimeMode()
+    names = fmu.states_of("Coupled")
+    state, derivatives = (c_double * 4)(), (c_double * 4)()
+    for _ in range(STATES):
+        free, rates = random.uniform(-1, 1, 2), random.uniform(-2, 2, 2)
+        data.qpos, data.qvel = [free[0], 0.2 + 0.1 - 0.5 * (free[0] - 0.3), free[1]], share @ rates
+        data.ctrl = random.uniform(-3, 3, 2)
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((3, 3))
+        for i in range(3):  # columns of the mass matrix
+            mujoco.mj_mulM(model, data, mass[i], np.eye(3)[i])
+        forces = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
+        expected = np.linalg.solve(share.T @ mass @ share, share.T @ forces)
+        instance.set({"r.pull_control": data.ctrl[0], "r.push_control": data.ctrl[1]})
+        values = {"r.lead": free[0], "r.end": free[1], "r.lead_velocity": rates[0], "r.end_velocity": rates[1]}
+        state[:] = [values[name] for name in names]
+        instance.fmu.setContinuousStates(state, 4)
+        instance.fmu.getDerivatives(derivatives, 4)
+        found = [derivatives[names.index(f"r.{name}_velocity")] for name in ("lead", "end")]
+        assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))
