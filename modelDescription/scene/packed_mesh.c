@@ -26,28 +26,36 @@ static uint64_t number_of(const struct PackedMesh *packed, const struct Mesh *me
   return (uint64_t)llround((mesh->points[point][axis] - packed->least[axis]) / packed->step);
 }
 
-/* For each point the first one in its cell, where a side has so many cells. */
-static void merge_points(const struct PackedMesh *packed, const struct Mesh *mesh, uint64_t cells, struct Cell *sorted,
-                         size_t *merged) {
-  for (size_t i = 0; i < mesh->point_count; i++) {
-    sorted[i] = (struct Cell){0, i};
+/* Puts what is left of the points, sorted[], into cells, of which a side has so many; returns how many are left. */
+static size_t merge_points(const struct PackedMesh *packed, const struct Mesh *mesh, uint64_t cells,
+                           struct Cell *sorted, size_t count, size_t *merged) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++) {
+    sorted[i].key = 0;
     for (int axis = 0; axis < 3; axis++)
-      sorted[i].key = sorted[i].key << 16 | number_of(packed, mesh, i, axis) * cells / STEPS;
+      sorted[i].key = sorted[i].key << 16 | number_of(packed, mesh, sorted[i].point, axis) * cells / STEPS;
   }
-  qsort(sorted, mesh->point_count, sizeof *sorted, compare_cells);
-  for (size_t i = 0, first = 0; i < mesh->point_count; i++) {
-    if (sorted[i].key != sorted[first].key) first = i;
-    merged[sorted[i].point] = sorted[first].point;
+  qsort(sorted, count, sizeof *sorted, compare_cells);
+  for (size_t i = 0; i < count; i++) {
+    if (kept == 0 || sorted[i].key != sorted[kept - 1].key) sorted[kept++] = sorted[i];
+    merged[sorted[i].point] = sorted[kept - 1].point;
   }
+  return kept;
+}
+
+/* The point that it has become, by one merging after another. */
+static size_t merged_into(size_t *merged, size_t point) {
+  while (merged[point] != point) point = merged[point] = merged[merged[point]];
+  return point;
 }
 
 /* Whether the triangle has three corners still. */
-static bool is_left(const struct Mesh *mesh, size_t triangle, const size_t *merged, size_t corners[3]) {
-  for (int k = 0; k < 3; k++) corners[k] = merged[mesh->triangles[triangle][k]];
+static bool is_left(const struct Mesh *mesh, size_t triangle, size_t *merged, size_t corners[3]) {
+  for (int k = 0; k < 3; k++) corners[k] = merged_into(merged, mesh->triangles[triangle][k]);
   return corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
 }
 
-static size_t count_left(const struct Mesh *mesh, const size_t *merged) {
+static size_t count_left(const struct Mesh *mesh, size_t *merged) {
   size_t count = 0, corners[3];
   for (size_t i = 0; i < mesh->triangle_count; i++) count += is_left(mesh, i, merged, corners);
   return count;
@@ -78,7 +86,7 @@ static char *text_of_numbers(const struct Numbers *numbers) {
 }
 
 /* Points are numbered as triangles name them. */
-static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, const size_t *merged) {
+static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, size_t *merged) {
   struct Numbers points = {NULL, 0}, triangles = {NULL, 0};
   size_t *numbers = allocate(mesh->point_count, sizeof *numbers), count = 0, corners[3];
   for (size_t i = 0; i < mesh->triangle_count; i++) {
@@ -102,11 +110,12 @@ struct PackedMesh pack_mesh(const struct Mesh *mesh) {
   if (!(packed.step > 0.0)) packed.step = 1.0;
   size_t *merged = allocate(mesh->point_count, sizeof *merged);
   struct Cell *sorted = allocate(mesh->point_count, sizeof *sorted);
+  for (size_t i = 0; i < mesh->point_count; i++) sorted[i].point = merged[i] = i;
   uint64_t cells = STEPS;
-  merge_points(&packed, mesh, cells, sorted, merged);
+  size_t count = merge_points(&packed, mesh, cells, sorted, mesh->point_count, merged);
   while (count_left(mesh, merged) > MOST_DRAWN) {
     cells = cells > COARSE ? COARSE : cells * 7 / 10;
-    merge_points(&packed, mesh, cells, sorted, merged);
+    count = merge_points(&packed, mesh, cells, sorted, count, merged);
   }
   write_numbers(&packed, mesh, merged);
   release(sorted);

@@ -104,7 +104,7 @@ class Mesh(ctypes.Structure):
 def library():
     """The room of lagc alone."""
     sources = [*(ROOT / "src/compiler/read/meshes").glob("*.c"), ROOT / "src/compiler/model/mesh.c"]
-    sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "sorting", "platform")]
+    sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "paths", "platform", "sorting")]
     path = BUILD / "meshes" / "room.so"
     with alone(BUILD / "meshes" / "room.lock"):
         subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-D_XOPEN_SOURCE=700", f"-I{ROOT}/src/compiler", *sources, "-lm", "-o", path], check=True)
@@ -143,10 +143,14 @@ def test_hulls(library):
 
 
 def test_hulls_of_planes(library):
-    """However many points lie in the faces and edges, the corners are those of the cube, also of one that is turned."""
+    """
+    However many points lie in the faces and edges, the corners are those of the cube, also of one that is turned, and of one whose faces
+    bulge by half of the tolerance.
+    """
     points = grid_on_cube(12)
-    for turn in [Rotation.identity(), *Rotation.random(20, random_state=2)]:
-        found, _ = corners_of(library, turn.apply(points) + 0.3)
+    bulging = points * (1 + 5e-6 * np.prod(1 - np.sort(np.abs(2 * points))[:, :2] ** 2, axis=1, keepdims=True))
+    for turn, solid in product([Rotation.identity(), *Rotation.random(20, random_state=2)], (points, bulging)):
+        found, _ = corners_of(library, turn.apply(solid) + 0.3)
         assert sorted(map(tuple, np.round(points[found], 3))) == sorted(map(tuple, CUBE))
     for flat in (points[:, :] * [1, 1, 0], points * [1, 0, 0], points * 0 + 0.3, points * [1, 1, 1e-6]):
         for turn in [Rotation.identity(), *Rotation.random(3, random_state=2)]:
@@ -214,14 +218,15 @@ def test_files_that_are_wrong(name, content, message, tmp_path):
 
 
 def test_what_other_programs_write(tmp_path):
-    """Comments, colours, texture and normals, lines that go on, capital letters, ends of lines as on Windows, points behind the polygons' ones."""
+    """Comments, colours, texture and normals, lines that go on, capital letters, ends of lines as on Windows, points behind the polygons' ones, and numbers that count back."""
     lines = [f"v {x} {y} {z} 0.5 0.5 0.5" for x, y, z in CUBE]
     text = "# made\r\nmtllib a.mtl\r\no cube\r\n" + "\r\n".join(lines) + "\r\nvn 0 0 1\r\nvt 0 0\r\ns off\r\nusemtl red\r\n"
     text += "".join(f"f {a + 1}/1/1 {b + 1}//1 \\\r\n {c + 1}/1 {d + 1} # a square\r\n" for a, b, c, d in SQUARES)
     assert written(tmp_path, "a.obj", text + "v 7 7 7").returncode == 0
     scene = (tmp_path / "out" / "modelDescription.xml").read_text()
-    assert written(tmp_path, "a.obj", OBJ).returncode == 0
-    assert scene == (tmp_path / "out" / "modelDescription.xml").read_text()
+    for content in (OBJ, obj_text(CUBE, SQUARES, -8)):
+        assert written(tmp_path, "a.obj", content).returncode == 0
+        assert scene == (tmp_path / "out" / "modelDescription.xml").read_text()
     assert written(tmp_path, "a.stl", STL.upper().replace("SOLID", "solid", 1)).returncode == 0
 
 
@@ -235,7 +240,7 @@ def test_what_other_programs_write(tmp_path):
         ('type="mesh" file="a.stl" scale="1e-12"', "no further than 1e-9 m; expected another scale"),
         ('type="mesh" file="a.stl" radius="1"', "the shape 's' is a mesh, which has no radius"),
         ('type="sphere" radius="1" file="a.stl"', "the shape 's' is a sphere, which has no file"),
-        ('type="sphere" radius="1" color="red"', "color"),
+        ('type="sphere" radius="1" color="red"', 'color="red" of <shape> is not a color; expected one such as #ff8000'),
     ],
 )
 def test_messages(attributes, message, tmp_path):

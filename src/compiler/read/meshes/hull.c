@@ -14,7 +14,8 @@ static const double tolerance = 1e-5 * STEPS, tie = 2.0; /* steps */
 /* A point on the grid. */
 struct Site {
   int64_t at[3];
-  size_t point; /* of the mesh */
+  size_t point;     /* of the mesh */
+  bool is_needless; /* as a corner */
 };
 
 /* Seen from outside its corners run anticlockwise. */
@@ -213,35 +214,45 @@ static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *st
   return count;
 }
 
-/* Takes a site out of the list, whose order stays. */
-static void drop_site(struct Site *sites, size_t *count, const struct Site *site) {
-  size_t place = (size_t)(site - sites);
-  --*count;
-  for (size_t i = place; i < *count; i++) sites[i] = sites[i + 1];
+/* Takes needless corners out of the hull, and marks their sites; returns how many. */
+static size_t drop_needless(struct Hull *hull, struct Site *sites) {
+  size_t dropped = 0, i = 0;
+  while (i < hull->corner_count) {
+    if (is_needless(hull, i)) {
+      sites[hull->corners[i] - sites].is_needless = true;
+      hull->corner_count--;
+      for (size_t k = i; k < hull->corner_count; k++) hull->corners[k] = hull->corners[k + 1];
+      dropped++;
+    } else i++;
+  }
+  return dropped;
 }
 
-/* Among the corners; their number where none is. */
-static size_t first_needless(const struct Hull *hull) {
-  size_t i = 0;
-  while (i < hull->corner_count && !is_needless(hull, i)) i++;
-  return i;
+/* Without those that are marked; returns how many are left. */
+static size_t drop_marked(struct Site *sites, size_t count) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++)
+    if (!sites[i].is_needless) sites[kept++] = sites[i];
+  return kept;
 }
 
 bool mesh_find_corners(struct Mesh *mesh) {
   if (mesh->corner_count > 0) return true;
   struct Site *sites = allocate(mesh->point_count, sizeof *sites);
   double step, lack = 0.0;
-  size_t count = find_sites(mesh, sites, &step), needless = 0;
+  size_t count = find_sites(mesh, sites, &step), dropped = 0;
   struct Hull hull = {.corner_count = 0};
-  bool is_solid = grow_hull(&hull, sites, count, tolerance, &lack);
-  while (is_solid && (needless = first_needless(&hull)) < hull.corner_count) {
-    drop_site(sites, &count, hull.corners[needless]);
-    is_solid = grow_hull(&hull, sites, count, tolerance, &lack);
-  }
-  mesh->corner_count = is_solid ? hull.corner_count : 0;
+  bool is_full = false;
+  do { /* where needless corners took the room of others, again without them */
+    count = drop_marked(sites, count);
+    if (!grow_hull(&hull, sites, count, tolerance, &lack)) hull.corner_count = 0;
+    is_full = hull.corner_count == MOST_CORNERS;
+    dropped = drop_needless(&hull, sites);
+  } while (is_full && dropped > 0);
+  mesh->corner_count = hull.corner_count;
   mesh->lack = lack * step;
   for (size_t i = 0; i < mesh->corner_count; i++) mesh->corners[i] = hull.corners[i]->point;
   sort_sizes(mesh->corners, mesh->corner_count);
   release(sites);
-  return is_solid;
+  return mesh->corner_count > 0;
 }

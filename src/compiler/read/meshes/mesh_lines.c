@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-enum { TRIANGLE_LIMIT = 2000000 };
+enum { TRIANGLE_LIMIT = 1000000 };
 
 /* Blanks, and ends of lines that a backslash takes away. */
 static void skip_blanks(struct MeshLines *lines) {

@@ -15,6 +15,7 @@ static bool read_scale(struct Reader *reader, xmlNodePtr node, double scale[3]) 
   char *text = attribute(node, "scale");
   size_t count = 0;
   bool is_right = true;
+  int errors = reader->diagnostics->errors;
   for (int i = 0; i < 3; i++) scale[i] = 1.0;
   if (text == NULL) return true;
   for (text += strspn(text, blanks); *text != '\0' && is_right; text += strspn(text, blanks)) {
@@ -27,7 +28,7 @@ static bool read_scale(struct Reader *reader, xmlNodePtr node, double scale[3]) 
   }
   if (count == 1) scale[1] = scale[2] = scale[0];
   is_right = is_right && (count == 1 || count == 3);
-  if (!is_right)
+  if (!is_right && reader->diagnostics->errors == errors)
     report_at(reader, node,
               "scale=\"%.60s\" of <shape>; expected a number other than 0, or three of them such as 1 1 -1",
               attribute(node, "scale"));

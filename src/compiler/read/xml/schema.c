@@ -204,8 +204,10 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
     what_then = format_text("is too long; expected at most %s characters", (const char *)error->str3);
     break;
   case XML_SCHEMAV_CVC_PATTERN_VALID:
-    what_then = format_text("is not a name; expected letters a to z, digits and _, with no digit first%s",
-                            strstr(error->str2, "\\[") != NULL ? ", and an index as in name[1]" : "");
+    if (strcmp(name, "color") == 0) what_then = copy_text("is not a color; expected one such as #ff8000, or #ff800080");
+    else
+      what_then = format_text("is not a name; expected letters a to z, digits and _, with no digit first%s",
+                              strstr(error->str2, "\\[") != NULL ? ", and an index as in name[1]" : "");
     break;
   case XML_SCHEMAV_CVC_ENUMERATION_VALID: {
     char *list = remedy(value, choices_of_value(check, element, name));
