@@ -133,10 +133,10 @@ static bool print_words(void) {
 }
 
 /* Bytes that systems within the other limits hardly need. */
-enum { MEMORY_LIMIT = 512 << 20 };
+enum { MEMORY_LIMIT = 640 << 20 };
 
 static _Noreturn void end_without_memory(void) {
-  fputs("lagc: out of memory: the system needs more than there is, or more than 512 MB; expected fewer or shorter "
+  fputs("lagc: out of memory: the system needs more than there is, or more than 640 MB; expected fewer or shorter "
         "repetitions, tables, frames, constraints or outputs\n",
         stderr);
   exit(1);

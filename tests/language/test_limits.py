@@ -49,7 +49,7 @@ REFUSED |= {
         '<output name="o[0]">x</output>' + loops(("1", "9999"), content='<output name="o[i]">sin(o[i-1])</output>'),
         "the generated code needs more than 100000000 steps"),
     "constraints of which each meets all": (
-        loops(("1", "9999"), content='<constraint name="c[i]">x - i*sin(time)</constraint>'), "than 512 MB|100000000 steps"),
+        loops(("1", "9999"), content='<constraint name="c[i]">x - i*sin(time)</constraint>'), "than 640 MB|100000000 steps"),
     "branches in a loop": (
         '<table name="t">' + "".join(f"{k} {k * k % 17}\n" for k in range(500)) + "</table>"
         + loops(("1", "9999"), content='<force coordinate="x">t(i*x)</force>'), STEPS),
