@@ -54,7 +54,8 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
   inertia_add_product(graph, inertia, rows, other);
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
-    if (is_driven(model, inertia->blocks[b].coordinates[0])) continue; /* its M is that of the drive, 1 */
+    /* The M of a driven coordinate is that of the drive, 1; that of a tree is not formed. */
+    if (is_driven(model, inertia->blocks[b].coordinates[0]) || inertia->blocks[b].tree != NULL) continue;
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);

@@ -1,6 +1,7 @@
 /* The mass matrix of a model, with its blocks found and checked. */
 #pragma once
 
+#include "mechanics/mass_matrix/border.h"
 #include "mechanics/mass_matrix/inertia.h"
 
 /*
@@ -8,14 +9,6 @@
  * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
  */
 enum { UNROLL_LIMIT = 2 };
-
-/*
- * What borders M: the rows J of count constraints, and what their forces add beside J^T; both of constraints and coordinates.
- */
-struct Border {
-  size_t count;
-  const struct Elements *jacobian, *oblique;
-};
 
 /*
  * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
