@@ -243,7 +243,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   }
   if (expressions->equations->has_work)
     append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
-  if (expressions->jacobian != NULL) {
+  if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);
     for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);

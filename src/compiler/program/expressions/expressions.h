@@ -16,7 +16,7 @@
  */
 struct JacobianExpressions {
   size_t *start, *row;
-  Node *value;
+  Node *value; /* NULL where derivatives along the directions of the state give the columns */
   size_t count;
   struct ConstraintSide *sides; /* by columns */
   size_t side_count;
