@@ -182,12 +182,12 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   int errors = diagnostics->errors;
   struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
-  Node kinetic = add(graph, model->energies.kinetic.node, energy_of_stillness(model));
+  Node stillness = energy_of_stillness(model), kinetic = add(graph, model->energies.kinetic.node, stillness);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   equations->has_work = model->forces.work_line > 0;
   const struct Constraints *constraints = equations->constraints;
   const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
-  equations->inertia = inertia_derive(model, momentum, &border, diagnostics);
+  equations->inertia = inertia_derive(model, momentum, stillness, &border, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     add_constraints(model, equations);

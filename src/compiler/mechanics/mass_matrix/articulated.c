@@ -125,6 +125,13 @@ struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Lin
   return result;
 }
 
+Node articulated_pivot(const struct ArticulatedTree *tree, size_t row) {
+  for (size_t i = 0; i < tree->count; i++)
+    for (size_t k = 0; k < tree->items[i].link->count; k++)
+      if (tree->items[i].rows[k] == row) return tree->items[i].factor[tree->items[i].pattern.start[k + 1] - 1];
+  return ZERO;
+}
+
 void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, Node *x) {
   struct SpatialVector *force = allocate(tree->count, sizeof *force), *motion = allocate(tree->count, sizeof *motion);
   Node *pushed = allocate(tree->row_count, sizeof *pushed);

@@ -31,6 +31,9 @@ struct ArticulatedTree {
 struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Links *links, size_t tree,
                                            const size_t *coordinates, size_t row_count);
 
+/* The element of D of a row. */
+Node articulated_pivot(const struct ArticulatedTree *tree, size_t row);
+
 /* Solves M x = b in place. */
 void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, Node *x);
 

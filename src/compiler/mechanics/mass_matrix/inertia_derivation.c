@@ -6,29 +6,27 @@
 
 /* The trees of a model that have factors, by their numbers. */
 struct Trees {
-  const size_t *tree_of; /* of each coordinate; NO_TREE for none */
+  const size_t *tree_of; /* of each row; NO_TREE for none */
   struct ArticulatedTree **items;
 };
 
 /* The rows of one tree, ascending. */
-static size_t *rows_of_tree(const struct Links *links, size_t tree, size_t coordinates, size_t *count) {
-  size_t *rows = allocate(coordinates, sizeof *rows);
+static size_t *rows_of_tree(const struct Links *links, size_t tree, size_t row_count, size_t *count) {
+  size_t *rows = allocate(row_count, sizeof *rows);
   *count = 0;
-  for (size_t i = 0; i < coordinates; i++)
+  for (size_t i = 0; i < row_count; i++)
     if (links->tree_of[i] == tree) rows[(*count)++] = i;
   return rows;
 }
 
-/* The formulas of linear systems need M itself. */
-static struct Trees find_trees(const struct Model *model, const struct Border *border, bool is_linear) {
+static struct Trees find_trees(const struct Model *model, struct Links *links, size_t rows_in_all) {
   struct Graph *graph = model->graph;
-  size_t n = model->coordinates.count, count;
-  struct Links *links = links_create(model, border, !is_linear);
-  struct Trees trees = {links->tree_of, allocate(n, sizeof *trees.items)};
-  for (size_t i = 0; i < n && graph_limit(graph) == NULL; i++) {
+  size_t count;
+  struct Trees trees = {links->tree_of, allocate(rows_in_all, sizeof *trees.items)};
+  for (size_t i = 0; i < rows_in_all && graph_limit(graph) == NULL; i++) {
     size_t tree = links->tree_of[i];
     if (tree == NO_TREE || trees.items[tree] != NULL) continue;
-    size_t *rows = rows_of_tree(links, tree, n, &count);
+    size_t *rows = rows_of_tree(links, tree, rows_in_all, &count);
     trees.items[tree] = articulated_create(graph, links, tree, rows, count);
     if (trees.items[tree] != NULL && tree_has_factors(model, trees.items[tree])) continue;
     trees.items[tree] = NULL;
@@ -139,11 +137,14 @@ static struct Inertia *create_bordered(const struct Graph *graph, size_t count, 
   return inertia;
 }
 
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
-                               struct Diagnostics *diagnostics) {
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
+                               const struct Border *border, struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   bool is_linear = model->linearized || (model->solver.method != NULL && model->solver.method->needs_linear);
-  struct Trees trees = find_trees(model, border, is_linear);
+  size_t rows = count + border->count;
+  /* The formulas of linear systems need M itself. */
+  struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, border, stillness);
+  struct Trees trees = find_trees(model, links, rows);
   struct Elements elements = elements_of(model, momentum, trees.tree_of);
   couple_trees(&trees, count, &elements);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);

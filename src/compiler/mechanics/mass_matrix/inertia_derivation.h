@@ -11,8 +11,8 @@
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
+ * K from the momenta dL/dv of all coordinates; stillness: energy_of_stillness(). Reports a coordinate without inertia and an M that is
  * singular everywhere or not positive at the start values; NULL then.
  */
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
-                               struct Diagnostics *diagnostics);
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
+                               const struct Border *border, struct Diagnostics *diagnostics);

@@ -12,10 +12,11 @@ static const double least_depth = 5.0;
 struct Builder {
   const struct Model *model;
   struct Links *links;
+  size_t row_count;     /* coordinates and constraints */
   size_t *last_link;    /* of each frame; NO_LINK where it is fixed to the base */
   size_t *link_of_body; /* of each body in a frame, likewise */
-  size_t *link_of;      /* of each coordinate; NO_LINK for none */
-  bool *is_elsewhere;   /* of each coordinate: something beside its link has inertia by it, or holds it */
+  size_t *link_of;      /* of each row; NO_LINK for none */
+  bool *is_elsewhere;   /* of each row: something beside its link has inertia by it, or holds it */
   Node *at_rest;        /* replacements of symbols: no displacements */
 };
 
@@ -35,6 +36,11 @@ static size_t place_in_link(const struct Link *link, size_t coordinate) {
   return place;
 }
 
+static void append_row(struct Link *link, size_t row) {
+  link->coordinates = make_room(link->coordinates, link->count, sizeof *link->coordinates);
+  link->coordinates[link->count++] = row;
+}
+
 /* Adds the coordinates whose velocities make a vector. */
 static void find_coordinates(const struct Builder *builder, struct Link *link, struct Vector velocity) {
   const struct Graph *graph = builder->model->graph;
@@ -44,8 +50,7 @@ static void find_coordinates(const struct Builder *builder, struct Link *link, s
     if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
     size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
     if (builder->model->given.drives[coordinate].given || place_in_link(link, coordinate) < link->count) continue;
-    link->coordinates = make_room(link->coordinates, link->count, sizeof *link->coordinates);
-    link->coordinates[link->count++] = coordinate;
+    append_row(link, coordinate);
   }
 }
 
@@ -154,13 +159,13 @@ static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
   link->has_inertia = true;
 }
 
-/* The inertia of kinetic terms and of what rests must stay within a link each. */
-static void add_further_inertia(struct Builder *builder) {
+/* The inertia beside that of bodies must stay within a link each. */
+static void add_further_inertia(struct Builder *builder, Node stillness) {
   const struct Model *model = builder->model;
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   Node *momentum = allocate(n, sizeof *momentum);
-  Node kinetic = model->energies.explicit_kinetic.node;
+  Node kinetic = add(graph, model->energies.explicit_kinetic.node, stillness);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   for (size_t i = 0; i < n && graph_limit(graph) == NULL; i++) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
@@ -192,15 +197,60 @@ static struct Components couple(const struct Builder *builder) {
     if (before != NO_LINK)
       elements_append(&couplings, link->coordinates[0], links->items[before].coordinates[0], ZERO);
   }
-  return find_components(builder->model->coordinates.count, &couplings);
+  return find_components(builder->row_count, &couplings);
 }
 
-/* What a constraint, or a force that follows from one, moves is for saddle.h. */
-static void mark_constrained(struct Builder *builder, const struct Border *border) {
-  const struct Elements *const lists[] = {border->jacobian, border->oblique};
-  for (int list = 0; list < 2; list++)
-    for (size_t k = 0; k < lists[list]->count; k++)
-      builder->is_elsewhere[lists[list]->positions[k].column] = true;
+static void mark_columns(struct Builder *builder, const struct Elements *elements, const bool *is_local) {
+  for (size_t k = 0; k < elements->count; k++)
+    if (is_local == NULL || !is_local[elements->positions[k].row])
+      builder->is_elsewhere[elements->positions[k].column] = true;
+}
+
+/* Whether each constraint holds always, and the coordinates of one link alone, as the norm of a quaternion does. */
+static bool *find_local_constraints(const struct Builder *builder, const struct Border *border) {
+  const struct Model *model = builder->model;
+  const struct Elements *jacobian = border->jacobian;
+  bool *is_local = allocate(border->count, sizeof *is_local);
+  size_t *link = allocate(border->count, sizeof *link);
+  bool *is_met = allocate(border->count, sizeof *is_met);
+  for (size_t j = 0; j < border->count; j++)
+    is_local[j] = !graph_depends_on(model->graph, model->constraints.items[j].node, MODE) && !has_fixed_coordinates(model);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = jacobian->positions[k].row, of = builder->link_of[jacobian->positions[k].column];
+    if (of == NO_LINK || (is_met[row] && link[row] != of)) is_local[row] = false;
+    link[row] = of;
+    is_met[row] = true;
+  }
+  for (size_t j = 0; j < border->count; j++) is_local[j] &= is_met[j];
+  return is_local;
+}
+
+/* A constraint within a link is one more row of it, which moves nothing; others are for saddle.h. */
+static void add_constraints(struct Builder *builder, const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
+  size_t n = builder->model->coordinates.count;
+  const bool *is_local = find_local_constraints(builder, border);
+  mark_columns(builder, jacobian, is_local);
+  mark_columns(builder, border->oblique, NULL);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = n + jacobian->positions[k].row;
+    if (!is_local[row - n] || builder->link_of[row] != NO_LINK) continue;
+    builder->link_of[row] = builder->link_of[jacobian->positions[k].column];
+    append_row(&builder->links->items[builder->link_of[row]], row);
+  }
+}
+
+/* The elements of J in the rows that were added. */
+static void set_constraints(struct Builder *builder, const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
+  size_t n = builder->model->coordinates.count;
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = n + jacobian->positions[k].row, column = jacobian->positions[k].column;
+    if (builder->link_of[row] == NO_LINK) continue;
+    struct Link *link = &builder->links->items[builder->link_of[row]];
+    add_inertia(link, row, column, jacobian->nodes[k]);
+    add_inertia(link, column, row, jacobian->nodes[k]);
+  }
 }
 
 /* For each component, how many coordinates move what one of it moves, itself among them, on the average. */
@@ -222,7 +272,7 @@ static double *depths_of(const struct Links *links, const struct Components *com
 /* Takes the components as trees that are so as a whole, and deep. Whether there are any. */
 static bool choose_trees(struct Builder *builder, const struct Components *components) {
   struct Links *links = builder->links;
-  size_t n = builder->model->coordinates.count;
+  size_t n = builder->row_count;
   const double *depth = depths_of(links, components);
   bool *is_tree = allocate(components->count, sizeof *is_tree), any = false;
   for (size_t c = 0; c < components->count; c++) is_tree[c] = depth[c] >= least_depth;
@@ -240,31 +290,38 @@ static bool choose_trees(struct Builder *builder, const struct Components *compo
 }
 
 /* What the articulated inertias take; before, no node was made, so that systems without trees have the nodes as before. */
-static void set_links(struct Builder *builder) {
+static void set_links(struct Builder *builder, const struct Border *border, Node stillness) {
   for (size_t i = 0; i < builder->links->count; i++) set_motion(builder, &builder->links->items[i]);
   for (size_t i = 0; i < builder->model->mechanism.body_count; i++)
     if (builder->model->mechanism.bodies[i].is_in_frame) set_inertia_of_body(builder, i);
-  add_further_inertia(builder);
+  add_further_inertia(builder, stillness);
+  set_constraints(builder, border);
 }
 
-struct Links *links_create(const struct Model *model, const struct Border *border, bool with_trees) {
-  size_t n = model->coordinates.count;
+struct Links *links_without_trees(size_t row_count) {
+  struct Links *links = allocate(1, sizeof *links);
+  links->tree_of = allocate(row_count, sizeof *links->tree_of);
+  for (size_t i = 0; i < row_count; i++) links->tree_of[i] = NO_TREE;
+  return links;
+}
+
+struct Links *links_create(const struct Model *model, const struct Border *border, Node stillness) {
+  size_t rows = model->coordinates.count + border->count;
   struct Builder builder = {.model = model,
-                            .links = allocate(1, sizeof *builder.links),
-                            .link_of = allocate(n, sizeof *builder.link_of),
-                            .is_elsewhere = allocate(n, sizeof *builder.is_elsewhere),
+                            .links = links_without_trees(rows),
+                            .row_count = rows,
+                            .link_of = allocate(rows, sizeof *builder.link_of),
+                            .is_elsewhere = allocate(rows, sizeof *builder.is_elsewhere),
                             .at_rest = own_symbols(model->graph)};
-  builder.links->tree_of = allocate(n, sizeof *builder.links->tree_of);
   for (size_t i = 0; i < model->graph->symbol_count; i++)
     if (model->graph->symbols[i].kind == DISPLACEMENT) builder.at_rest[i] = ZERO;
-  for (size_t i = 0; i < n; i++) builder.link_of[i] = builder.links->tree_of[i] = NO_LINK;
-  if (!with_trees) return builder.links;
+  for (size_t i = 0; i < rows; i++) builder.link_of[i] = NO_LINK;
   create_links_of_frames(&builder);
   append_links_of_bodies(&builder);
-  mark_constrained(&builder, border);
+  add_constraints(&builder, border);
   struct Components components = couple(&builder);
   if (!choose_trees(&builder, &components)) return builder.links;
-  set_links(&builder);
+  set_links(&builder, border, stillness);
   choose_trees(&builder, &components);
   return builder.links;
 }

@@ -122,12 +122,13 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
 }
 
 /* The smallest share that a pivot of the tree has of its diagonal element; NAN where one is not finite. */
-static double smallest_share_in(const struct ArticulatedTree *tree, const double *values) {
+static double smallest_share_in(const struct ArticulatedTree *tree, size_t coordinate_count, const double *values) {
   double smallest = 1.0;
   for (size_t i = 0; i < tree->count; i++) {
     const struct ArticulatedLink *item = &tree->items[i];
     for (size_t k = 0; k < item->link->count; k++) {
       size_t diagonal = item->pattern.start[k + 1] - 1;
+      if (item->link->coordinates[k] >= coordinate_count) continue; /* a constraint */
       double share = values[item->factor[diagonal]] / fabs(values[item->mass[diagonal]]);
       if (!isfinite(share)) return NAN;
       smallest = fmin(smallest, share);
@@ -140,12 +141,13 @@ bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *t
   const struct Graph *graph = model->graph;
   double *symbols = allocate(graph->symbol_count, sizeof *symbols);
   uint64_t seed = 1;
+  size_t n = model->coordinates.count;
   bool is_regular = false;
   for (int trial = 0; trial < 8 && !is_regular; trial++) {
     for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
-    is_regular = smallest_share_in(tree, graph_evaluate(graph, symbols)) > 1e-10;
+    is_regular = smallest_share_in(tree, n, graph_evaluate(graph, symbols)) > 1e-10;
   }
-  bool is_negative = smallest_share_in(tree, graph_evaluate(graph, start_values(model))) < -1e-10;
+  bool is_negative = smallest_share_in(tree, n, graph_evaluate(graph, start_values(model))) < -1e-10;
   return is_regular && !is_negative;
 }
 

@@ -34,7 +34,8 @@ struct ConstraintSide {
  * the seed of the state, which holds by how much they have been moved.
  */
 struct Corrections {
-  Node *position, *velocity;
+  Node *position, *velocity; /* in trees, of coordinates, the solutions */
+  Node *pivot; /* of each constraint in a tree, see articulated.h; ZERO of others */
   Node *slope; /* of each constraint, see constraint_slopes() */
   Node *push;  /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
 };
