@@ -7,7 +7,7 @@
 #include "model/time_derivative.h"
 
 /* The average number of coordinates that move a coordinate of a tree, from which on articulated inertias take fewer operations. */
-static const double least_depth = 5.0;
+static const double least_depth = 4.5;
 
 struct Builder {
   const struct Model *model;
