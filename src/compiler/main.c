@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/platform.h"
+#include "interface/arrays.h"
 #include "interface/listing.h"
 #include "mechanics/linearize.h"
 #include "mechanics/motion.h"
@@ -18,7 +19,8 @@
 #include "read/xml/schema.h"
 
 static const char usage[] =
-    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [-D NAME=VALUE ...]\n"
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--scalars]\n"
+    "            [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --words | --version\n"
     "\n"
@@ -35,6 +37,8 @@ static const char usage[] =
     "                   the body, pull.u, pull.v, pull.w along its axes, to the place pull.x, pull.y, pull.z, which "
     "is\n"
     "                   damped as if the point were behind by its velocity times pull.time\n"
+    "  --adjoint        adds a reverse sweep: an adjoint derivative costs the same for any number of knowns\n"
+    "  --scalars        what <for> makes are scalars in FMI 3.0 too, not arrays\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
@@ -45,7 +49,8 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, pull, words, help, version;
+  bool linearize, pull, scalars, words, help, version;
+  struct Extras extras;
 };
 
 /* Up to the next comma that does not stand between the arguments of a function. */
@@ -78,6 +83,8 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
     else if (strcmp(word, "--pull") == 0) arguments->pull = true;
+    else if (strcmp(word, "--scalars") == 0) arguments->scalars = true;
+    else if (strcmp(word, "--adjoint") == 0) arguments->extras.adjoint = true;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
@@ -96,8 +103,9 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
 static void compile(struct Model *model, const struct Equations *equations, const struct Arguments *arguments,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
+  if (!arguments->scalars) arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
+  struct Expressions *expressions = expressions_create(model, equations, interface, arguments->extras, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, arguments->form) : NULL;
   if (program != NULL) output_write(program, summary, arguments->directory, diagnostics);
 }
