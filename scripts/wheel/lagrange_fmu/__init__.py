@@ -22,13 +22,14 @@ from .problem import Problem
 if TYPE_CHECKING:
     import numpy as np
 
+    from .adjoint import Gradient
     from .fitting import Fit
     from .linearization import Linearization
     from .results import Result
     from .sensitivity import Sensitivities
 
 __version__ = version("lagrange-fmu")
-__all__ = ["Problem", "build", "check", "fit", "from_sympy", "linearize", "new", "run", "sensitivities", "simulate"]
+__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "new", "run", "sensitivities", "simulate"]
 
 
 def simulate(
@@ -94,6 +95,29 @@ def sensitivities(
     from .sensitivity import sensitivities
 
     return sensitivities(system, list(of), list(by), times, dict(start_values or {}), tolerance)
+
+
+def gradient(
+    system: str | PathLike[str],
+    of: str | None = None,
+    by: Sequence[str] = (),
+    stop_time: float | None = None,
+    *,
+    data: str | PathLike[str] | np.ndarray | None = None,
+    integral: bool = False,
+    noise: Mapping[str, float] | None = None,
+    start_values: Mapping[str, float] | None = None,
+    tolerance: float = 1e-10,
+) -> Gradient:
+    """
+    The derivatives of one number by parameters, start values and inputs `by`, which are constant: `.derivatives[by]`, beside the `.value`. The number is
+    the output or state `of` at the stop time, in s, or its integral over the motion until then; or, of `data`, the sum of the squares of the differences
+    between measurements and the motion, in units of the `noise`: data and noise are as for fit(). By the adjoint equation backwards along the motion to the
+    relative tolerance, with SciPy: many parameters take no longer than one. Events are treated, and refused, as by sensitivities().
+    """
+    from .adjoint import gradient
+
+    return gradient(system, of, list(by), stop_time, data, integral, dict(noise or {}), dict(start_values or {}), tolerance)
 
 
 def fit(

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from .building import system_file
-from .input_file import read_input
+from .experiment import Experiment
 from .model_exchange import opened
 from .problem import Problem
 from .running import is_fmu
@@ -107,37 +107,17 @@ def _picture(fit):
     return base64.b64encode(buffer.getvalue()).decode()
 
 
-class _Experiment:
-    """A motion that was measured."""
+class _Fitted(Experiment):
+    """With the motion that is to meet it."""
 
     def __init__(self, data, point, vary, noise):
-        self.data = read_input(data) if not isinstance(data, np.ndarray) else data
-        names = self.data.dtype.names[1:]
-        self.inputs = [name for name in names if name in point.inputs]
-        self.measured = [name for name in names if name not in point.inputs]
-        if len(self.data) < 2 or (np.diff(self.data["time"]) <= 0).any():
-            raise Problem("data need at least two rows, and times that increase")
-        if not self.measured:
-            raise Problem(f"the data have no column that the system has as an output or state; expected some of {', '.join([*point.outputs, *point.states])}")
+        super().__init__(data, point, noise)
         check_names(point, self.measured, vary)
-        self.noise = np.array([noise.get(name, 1.0) for name in self.measured])
         self.motion = Motion(point, self.measured, vary, TOLERANCE)
-        self.values = np.stack([self.data[name] for name in self.measured], axis=1)
-
-    def signals(self, time):
-        return self.inputs, [float(np.interp(time, self.data["time"], self.data[name])) for name in self.inputs]
-
-    def kinks(self):
-        """The inner times where an input, which is linear between the rows, changes its slope."""
-        time = self.data["time"]
-        bends = np.zeros(len(time) - 2)
-        for name in self.inputs:
-            bends = np.maximum(bends, abs(np.diff(np.diff(self.data[name]) / np.diff(time))))
-        return time[1:-1][bends > 0]
 
     def run(self, values):
         """Residuals in units of the noise, and their derivatives."""
-        found, slopes = self.motion.over(self.data["time"], values, self.signals if self.inputs else None, self.kinks())
+        found, slopes = self.motion.over(self.data["time"], values, self.signals, self.kinks())
         self.found = found
         return ((found - self.values) / self.noise).ravel(), (slopes / self.noise[:, None]).reshape(found.size, -1)
 
@@ -173,7 +153,7 @@ def fit(system, data, vary, start_values, bounds, noise):
     if not vary:
         raise Problem("nothing varies; expected the names of parameters or start values")
     with opened(system, dict(start_values), what="be followed") as point:
-        experiments = [_Experiment(one, point, vary, noise) for one in sets]
+        experiments = [_Fitted(one, point, vary, noise) for one in sets]
         point.start()
         begin = point.read(vary)
         runs = _Runs(experiments, vary)

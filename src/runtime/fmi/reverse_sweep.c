@@ -74,8 +74,8 @@ static enum Status sweep(struct Instance *instance, const struct Weights *weight
   return instance->singular == 0 ? STATUS_DONE : discard_for_singularity(instance);
 }
 
-static enum Status derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
-                              const unsigned *known, size_t known_count, const double *seed, double *value) {
+static enum Status derivative_by_sweep(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                       const unsigned *known, size_t known_count, const double *seed, double *value) {
   size_t count = 2 * lagrangian.state_count + lagrangian.results.count + known_count_of_system();
   double *block = instance->memory.allocate(count, sizeof *block);
   if (block == NULL) return refuse_call(instance, "there is no memory for the derivatives");
@@ -90,4 +90,4 @@ static enum Status derivative(struct Instance *instance, const unsigned *unknown
   return status;
 }
 
-const struct ReverseSweep reverse_sweep = {is_for, derivative};
+const struct ReverseSweep reverse_sweep = {is_for, derivative_by_sweep};
