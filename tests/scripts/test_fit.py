@@ -107,6 +107,36 @@ def test_fit(lagrange_fmu):
     assert (abs(off) < 4).all() and 0.7 < off.std() < 1.3
 
 
+def test_experiments_with_starts_of_their_own(lagrange_fmu):
+    """Which are found, as what they share is; the search begins where each was measured first."""
+    starts = (0.25, -0.4, 0.1)
+    data = [measured(np.random.default_rng(4), {"m": 2.0, "k": 61.0, "d": 0.8, "x": x}, noise=1e-4) for x in starts]
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], each=["x"])
+    expected = {"k": 61.0, "d": 0.8} | {f"x of experiment {i}": x for i, x in enumerate(starts, 1)}
+    assert found.values.keys() == expected.keys() and found.shared == ["k", "d"]
+    for name, value in expected.items():
+        assert abs(found.values[name] - value) < 4 * found.deviations[name] < 1e-3 * 4 * max(1, abs(value))
+    with pytest.raises(lagrange_fmu.Problem, match="'k' varies for all experiments and for each"):
+        lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k"], each=["k"])
+
+
+def test_bounds(lagrange_fmu):
+    """A value that the data would have beyond its bound stays at it."""
+    data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], bounds={"k": (40, 60)})
+    assert found.values["k"] == pytest.approx(60, abs=1e-6)
+    with pytest.raises(lagrange_fmu.Problem, match="'k' begins at 50, and its bounds are 55 and 60"):
+        lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], bounds={"k": (55, 60)})
+
+
+def test_a_value_at_its_limit(lagrange_fmu):
+    """A damping of 0, which is the least that there is, has a derivative all the same."""
+    found = lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["d"], [0, 2], {"d": 0.0})
+    with mpmath.workdps(40):
+        expected = float(mpmath.diff(lambda d: oscillation(2, 2, 50, d, mpmath.mpf(0.3)), 0))
+    assert found.derivatives["x", "d"][1] == pytest.approx(expected, **TOLERATED)
+
+
 def test_inputs_with_kinks(lagrange_fmu):
     """A force that rises and falls between the rows, which the motion of another solver answered."""
     rows = 41
@@ -134,7 +164,7 @@ def test_command(tmp_path):
     truth = {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3}
     data = measured(np.random.default_rng(2), truth)
     np.savetxt(tmp_path / "data.csv", np.stack([data["time"], data["x"]], axis=1), delimiter=",", header="time,x", comments="")
-    result = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "k", "d", "-o", "out", cwd=tmp_path)
+    result = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "k", "d", "--bounds", "k=20:100", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert re.search(r"^k  (61\.0|60\.9)\d+ \+- 0\.0\d+$", result.stdout, re.M)
     page = (tmp_path / "out" / "Oscillator-fit.html").read_text()
@@ -147,7 +177,7 @@ def test_the_fitted_system(lagrange_fmu, tmp_path):
     from lagrange_fmu.fitting import Fit
 
     (tmp_path / "system.xml").write_text(OSCILLATOR)
-    fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml")
+    fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml", ["k", "v", "x"])
     fit.write_system(tmp_path / "fitted.xml")
     text = (tmp_path / "fitted.xml").read_text()
     assert "<!-- kept -->" in text
