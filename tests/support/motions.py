@@ -20,6 +20,14 @@ BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coo
 BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>
   <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
+# Chaotic; its energy at the end is that at the start.
+DOUBLE = """<system name="Double"><parameter name="m1" start="1" unit="kg"/><parameter name="m2" start="0.7" unit="kg"/>
+  <parameter name="l1" start="1" unit="m"/><parameter name="l2" start="0.6" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
+  <coordinate name="a" velocity="va" unit="rad" start="3"/><coordinate name="b" velocity="vb" unit="rad" start="2.5" velocityStart="0.4"/>
+  <particle name="p" mass="m1" x="l1*sin(a)" y="-l1*cos(a)"/><particle name="q" mass="m2" x="l1*sin(a) + l2*sin(b)" y="-l1*cos(a) - l2*cos(b)"/>
+  <potential>m1*g*p.y + m2*g*q.y</potential>
+  <output name="energy" unit="J">m1*l1^2*va^2/2 + m2*(l1^2*va^2 + l2^2*vb^2 + 2*l1*l2*va*vb*cos(a - b))/2 - (m1 + m2)*g*l1*cos(a) - m2*g*l2*cos(b)</output></system>"""
+DOUBLE_AT = {"m1": 1.0, "m2": 0.7, "l1": 1.0, "l2": 0.6, "g": 9.81, "a": 3.0, "va": 0.0, "b": 2.5, "vb": 0.4}
 
 
 @pytest.fixture(scope="module")
@@ -71,3 +79,15 @@ def measured(generator, truth, F=0.0, noise=1e-3):
     times = np.linspace(0, 4, 101)
     values = np.array([float(oscillation(t, *(truth[name] for name in ("m", "k", "d", "x")), F)) for t in times])
     return np.rec.fromarrays([times, values + noise * generator.standard_normal(len(times)), np.full(len(times), F)], names="time,x,F").view(np.ndarray)
+
+
+def energy_of_double(m1, m2, l1, l2, g, a, va, b, vb):
+    kinetic = m1 * l1**2 * va**2 / 2 + m2 * (l1**2 * va**2 + l2**2 * vb**2 + 2 * l1 * l2 * va * vb * mpmath.cos(a - b)) / 2
+    return kinetic - (m1 + m2) * g * l1 * mpmath.cos(a) - m2 * g * l2 * mpmath.cos(b)
+
+
+def slopes(function, at):
+    """By each argument, by differences of 40 digits."""
+    with mpmath.workdps(40):
+        exact = [mpmath.mpf(value) for value in at.values()]
+        return {name: float(mpmath.diff(lambda value: function(*exact[:i], value, *exact[i + 1 :]), value)) for i, (name, value) in enumerate(zip(at, exact))}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .fitting import Fit
     from .linearization import Linearization
     from .results import Result
-    from .sensitivity import Sensitivities
+    from .variational import Sensitivities
 
 __version__ = version("lagrange-fmu")
 __all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "new", "run", "sensitivities", "simulate"]
@@ -89,10 +89,10 @@ def sensitivities(
 ) -> Sensitivities:
     """
     The derivatives of outputs and states `of`, at times in s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
-    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, with SciPy; events change
+    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for smooth systems in XML, else with SciPy; events change
     them by what they make of neighbouring motions. Several events at once, and one that is only touched, are refused.
     """
-    from .sensitivity import sensitivities
+    from .variational import sensitivities
 
     return sensitivities(system, list(of), list(by), times, dict(start_values or {}), tolerance)
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from .building import system_file
 from .experiment import Experiment
-from .model_exchange import opened
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import Motion, check_names  # first, since it tells where SciPy is missing
+from .sensitivity import check_names  # first, since it tells where SciPy is missing
+from .variational import followed, motion
 
 from scipy.optimize import least_squares  # isort: skip
 from scipy.stats import t as student  # isort: skip
@@ -114,7 +114,7 @@ class _Fitted(Experiment):
     def __init__(self, data, point, by, places, noise):
         super().__init__(data, point, noise)
         check_names(point, self.measured, by)
-        self.motion, self.by, self.places = Motion(point, self.measured, by, TOLERANCE), by, places
+        self.motion, self.by, self.places = motion(point, self.measured, by, TOLERANCE), by, places
 
     def run(self, values):
         """Residuals in units of the noise, and their derivatives by all values."""
@@ -174,7 +174,7 @@ def fit(system, data, vary, start_values, bounds, noise, each):
         raise Problem("nothing varies; expected the names of parameters or start values")
     if {*vary} & {*each}:
         raise Problem(f"'{min({*vary} & {*each})}' varies for all experiments and for each; expected one of these")
-    with opened(system, dict(start_values), what="be followed") as point:
+    with followed(system, dict(start_values), [*vary, *each]) as point:
         search = _Search(point, sets, vary, each, noise)
         limits = search.bounds(point, bounds)
         found = least_squares(search.residuals_at, [*search.begin.values()], search.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12)

@@ -7,7 +7,7 @@ import numpy as np
 from fmpy import extract
 from fmpy.fmi1 import FMICallException
 
-from .models import Model2, Model3
+from .models import Model2, Model3, Slave2
 from .problem import Problem
 from .running import fmu_of, is_fmu
 from .simulation import check_start, described
@@ -16,21 +16,34 @@ from .variables import settable
 ADJOINT = ("--adjoint", "--scalars")  # words for lagc
 
 
-class Point:
-    """An FMU that is started again and again at a point."""
+def along(of, by):
+    """The variable that is the derivative of a state, its derivative or an output by a value, where lagc derived these."""
+    return f"der({of[4:-1]}.by.{by})" if of.startswith("der(") else f"{of}.by.{by}"
 
-    def __init__(self, model, description, values):
+
+def words_for(by):
+    """For lagc, which derives them so."""
+    return [word for name in by for word in ("--along", name)]
+
+
+class Point:
+    """An FMU that is started again and again at a point; by: names, the derivatives by which are variables of their own, which are not listed."""
+
+    def __init__(self, model, description, values, by=()):
         self.model, self.values = model, values
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         self.names = {reference: name for name, reference in self.references.items()}
+        outputs = [v.name for v in description.modelVariables if v.causality == "output"]
         self.derivatives = [unknown.variable.name for unknown in description.derivatives]
         self.states = [unknown.variable.derivative.name for unknown in description.derivatives]
+        ends = tuple(f".by.{name}" for name in by)
+        self.derivatives, self.states, self.settable, self.outputs = (
+            [name for name in names if not name.removesuffix(")").endswith(ends)] for names in (self.derivatives, self.states, settable(description), outputs)
+        )
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
         self.name = description.modelName
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
-        self.settable = settable(description)
         self.indicator_count = description.numberOfEventIndicators
-        self.outputs = [v.name for v in description.modelVariables if v.causality == "output"]
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
@@ -62,10 +75,10 @@ class Point:
 
 
 @contextmanager
-def _opened(fmu, description):
+def _opened(fmu, description, in_series):
     """The FMU as a model, and what it logs."""
     folder, messages = extract(str(fmu)), []
-    kind = Model3 if description.fmiVersion == "3.0" else Model2
+    kind = Slave2 if in_series else Model3 if description.fmiVersion == "3.0" else Model2
     try:
         model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
         model.begin(messages)
@@ -87,17 +100,17 @@ def _check_abilities(fmu, description, adjoint):
 
 
 @contextmanager
-def opened(system, values, method=None, what="be linearized there", adjoint=False):
+def opened(system, values, method=None, what="be linearized there", adjoint=False, by=()):
     """
     The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
-    as FMI 2.0 has them, or adjoint ones, of FMI 3.0.
+    as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables.
     """
-    with fmu_of(system, method=method, fmi=3 if adjoint and not is_fmu(system) else None, words=ADJOINT if adjoint else ()) as fmu:
+    with fmu_of(system, method=method, fmi=3 if adjoint and not is_fmu(system) else None, words=ADJOINT if adjoint else words_for(by)) as fmu:
         description = described(fmu)
         _check_abilities(fmu, description, adjoint)
         check_start(values, description)
-        with _opened(fmu, description) as (model, messages):
+        with _opened(fmu, description, bool(by)) as (model, messages):
             try:
-                yield Point(model, description, values)
+                yield Point(model, description, values, by)
             except FMICallException as problem:
                 raise Problem("; ".join([f"{description.modelName} cannot {what}", *(messages or [str(problem)])])) from None

@@ -1,4 +1,4 @@
-"""FMUs in model exchange, of FMI 2.0 and 3.0, with the same calls."""
+"""FMUs in model exchange, of FMI 2.0 and 3.0, and in co-simulation, with the same calls."""
 
 from ctypes import POINTER, c_double
 
@@ -6,6 +6,7 @@ import numpy as np
 from fmpy import calloc, free
 from fmpy.fmi2 import (
     FMU2Model,
+    FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
@@ -31,9 +32,7 @@ class Model:
         return getattr(self.fmu, name)
 
 
-class Model2(Model):
-    kind = FMU2Model
-
+class _Model2(Model):
     def begin(self, messages):
         """Instantiates it; what it logs is appended to the list."""
         callbacks = fmi2CallbackFunctions()
@@ -41,6 +40,10 @@ class Model2(Model):
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
         self.instantiate(callbacks=callbacks)
+
+
+class Model2(_Model2):
+    kind = FMU2Model
 
     def start_over(self):
         self.reset()
@@ -53,6 +56,23 @@ class Model2(Model):
         values = np.zeros(count)
         self.fmi2GetEventIndicators(self.component, numbers_of(values), count)
         return values
+
+
+class Slave2(_Model2):
+    """In co-simulation, which knows no modes of model exchange."""
+
+    kind = FMU2Slave
+    start_time, tolerance = 0.0, None
+
+    def start_over(self):
+        self.reset()
+        self.setupExperiment(startTime=self.start_time, tolerance=self.tolerance)
+
+    def newDiscreteStates(self):
+        pass
+
+    def enterContinuousTimeMode(self):
+        pass
 
 
 class Model3(Model):

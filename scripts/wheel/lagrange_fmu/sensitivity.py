@@ -1,10 +1,7 @@
 """Motions with their derivatives by start values, parameters and inputs, by the variational equations, for which the FMU gives directional derivatives."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from .model_exchange import opened
 from .problem import Problem
 
 try:
@@ -17,15 +14,6 @@ from .saltation import Saltation, crossing_of
 
 LOOKS = 8  # at what events look at, in a step
 STEP = 1e-3  # relative, of differences through initialization
-
-
-@dataclass(frozen=True)
-class Sensitivities:
-    """At n times: `values[of]`, and `derivatives[of, by]` of them, all in SI units."""
-
-    time: np.ndarray
-    values: dict
-    derivatives: dict
 
 
 def start_slopes(point, by, values):
@@ -163,12 +151,3 @@ def check_names(point, of, by):
         for name in names:
             if name not in among:
                 raise Problem(f"'{name}' is not {what}; these are: {', '.join(sorted(among))}")
-
-
-def sensitivities(system, of, by, times, start_values, tolerance):
-    with opened(system, dict(start_values), what="be followed") as point:
-        check_names(point, of, by)
-        motion = Motion(point, of, by, tolerance)
-        values, derivatives = motion.over(np.asarray(times, dtype=float))
-    named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
-    return Sensitivities(np.asarray(times, dtype=float), dict(zip(of, values.T)), named)
