@@ -153,7 +153,14 @@ def _aim_at_data(experiment):
     def off(values):
         return (values - experiment.values) / experiment.noise
 
-    return Aim(experiment.measured, experiment.data["time"], lambda values: (off(values) ** 2).sum(), lambda values: 2 * off(values) / experiment.noise, False, experiment.signals, experiment.kinks())
+    return Aim(
+        experiment.measured,
+        experiment.data["time"],
+        lambda values: (off(values) ** 2).sum(),
+        lambda values: 2 * off(values) / experiment.noise,
+        inputs=experiment.signals,
+        kinks=experiment.kinks(),
+    )
 
 
 def _aim(point, of, data, stop_time, integral, noise):

@@ -107,9 +107,12 @@ void add_variations(struct Model *model, const struct Equations *equations, cons
                     struct Diagnostics *diagnostics) {
   const char *reason = why_not(model, equations);
   if (reason != NULL) report_error(diagnostics, 0, "--along is for smooth systems; expected one without %s", reason);
-  for (size_t k = 0; k < count; k++)
+  for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
       report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate or a velocity", names[k]);
+    for (size_t j = 0; j < k; j++)
+      if (strcmp(names[j], names[k]) == 0) report_error(diagnostics, 0, "--along %s: expected it once", names[k]);
+  }
   if (diagnostics->errors > 0) return;
   size_t outputs = model->outputs.count, reaction = append_reaction(model);
   make_room_for(model, (count + 1) * equations->count);
