@@ -9,8 +9,8 @@
 /* A constraint that is solved for at run time. */
 struct Row {
   Place side, target, force;
-  Place turn; /* its element of dJ w */
-  bool turns; /* has one */
+  Place turn;     /* its element of dJ w */
+  bool turns;     /* has one */
   bool is_looped; /* others have forces that no other constraint can take over */
 };
 

@@ -63,7 +63,8 @@ static void set_gains(struct Graph *graph, struct ArticulatedLink *item, const s
     int k = component % 3;
     for (size_t i = 0; i < count; i++) x[i] = component < 3 ? force[i].linear.along[k] : force[i].angular.along[k];
     factors_solve(graph, &item->pattern, item->factor, x);
-    for (size_t i = 0; i < count; i++) (component < 3 ? &item->gain[i].linear : &item->gain[i].angular)->along[k] = x[i];
+    for (size_t i = 0; i < count; i++)
+      (component < 3 ? &item->gain[i].linear : &item->gain[i].angular)->along[k] = x[i];
   }
 }
 

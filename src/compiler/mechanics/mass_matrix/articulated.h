@@ -14,8 +14,8 @@ struct ArticulatedLink {
   size_t parent; /* among the tree's; NO_LINK for what the tree does not move */
   size_t *rows;  /* of its coordinates among those of the tree */
   struct FactorPattern pattern;
-  Node *mass, *factor;         /* of its coordinates, in the pattern of a full matrix */
-  struct SpatialVector *gain;  /* of each coordinate: forces = gain times what pushes along it */
+  Node *mass, *factor;        /* of its coordinates, in the pattern of a full matrix */
+  struct SpatialVector *gain; /* of each coordinate: forces = gain times what pushes along it */
 };
 
 struct ArticulatedTree {

@@ -7,7 +7,9 @@
 /* The trees of a model that have factors, by their numbers. */
 struct Trees {
   const size_t *tree_of; /* of each row; NO_TREE for none */
-  struct ArticulatedTree **items;
+  struct KnownTree {
+    const struct ArticulatedTree *tree;
+  } * items;
 };
 
 /* The rows of one tree, ascending. */
@@ -25,11 +27,11 @@ static struct Trees find_trees(const struct Model *model, struct Links *links, s
   struct Trees trees = {links->tree_of, allocate(rows_in_all, sizeof *trees.items)};
   for (size_t i = 0; i < rows_in_all && graph_limit(graph) == NULL; i++) {
     size_t tree = links->tree_of[i];
-    if (tree == NO_TREE || trees.items[tree] != NULL) continue;
+    if (tree == NO_TREE || trees.items[tree].tree != NULL) continue;
     size_t *rows = rows_of_tree(links, tree, rows_in_all, &count);
-    trees.items[tree] = articulated_create(graph, links, tree, rows, count);
-    if (trees.items[tree] != NULL && tree_has_factors(model, trees.items[tree])) continue;
-    trees.items[tree] = NULL;
+    trees.items[tree].tree = articulated_create(graph, links, tree, rows, count);
+    if (trees.items[tree].tree != NULL && tree_has_factors(model, trees.items[tree].tree)) continue;
+    trees.items[tree].tree = NULL;
     for (size_t k = 0; k < count; k++) links->tree_of[rows[k]] = NO_TREE;
   }
   return trees;
@@ -97,7 +99,7 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
   for (size_t b = 0; b < components.count; b++) {
     size_t first = members[b][0], tree = first < inertia->coordinate_count ? trees->tree_of[first] : NO_TREE;
-    if (tree != NO_TREE) create_block_of_tree(inertia, b, members[b], trees->items[tree]);
+    if (tree != NO_TREE) create_block_of_tree(inertia, b, members[b], trees->items[tree].tree);
     else create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
   }
   return inertia;

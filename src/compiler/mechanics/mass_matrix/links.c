@@ -194,8 +194,7 @@ static struct Components couple(const struct Builder *builder) {
     size_t before = link->count > 0 ? moved_link(links, link->parent) : NO_LINK;
     for (size_t k = 1; k < link->count; k++)
       elements_append(&couplings, link->coordinates[k], link->coordinates[0], ZERO);
-    if (before != NO_LINK)
-      elements_append(&couplings, link->coordinates[0], links->items[before].coordinates[0], ZERO);
+    if (before != NO_LINK) elements_append(&couplings, link->coordinates[0], links->items[before].coordinates[0], ZERO);
   }
   return find_components(builder->row_count, &couplings);
 }
@@ -214,7 +213,8 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
   size_t *link = allocate(border->count, sizeof *link);
   bool *is_met = allocate(border->count, sizeof *is_met);
   for (size_t j = 0; j < border->count; j++)
-    is_local[j] = !graph_depends_on(model->graph, model->constraints.items[j].node, MODE) && !has_fixed_coordinates(model);
+    is_local[j] =
+        !graph_depends_on(model->graph, model->constraints.items[j].node, MODE) && !has_fixed_coordinates(model);
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t row = jacobian->positions[k].row, of = builder->link_of[jacobian->positions[k].column];
     if (of == NO_LINK || (is_met[row] && link[row] != of)) is_local[row] = false;

@@ -13,9 +13,9 @@ struct Link {
   struct Pose pose; /* in its parent */
   size_t count;     /* of its rows: its coordinates, and then constraints that hold these alone */
   size_t *coordinates;
-  struct SpatialVector *axes;   /* of each row: the motion against the parent at a velocity of 1, none of a constraint */
-  Node *inertia;                /* what K has in its rows beside bodies, as of armatures and constraints: count x count */
-  bool has_inertia;             /* not all of these are ZERO */
+  struct SpatialVector *axes; /* of each row: the motion against the parent at a velocity of 1, none of a constraint */
+  Node *inertia;              /* what K has in its rows beside bodies, as of armatures and constraints: count x count */
+  bool has_inertia;           /* not all of these are ZERO */
   struct SpatialInertia bodies; /* of those that are fixed to it */
 };
 

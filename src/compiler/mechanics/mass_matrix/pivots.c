@@ -52,7 +52,8 @@ static long ending_coordinate(const struct Inertia *inertia, const double *value
       if (!isfinite(values[block->mass[k]])) return -1;
   }
   for (size_t b = 0; b < inertia->block_count && found == inertia->count; b++)
-    if (inertia->blocks[b].tree == NULL) found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
+    if (inertia->blocks[b].tree == NULL)
+      found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
   return (long)found;
 }
 

@@ -140,8 +140,7 @@ struct SpatialVector spatial_force_to_parent(struct Graph *graph, const struct P
 
 struct SpatialVector spatial_motion_from_parent(struct Graph *graph, const struct Pose *pose,
                                                 struct SpatialVector motion) {
-  struct Vector carried =
-      vector_add(graph, motion.linear, vector_cross(graph, motion.angular, pose->origin));
+  struct Vector carried = vector_add(graph, motion.linear, vector_cross(graph, motion.angular, pose->origin));
   struct SpatialVector result = {.linear = matrix_apply_transposed(graph, &pose->rotation, carried)};
   result.angular = matrix_apply_transposed(graph, &pose->rotation, motion.angular);
   return result;

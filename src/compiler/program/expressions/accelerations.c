@@ -37,8 +37,7 @@ void append_elements(struct NodeList *targets, const struct InertiaBlock *block)
   append_nodes(targets, block->oblique, block->force_count * block->count);
 }
 
-struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations,
-                                      bool with_forces) {
+struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations, bool with_forces) {
   struct NodeList targets = {0};
   size_t rows = equations->explicit_form ? equations->count : row_count(equations);
   for (size_t i = 0; i < rows; i++)

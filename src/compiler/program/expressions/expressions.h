@@ -36,9 +36,9 @@ struct ConstraintSide {
  */
 struct Corrections {
   Node *position, *velocity; /* in trees, of coordinates, the solutions */
-  Node *pivot; /* of each constraint in a tree, see articulated.h; ZERO of others */
-  Node *slope; /* of each constraint, see constraint_slopes() */
-  Node *push;  /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
+  Node *pivot;               /* of each constraint in a tree, see articulated.h; ZERO of others */
+  Node *slope;               /* of each constraint, see constraint_slopes() */
+  Node *push; /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
 };
 
 struct Expressions {
