@@ -301,7 +301,7 @@ struct ImplicitTable {
   struct Sparsity pattern;
   const struct Lu *lu;         /* how the solver factors matrices (lu.h); NULL where it does not */
   struct LuPattern lu_pattern; /* where that is lu_sparse */
-  /* d derivatives / d state: the elements of the pattern, in its order */
+  /* d derivatives / d state: the elements of the pattern, in its order; NULL where directional() gives it by columns */
   int (*jacobian)(const struct Point *point, Real *values);
 };
 

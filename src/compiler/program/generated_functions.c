@@ -244,7 +244,7 @@ static bool has_weighted_gradient(const struct Program *program) {
 }
 
 static bool has_jacobian(const struct Program *program) {
-  return program->expressions->jacobian != NULL;
+  return program->expressions->jacobian != NULL && program->expressions->jacobian->value != NULL;
 }
 
 static bool is_exact(const struct Program *program) {

@@ -43,6 +43,30 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
     if (is_looped(equations, i)) result[i] = right[i];
 }
 
+/* Replaces the right sides of the coordinates in a tree by the changes. */
+static void solve_tree(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block,
+                       Node *side) {
+  Node *x = allocate(block->count, sizeof *x);
+  for (size_t i = 0; i < block->count; i++) x[i] = side[block->coordinates[i]];
+  block_solve(graph, block, x);
+  for (size_t i = 0; i < block->count; i++)
+    if (block->coordinates[i] < equations->count) side[block->coordinates[i]] = x[i];
+}
+
+static void solve_trees(struct Graph *graph, const struct Equations *equations, struct Corrections *corrections) {
+  const struct Inertia *inertia = equations->inertia;
+  corrections->pivot = allocate(equations->constraints->count, sizeof(Node));
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    if (block->tree == NULL || block->constraint_count == 0) continue;
+    solve_tree(graph, equations, block, corrections->position);
+    solve_tree(graph, equations, block, corrections->velocity);
+    for (size_t i = 0; i < block->count; i++)
+      if (block->coordinates[i] >= equations->count)
+        corrections->pivot[block->coordinates[i] - equations->count] = articulated_pivot(block->tree, i);
+  }
+}
+
 /*
  * K (change; forces) = (-M moved; -constraint): with the total of the changes in moved, the limit has the constraints
  * fulfilled and M moved + J^T forces = 0, the least way in the metric of M.
@@ -65,6 +89,7 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
     corrections->position[n + j] = negate(graph, constraints->position[j]);
     corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
   }
+  solve_trees(graph, equations, corrections);
 }
 
 static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
@@ -236,18 +261,19 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
 
 struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct Equations *equations = expressions->equations;
-  struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
+  struct NodeList targets = accelerations_targets(expressions->model->graph, equations, true);
   append_nodes(&targets, expressions->along, row_count(equations));
   if (equations->constraints->count > 0) {
     append_nodes(&targets, expressions->constraints_along, equations->constraints->jacobian.count);
     append_nodes(&targets, expressions->corrections.position, row_count(equations));
     append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
+    append_nodes(&targets, expressions->corrections.pivot, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.push, equations->count);
   }
   if (expressions->equations->has_work)
     append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
-  if (expressions->jacobian != NULL) {
+  if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);
     for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);

@@ -17,7 +17,7 @@
  */
 struct JacobianExpressions {
   size_t *start, *row;
-  Node *value;
+  Node *value; /* NULL where derivatives along the directions of the state give the columns */
   size_t count;
   struct ConstraintSide *sides; /* by columns */
   size_t side_count;
@@ -35,9 +35,10 @@ struct ConstraintSide {
  * the seed of the state, which holds by how much they have been moved.
  */
 struct Corrections {
-  Node *position, *velocity;
-  Node *slope; /* of each constraint, see constraint_slopes() */
-  Node *push;  /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
+  Node *position, *velocity; /* in trees, of coordinates, the solutions */
+  Node *pivot;               /* of each constraint in a tree, see articulated.h; ZERO of others */
+  Node *slope;               /* of each constraint, see constraint_slopes() */
+  Node *push; /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
 };
 
 struct Expressions {
