@@ -130,7 +130,7 @@ static void connect_links(struct Connection *connection) {
       report_error(
           connection->diagnostics, child->joint->line,
           "the link '%s' is the child of the joint '%s' and of '%s' on line %ld; expected a tree, in which each "
-          "link has one parent (a loop is closed by a <constraint> around an <include>)",
+          "link has one parent (a <joint> beside an <include> closes a loop)",
           child->name, child->joint->name, joint->name, joint->line);
       continue;
     }
