@@ -1,7 +1,7 @@
 /* What a joint of a robot becomes: coordinates, motors, losses, limits, and the motion of a frame. */
 #pragma once
 
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 #include "read/robots/robot_elements.h"
 
 /* The parameters that the friction of joints shares. */

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "model/kinematics.h"
-#include "read/robots/mjcf.h"
+#include "read/robots/mjcf/mjcf.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_shapes.h"

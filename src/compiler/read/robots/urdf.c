@@ -10,7 +10,7 @@
 #include "read/meshes/hull.h"
 #include "read/meshes/mesh_file.h"
 #include "read/meshes/package_path.h"
-#include "read/robots/robot_file.h"
+#include "read/robots/description/robot_file.h"
 #include "read/xml/nodes.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",

@@ -1,4 +1,4 @@
-#include "read/robots/robot_file.h"
+#include "read/robots/description/robot_file.h"
 
 #include <math.h>
 #include <stdlib.h>

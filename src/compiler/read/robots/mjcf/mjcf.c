@@ -1,11 +1,11 @@
-#include "read/robots/mjcf.h"
+#include "read/robots/mjcf/mjcf.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/robots/mjcf_geoms.h"
-#include "read/robots/mjcf_values.h"
+#include "read/robots/mjcf/mjcf_geoms.h"
+#include "read/robots/mjcf/mjcf_values.h"
 #include "read/xml/nodes.h"
 
 static const char world[] = "world";

@@ -1,4 +1,4 @@
-#include "read/robots/mjcf_geoms.h"
+#include "read/robots/mjcf/mjcf_geoms.h"
 
 #include <math.h>
 #include <string.h>

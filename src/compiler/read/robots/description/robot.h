@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "read/robots/rigid_body.h"
+#include "read/robots/description/rigid_body.h"
 
 enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
 

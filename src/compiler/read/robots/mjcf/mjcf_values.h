@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "read/robots/robot_file.h"
+#include "read/robots/description/robot_file.h"
 
 enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
 

@@ -7,7 +7,7 @@
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 enum { LEFT_OUT_LIMIT = 20 };
 

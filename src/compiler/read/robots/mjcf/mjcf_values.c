@@ -1,4 +1,4 @@
-#include "read/robots/mjcf_values.h"
+#include "read/robots/mjcf/mjcf_values.h"
 
 #include <ctype.h>
 #include <math.h>

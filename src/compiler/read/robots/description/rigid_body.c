@@ -1,4 +1,4 @@
-#include "read/robots/rigid_body.h"
+#include "read/robots/description/rigid_body.h"
 
 #include <math.h>
 #include <stddef.h>
