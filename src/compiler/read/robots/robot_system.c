@@ -17,6 +17,8 @@
 /* Of a floating base, and of the point at the tool. */
 static const char base[] = "base", tool[] = "tool";
 
+static const struct JointStart no_start = {.position = {[3] = 1}};
+
 static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
   const double *shift = placement->translation;
   double angles[3];
@@ -61,7 +63,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
     write_joint(writer, joint);
   }
   writer->line = link->line;
-  if (joint == NULL && floats) write_free_coordinates(writer, base, NULL, "free motion of the base");
+  if (joint == NULL && floats) write_free_coordinates(writer, base, &no_start, "free motion of the base");
   xmlNodePtr frame = write_element(writer, "frame");
   set_attribute(frame, "name", copy_text(link->symbol));
   if (joint != NULL) {
@@ -121,6 +123,15 @@ static void write_gravity(const struct Writer *writer, const double gravity[3]) 
     if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
 }
 
+static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
+  writer->line = loop->line;
+  xmlNodePtr joint = write_element(writer, "joint");
+  set_attribute(joint, "name", robot_symbol(loop->name));
+  set_attribute(joint, "type", copy_text(loop->is_fixed ? "fixed" : "spherical"));
+  set_attribute(joint, "from", copy_text(loop->links[0]->symbol));
+  set_attribute(joint, "to", copy_text(loop->links[1]->symbol));
+}
+
 static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
@@ -132,6 +143,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
     writer->line = robot->actuators[i].line;
     write_actuator(writer, &robot->actuators[i]);
   }
+  for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */

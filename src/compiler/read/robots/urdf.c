@@ -356,6 +356,12 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
   urdf.robot->line = xmlGetLineNo(root);
   urdf.robot->gravity[2] = -9.81;
   urdf.robot->name = required_attribute(&urdf, root, "name");
+  if (options->keyframe != NULL)
+    report_error(
+        diagnostics, urdf.robot->line,
+        "keyframe=\"%s\" is for MJCF; expected start values by <coordinate name=\"...\" start=\"...\"/> in the "
+        "<include>",
+        options->keyframe);
   if (xacro != NULL)
     report_error(
         diagnostics, xmlGetLineNo(xacro),

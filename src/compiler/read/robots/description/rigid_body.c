@@ -89,6 +89,13 @@ struct Placement placement_within(const struct Placement *outer, const struct Pl
   return both;
 }
 
+struct Placement placement_between(const struct Placement *first, const struct Placement *second) {
+  struct Placement back = {.rotation = transposed(&first->rotation)};
+  turn(&back.rotation, first->translation, back.translation);
+  for (int i = 0; i < 3; i++) back.translation[i] = -back.translation[i];
+  return placement_within(&back, second);
+}
+
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body) {
   struct RigidBody seen = {.mass = body->mass};
   turn(&placement->rotation, body->center, seen.center);
