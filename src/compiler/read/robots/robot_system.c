@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "model/kinematics.h"
+#include "read/robots/description/robot_file.h"
 #include "read/robots/mjcf/mjcf.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
@@ -166,6 +167,20 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
 
+/* Reports links that are to stand and are none, or have no shape. */
+static void check_standing(const struct Robot *robot, const struct RobotOptions *options,
+                           struct Diagnostics *diagnostics) {
+  const char *rest = options->standing;
+  if (!options->has_ground || rest == NULL) return;
+  for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
+    const struct Link *link = robot_link(robot, name, "the ground", diagnostics);
+    if (link != NULL && link->collision_count == 0)
+      report_error(diagnostics, link->line,
+                   "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it",
+                   name);
+  }
+}
+
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   xmlNodePtr root = xmlDocGetRootElement(document);
@@ -174,6 +189,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
   const struct Link *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);
+    check_standing(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }
   xmlFreeDoc(document);

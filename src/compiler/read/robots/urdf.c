@@ -120,9 +120,9 @@ static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link 
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
   char *problem = NULL;
-  bool has_ground = urdf->options->has_ground;
-  if (geometry == NULL || !read_geometry(urdf, geometry, has_ground, &collision, &problem)) {
-    if (has_ground)
+  bool touches = link_touches_ground(urdf->options, link->name);
+  if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
+    if (touches)
       report_warning(
           urdf->diagnostics, collision.line, "a <collision> of the link '%s' touches nothing: %s", link->name,
           problem != NULL ? problem

@@ -89,6 +89,7 @@ struct RobotOptions {
   bool has_stops;         /* limits stop the joints; else outputs tell how far these are beyond them */
   bool sticks;            /* the joints' friction is dry; else it lets them creep */
   bool has_ground;        /* the links' shapes stand on a plane */
+  const char *standing;   /* names of the links that do, between blanks; NULL for all that move */
   bool is_effort_limited; /* motors push and turn with no more than their effort */
   const char *keyframe;   /* of MJCF, where the robot starts; NULL for its usual start */
   const char *

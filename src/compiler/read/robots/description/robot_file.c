@@ -7,6 +7,14 @@
 #include "base/memory.h"
 #include "read/xml/nodes.h"
 
+char *next_name(const char **rest) {
+  static const char blanks[] = " \t\r\n";
+  const char *name = *rest + strspn(*rest, blanks);
+  size_t length = strcspn(name, blanks);
+  *rest = name + length;
+  return length > 0 ? format_text("%.*s", (int)length, name) : NULL;
+}
+
 void leave_out(struct RobotFile *file, const char *what) {
   for (size_t i = 0; i < file->left_out_count; i++)
     if (strcmp(file->left_out[i], what) == 0) return;
@@ -103,6 +111,14 @@ void tell_left_out(struct RobotFile *file) {
   if (file->mesh_problem != NULL && file->diagnostics->errors == 0)
     report_warning(file->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", file->mesh_problems,
                    file->mesh_problems == 1 ? " is" : "es are", file->mesh_problem);
+}
+
+bool link_touches_ground(const struct RobotOptions *options, const char *link) {
+  const char *rest = options->standing;
+  if (!options->has_ground || rest == NULL) return options->has_ground;
+  for (char *name = next_name(&rest); name != NULL; name = next_name(&rest))
+    if (strcmp(name, link) == 0) return true;
+  return false;
 }
 
 void add_link(struct RobotFile *file, struct Link *link) {

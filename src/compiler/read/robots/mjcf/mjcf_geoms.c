@@ -114,7 +114,8 @@ static void add_collision(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom 
   struct Collision collision = {
       .type = geom_types[geom->type], .place = geom->place, .line = xmlGetLineNo(node), .radius = geom->size[0]};
   if (geom->type > BOX) {
-    if (!mjcf->file.options->has_ground) leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder and box");
+    if (!link_touches_ground(mjcf->file.options, link->name))
+      leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder and box");
     else
       report_warning(
           mjcf->file.diagnostics, collision.line,
