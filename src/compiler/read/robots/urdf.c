@@ -110,12 +110,6 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
   return collision->type != NULL && *problem == NULL;
 }
 
-static void note_mesh_problem(struct RobotFile *urdf, char *problem) {
-  if (problem == NULL) return;
-  if (urdf->mesh_problem == NULL) urdf->mesh_problem = problem;
-  urdf->mesh_problems++;
-}
-
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
@@ -188,9 +182,7 @@ static char *read_color(xmlNodePtr visual) {
   double rgba[4];
   if (color == NULL || !has_attribute(color, "rgba") || parse_numbers(attribute(color, "rgba"), 4, rgba) != 4)
     return NULL;
-  char *text = copy_text("#");
-  for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
-  return text;
+  return color_text(rgba);
 }
 
 /* False where it cannot be drawn. */

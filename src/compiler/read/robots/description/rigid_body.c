@@ -105,6 +105,14 @@ struct RigidBody body_seen_from(const struct Placement *placement, const struct 
   return seen;
 }
 
+struct RigidBody body_scaled(const struct RigidBody *body, double factor) {
+  struct RigidBody scaled = *body;
+  scaled.mass *= factor;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) scaled.tensor.at[i][j] *= factor;
+  return scaled;
+}
+
 /* The tensor about another point, by the theorem of Huygens and Steiner. */
 static struct Matrix3 tensor_about(const struct RigidBody *body, const double point[3]) {
   struct Matrix3 tensor = body->tensor;

@@ -42,6 +42,9 @@ struct Placement placement_between(const struct Placement *first, const struct P
 /* The same body as seen from the frame in which its own is placed. */
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body);
 
+/* The same with its mass, and all that goes with it, multiplied. */
+struct RigidBody body_scaled(const struct RigidBody *body, double factor);
+
 /* Both as one. */
 struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBody *second);
 

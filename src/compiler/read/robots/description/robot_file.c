@@ -102,6 +102,18 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
   return value;
 }
 
+void note_mesh_problem(struct RobotFile *file, char *problem) {
+  if (problem == NULL) return;
+  if (file->mesh_problem == NULL) file->mesh_problem = problem;
+  file->mesh_problems++;
+}
+
+char *color_text(const double rgba[4]) {
+  char *text = copy_text("#");
+  for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
+  return text;
+}
+
 void tell_left_out(struct RobotFile *file) {
   char *list = copy_text("");
   for (size_t i = 0; i < file->left_out_count; i++)

@@ -29,6 +29,12 @@ void leave_out(struct RobotFile *file, const char *what);
 /* Notes the elements inside that are none of these names, of which the last is NULL. */
 void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names);
 
+/* Notes why a mesh cannot be drawn; NULL for nothing. */
+void note_mesh_problem(struct RobotFile *file, char *problem);
+
+/* As pages have it, such as "#ff8000ff", by shares of red, green, blue, and how little is seen through it. */
+char *color_text(const double rgba[4]);
+
 /* Warns of all that was left out, unless there were errors. */
 void tell_left_out(struct RobotFile *file);
 

@@ -42,6 +42,8 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "coordinate=\"%s\" of <compiler>; expected local",
                  attribute(node, "coordinate"));
+  if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
+  if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
   const char *sequence = attribute(node, "eulerseq");
   if (sequence == NULL) return;
   if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
@@ -288,11 +290,12 @@ static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
 }
 
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
-  static const char *const known[] = {"compiler", "option",   "default",  "worldbody",
-                                      "actuator", "equality", "keyframe", NULL};
+  static const char *const known[] = {"compiler", "option",   "default", "worldbody", "actuator",
+                                      "equality", "keyframe", "asset",   NULL};
   struct Robot *robot = allocate(1, sizeof *robot);
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
+                      .meshes = names_create(),
                       .places = names_create(),
                       .angle = M_PI / 180,
                       .euler_sequence = "xyz",

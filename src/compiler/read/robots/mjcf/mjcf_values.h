@@ -17,6 +17,8 @@ struct Mjcf {
   bool has_automatic_limits;
   enum InertiaFromGeoms inertia_from_geoms;
   size_t unnamed_count; /* bodies without a name so far */
+  char *mesh_folder;    /* of the meshes' files, relative to the robot's; NULL for that itself */
+  struct Names *meshes; /* that geoms have -> struct MjcfMesh */
   struct Names *places; /* of bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
