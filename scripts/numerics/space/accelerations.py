@@ -16,8 +16,12 @@ SOURCES = Path(__file__).parent
 ROBOTS = [
     ("UR5", "6 axes", "ur_description/urdf/ur5_robot.urdf", "fixed"),
     ("Panda", "7 axes and 2 fingers", "panda_description/urdf/panda.urdf", "fixed"),
+    ("Allegro", "hand of 16 axes", "allegro_hand_description/urdf/allegro_right_hand.urdf", "fixed"),
+    ("ANYmal", "quadruped, 12 axes on a base that flies", "anymal_b_simple_description/robots/anymal.urdf", "floating"),
     ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
+    ("iCub", "32 axes on a base that flies", "icub_description/robots/icub_reduced.urdf", "floating"),
 ]
+CHAINS = [10, 20, 40]  # axes, one after another
 ROUND = 0.05  # seconds of one program in one round
 # Of each package a header, and the folders where releases of Debian have it.
 SYSTEM = Path("/usr/include")
@@ -43,6 +47,20 @@ def prefix():
     if spec is None or spec.origin is None:
         raise Missing("Pinocchio (the Python package pin) is not installed here.")
     return next(folder for folder in Path(spec.origin).parents if folder.name == "cmeel.prefix")
+
+
+def chain(count):
+    """The file of a robot of so many links, which turn about x, y and z by turns."""
+    link = """<link name="link{0}"><inertial><origin xyz="0.01 0.02 -0.15"/><mass value="1.5"/>
+      <inertia ixx="0.02" iyy="0.021" izz="0.004" ixy="0.001" iyz="0.0005" ixz="0.0007"/></inertial></link>"""
+    hinge = """<joint name="joint{0}" type="continuous"><parent link="link{1}"/><child link="link{0}"/>
+      <origin xyz="0.02 0.01 -0.3"/><axis xyz="{2} {3} {4}"/></joint>"""
+    parts = [hinge.format(i, i - 1, *(int(i % 3 == axis) for axis in range(3))) + link.format(i) for i in range(1, count + 1)]
+    path, text = FOLDER / f"chain{count}.urdf", f'<robot name="chain{count}"><link name="link0"/>{"".join(parts)}</robot>'
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+    return path
 
 
 def is_current(target, *sources):
@@ -125,8 +143,10 @@ def rows(quick):
         pinocchio = pinocchio_program(quick)
     except (Missing, RuntimeError) as error:
         pinocchio, sentences = None, [str(error)]
-    for name, text, path, base in ROBOTS[:1] if quick else ROBOTS:
-        programs = [[our_program(name, robots / path, base)]]
-        programs += [[pinocchio, robots / path, base]] if pinocchio else []
+    cases = [(name, text, robots / path, base) for name, text, path, base in ROBOTS[: 1 if quick else None]]
+    cases += [(f"Chain{count}", f"{count} axes, one after another", chain(count), "fixed") for count in CHAINS if not quick]
+    for name, text, path, base in cases:
+        programs = [[our_program(name, path, base)]]
+        programs += [[pinocchio, path, base]] if pinocchio else []
         lines.append(row(name, text, measured(programs, 5 if quick else 20)))
     return lines, sentences
