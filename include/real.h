@@ -5,13 +5,22 @@
 #ifndef REAL_H
 #define REAL_H
 
+#include <stdbool.h>
+
 typedef double Real;
+
+/* What a comparison of two gives. */
+typedef bool Condition;
+#define BOTH(first, second) ((first) && (second))
 
 /* A constant among them. */
 #define REAL(number) (number)
 
 /* The first where the condition holds, else the second. */
 #define WHERE(condition, first, second) ((condition) ? (first) : (second))
+
+/* Whether it holds in any of them. */
+#define ANYWHERE(condition) (condition)
 
 /* Lets the function return the number unless the condition holds. */
 #define REQUIRE(condition, number)                                                                                     \

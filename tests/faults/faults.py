@@ -282,7 +282,7 @@ PLACES = [
      pytest("test_constraints", "start_values_are_moved_least or start_values_stay", "PendulumCartesian", "FourBar")),
     ("append_constraint_sides(program, values, column, &rows, &next_side);", "(void)next_side;",
      pytest("test_constraints", "jacobian", "FourBar")),
-    ("m[last] = has_hold ? -hold : -INFINITY;", "m[last] = -hold;", pytest("test_constraints", "redundant", "FourBar")),
+    ("m[last] = WHERE(has_hold, -hold, -INFINITY);", "m[last] = -hold;", pytest("test_constraints", "redundant", "FourBar")),
     ("state[n + i] += work.change[i];", "", pytest("test_constraints", "pendulum_and_its_tension", "PendulumCartesian")),
     ("if (keeps_fixed && !keep_fixed(instance, work.before)) return false;", "",
      pytest("test_constraints", "start_values_stay", "FourBar")),

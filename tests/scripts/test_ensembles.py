@@ -3,17 +3,15 @@
 import ctypes
 import subprocess
 
-import fmpy
 import mpmath
 import numpy as np
 import pytest
-from fmpy import read_model_description
 
 from building import build_systems
 from closed_forms import kepler, pendulum_angle
+from ensemble_runs import HERE, alone, assert_as_alone, ensemble, starts, states
 from fmu import ROOT, archive
-from scripts.ensembles import Ensemble, lanes_here, source_of, words
-from scripts.sweep import compile_ensemble
+from scripts.ensembles import includes, source_of
 
 # Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
 SYSTEMS = {
@@ -29,39 +27,15 @@ SYSTEMS = {
     "DampedPendulum": ({"theta": (-3, 3), "tau": (-3, 3), "b": (0, 1)}, 5),  # by auto, but not stiff; so are the next two
     "ElasticPendulum": ({"theta": (-1, 1), "k": (10, 100), "c": (0, 5)}, 2),
     "Gyrocompass": ({"alpha": (-1, 1), "b": (0, 1e-3)}, 0.1),
+    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # whose masses are factored as it runs
 }
-HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")
 NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # of lanes, that this processor can do
-
-
-def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
-    reference = {v.name: v.valueReference for v in read_model_description(archive(name)).modelVariables}
-    library = compile_ensemble(source_of(archive(name)), lanes)
-    return Ensemble(library, [reference[v] for v in varied], [reference[v] for v in asked], times, tolerance)
-
-
-def states(name):
-    return [unknown.variable.derivative.name for unknown in read_model_description(archive(name)).derivatives]
-
-
-def starts(ranges, count, seed=1):
-    generator = np.random.default_rng(seed)
-    return np.array([generator.uniform(*span, count) for span in ranges.values()]).T
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_each_run_is_that_of_the_fmu_alone(name):
-    """The states and the energies at three times, more runs than lanes; each takes its own number of steps."""
-    ranges, stop = SYSTEMS[name]
-    asked = [*states(name), "kineticEnergy", "totalEnergy"]
-    rows, times = starts(ranges, 3 * HERE + 1), [0, 0.3 * stop, stop]
-    values, is_left = ensemble(name, ranges, asked, times).run(rows)
-    assert not is_left.any()
-    for row, value in zip(rows, values):
-        alone = fmpy.simulate_fmu(str(archive(name)), start_values=dict(zip(ranges, row)), stop_time=stop, output_interval=0.1 * stop, output=asked, relative_tolerance=1e-10)
-        for k, result in zip((0, 3, 10), value):
-            expected = np.array(list(alone[k])[1:])
-            np.testing.assert_allclose(result, expected, rtol=2e-9, atol=2e-9)
+    """More runs than lanes; each takes its own number of steps."""
+    assert_as_alone(name, *SYSTEMS[name], 3 * HERE + 1, 2e-9)
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])
@@ -185,8 +159,8 @@ def test_runs_that_end_in_a_singularity_are_left_alone():
 
 
 def test_what_lanes_do_not_serve():
-    """Methods that are exact, events, constraints, and masses that are factored as they run; and values that are no Real or no state."""
-    for name in ("ParticleCartesian", "BouncingBall", "FourBar", "ChainPendulum", "Rope", "StateFeedback"):
+    """Methods that are exact, equations in tables, and systems without states; and values that are no Real or no state."""
+    for name in ("ParticleCartesian", "Rope", "StateFeedback"):
         assert source_of(archive(name)) is None, name
     assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
     assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
@@ -211,8 +185,7 @@ def test_functions_and_their_series():
     values, is_left = ensemble("Functions", ranges, asked, [0.4]).run(rows)
     assert not is_left.any()
     for row, value in zip(rows, values):
-        alone = fmpy.simulate_fmu(str(archive("Functions")), start_values=dict(zip(ranges, row)), stop_time=0.4, output_interval=0.4, output=asked, relative_tolerance=1e-10)
-        np.testing.assert_allclose(value[0], list(alone[-1])[1:], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(value[0], alone("Functions", dict(zip(ranges, row)), asked, 0.4)[-1], rtol=1e-9, atol=1e-9)
 
 
 SINES = """
@@ -233,7 +206,9 @@ void sines(size_t count, const double *x, double *s, double *c) {
 def test_sines(tmp_path):
     """To less than 1.5 units in the last place, also beside the multiples of quarter turns, far out, and where there is none."""
     (tmp_path / "sines.c").write_text(SINES)
-    subprocess.run(["cc", *map(str, words(ROOT, HERE, tmp_path / "sines.c", tmp_path / "sines.so")), "-fvisibility=default", "-lm"], check=True)
+    flags = [f"@{ROOT / 'src' / 'ensemble' / f'lanes{lanes}.flags'}" for lanes in ("", HERE)]
+    command = ["cc", *flags, "-fPIC", "-shared", *map(str, includes(ROOT)), tmp_path / "sines.c", "-o", tmp_path / "sines.so", "-fvisibility=default", "-lm"]
+    subprocess.run(command, check=True)
     generator = np.random.default_rng(3)
     quarters = np.arange(-2000, 2000) * (np.pi / 2)
     x = np.concatenate([generator.uniform(-4, 4, 4000), generator.uniform(-1.1e5, 1.1e5, 4000), quarters, quarters * (1 + 1e-15), 10.0 ** generator.uniform(-300, 300, 4000)])
