@@ -16,6 +16,10 @@ typedef bool Condition;
 /* A constant among them. */
 #define REAL(number) (number)
 
+/* The same where an array is initialized, and a function of <math.h> there. */
+#define CONSTANT(number) (number)
+#define FUNCTION(name) name
+
 /* The first where the condition holds, else the second. */
 #define WHERE(condition, first, second) ((condition) ? (first) : (second))
 

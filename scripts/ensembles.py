@@ -11,11 +11,11 @@ import numpy as np
 MARK = "#ifdef LANES"  # of sources that can be compiled over lanes
 # Of src/runtime what goes with them, by patterns.
 RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*.c", "contacts/*.c", "planes/*.c", "methods/projection.c",
-                 *(f"support/{name}.c" for name in ("series_limit", "ldlt", "saddle", "oblique"))]  # fmt: skip
+                 *(f"support/{name}.c" for name in ("series_limit", "instructions", "ldlt", "saddle", "oblique"))]  # fmt: skip
 LANES_HEAD = '#include "generated.h"\n'
 ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone
 SYSTEM, NO_SYSTEM = '#include "system.c"\n', "const struct Lagrangian lagrangian = {0};\n"
-ONE_HEAD = '#undef LANES\n#define LANES 1\n#define SERIES_ROLLED 1\n#include "lagrangian.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
+ONE_HEAD = '#undef LANES\n#define LANES 1\n#define SERIES_ROLLED 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
 
 
 def lanes_here(runner):

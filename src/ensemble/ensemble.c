@@ -59,7 +59,7 @@ static void load(struct Group *group, int lane) {
 static void follow(struct Group *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
-  struct Point point = {.parameter = steps->parameter};
+  struct Point point = {.parameter = steps->parameter, .work = steps->point_work};
   if (lagrangian.initial_state == NULL) return;
   lagrangian.initial_state(&point, steps->state);
   for (size_t i = 0; i < lagrangian.variable_count; i++) {

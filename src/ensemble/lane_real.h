@@ -9,6 +9,8 @@ typedef Mask Condition;
 #define BOTH(first, second) ((first) & (second))
 
 #define REAL(number) LANES_OF(number)
+#define CONSTANT(number) LANES_CONSTANT(number)
+#define FUNCTION(name) lanes_##name
 #define WHERE(condition, first, second) lanes_select(condition, LANES_OF(first), LANES_OF(second))
 
 #define ANYWHERE(condition) any_lane(condition)

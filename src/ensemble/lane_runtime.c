@@ -3,6 +3,7 @@
 
 /* NOLINTBEGIN(bugprone-suspicious-include) */
 #include "events/chebyshev.c"
+#include "support/instructions.c"
 #include "support/ldlt.c"
 #include "support/saddle.c"
 /* NOLINTEND(bugprone-suspicious-include) */

@@ -28,7 +28,8 @@ static Series *take_series(Lanes **block, size_t count) {
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t series = states + inputs + lagrangian.taylor.rows;
-  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count + inputs + 6 * states;
+  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count +
+                lagrangian.work_count + inputs + 6 * states;
   size_t size = (rows + 1) * sizeof(Lanes);
   char *memory = malloc(size);
   if (memory == NULL) return false;
@@ -50,6 +51,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   steps->change = take(&block, states);
   steps->state = take(&block, states);
   steps->rate = take(&block, states);
+  steps->point_work = take(&block, lagrangian.work_count);
   return true;
 }
 
@@ -155,7 +157,8 @@ struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time) {
                         .state = steps->state,
                         .input = steps->constants,
                         .parameter = steps->parameter,
-                        .prepared = steps->prepared};
+                        .prepared = steps->prepared,
+                        .work = steps->point_work};
 }
 
 /*

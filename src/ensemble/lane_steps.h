@@ -20,6 +20,7 @@ struct LaneSteps {
   Series *x, *input, *work;   /* x[i][0] is the state at the origin */
   Lanes *derivative, *change; /* at the end of the reach, where they were measured; see taylor.h */
   Lanes *state, *rate;        /* a state that is looked at, and scratch */
+  Lanes *point_work;          /* of generated functions */
   Mask is_limited;            /* the step is short for another reason than the size of its coefficients */
   Lanes fast;                 /* how many of the last steps fast modes may have bounded, one after another */
   Lanes path, steps;          /* of the last steps that are not, how far they moved the state, and how many */

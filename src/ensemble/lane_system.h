@@ -16,6 +16,11 @@
 #define chebyshev_tail lane_chebyshev_tail
 #define chebyshev_derivative lane_chebyshev_derivative
 #define chebyshev_powers lane_chebyshev_powers
+#define instructions_frame lane_instructions_frame
+#define instructions_seed lane_instructions_seed
+#define instructions_run lane_instructions_run
+#define instructions_run_order lane_instructions_run_order
+#define instructions_limit lane_instructions_limit
 #define ldlt_factor lane_ldlt_factor
 #define ldlt_product_of_rows lane_ldlt_product_of_rows
 #define ldlt_solve lane_ldlt_solve
@@ -23,6 +28,7 @@
 #define saddle_solve lane_saddle_solve
 #define saddle_least_forces lane_saddle_least_forces
 
+#include "instructions.h"
 #include "lagrangian.h"
 #include "ldlt.h"
 #include "saddle.h"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from building import build_systems
-from ensemble_runs import HERE, alone, assert_as_alone, ensemble, starts, states
+from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemble, starts, states
 
 # What varies, in which ranges, and the end. Contacts, stops, frictions, events that set modes, loops, wheels.
 SYSTEMS = {
@@ -20,7 +20,6 @@ SYSTEMS = {
     "RollingDisk": ({"m": (0.5, 2)}, 1),
     "FreeBody": ({"m": (0.5, 2)}, 1),
 }
-LANES = [lanes for lanes in (2, 4, 8) if lanes <= HERE]
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -31,13 +30,7 @@ def test_each_run_is_that_of_the_fmu_alone(name):
 
 @pytest.mark.parametrize("name", ["BouncingBall", "HardStopPendulum", "PendulumCartesian"])
 def test_a_run_has_the_same_bits_among_any_others(name):
-    ranges, stop = SYSTEMS[name]
-    rows, asked = starts(ranges, 30), [*states(name), "totalEnergy"]
-    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
-    for lanes in LANES:
-        one = ensemble(name, ranges, asked, [0, stop], lanes)
-        order = np.random.default_rng(2).permutation(len(rows))[:17]
-        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
+    assert_same_bits(name, *SYSTEMS[name])
 
 
 def test_long_runs_keep_to_their_constraints():
@@ -90,7 +83,7 @@ CHATTER = '<event when="x" direction="falling"><set velocity="v">-0.5*v</set></e
 @pytest.fixture(scope="module")
 def of_tests():
     kinds = {"NarrowWall": WALL, "Door": DOOR, "Chatter": CHATTER}
-    build_systems("ensembles", {name: SYSTEM.format(name=name, more=more) for name, more in kinds.items()})
+    build_systems("ensemble-events", {name: SYSTEM.format(name=name, more=more) for name, more in kinds.items()})
 
 
 def test_a_narrow_wall_is_not_passed_over(of_tests):

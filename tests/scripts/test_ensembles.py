@@ -9,7 +9,7 @@ import pytest
 
 from building import build_systems
 from closed_forms import kepler, pendulum_angle
-from ensemble_runs import HERE, alone, assert_as_alone, ensemble, starts, states
+from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemble, starts, states
 from fmu import ROOT, archive
 from scripts.ensembles import includes, source_of
 
@@ -27,9 +27,9 @@ SYSTEMS = {
     "DampedPendulum": ({"theta": (-3, 3), "tau": (-3, 3), "b": (0, 1)}, 5),  # by auto, but not stiff; so are the next two
     "ElasticPendulum": ({"theta": (-1, 1), "k": (10, 100), "c": (0, 5)}, 2),
     "Gyrocompass": ({"alpha": (-1, 1), "b": (0, 1e-3)}, 0.1),
-    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # whose masses are factored as it runs
+    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # whose masses are factored as it runs, as are the next one's
+    "RobotArm": ({"q[1]": (-0.5, 0.5), "w[3]": (-1, 1)}, 0.5),  # in tables
 }
-NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # of lanes, that this processor can do
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -40,16 +40,7 @@ def test_each_run_is_that_of_the_fmu_alone(name):
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])
 def test_a_run_has_the_same_bits_among_any_others(name):
-    """Whatever its lane, how many lanes there are, and where the others begin and end."""
-    ranges, stop = SYSTEMS[name]
-    rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
-    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
-    for lanes in NUMBERS:
-        one = ensemble(name, ranges, asked, [0, stop], lanes)
-        np.testing.assert_array_equal(one.run(rows)[0], values)
-        order = np.random.default_rng(2).permutation(len(rows))[:37]
-        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
-        np.testing.assert_array_equal(one.run(rows[7:8])[0], values[7:8])
+    assert_same_bits(name, *SYSTEMS[name])
 
 
 def test_pendulums_in_closed_form():
@@ -159,8 +150,8 @@ def test_runs_that_end_in_a_singularity_are_left_alone():
 
 
 def test_what_lanes_do_not_serve():
-    """Methods that are exact, equations in tables, and systems without states; and values that are no Real or no state."""
-    for name in ("ParticleCartesian", "Rope", "StateFeedback"):
+    """Methods that are exact, and systems without states; and values that are no Real or no state."""
+    for name in ("ParticleCartesian", "StateFeedback"):
         assert source_of(archive(name)) is None, name
     assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
     assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
@@ -172,20 +163,22 @@ FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(
              "1/(4 + x)^4", "atan2(x, 1 + x^2)", "(1 + x^2)/(3 - x)", "sin(time + x)"]  # fmt: skip
 
 
-def test_functions_and_their_series():
+@pytest.mark.parametrize("form", ["statements", "tables"])
+def test_functions_and_their_series(form):
     """A particle for each function, in it as a potential, whose force is its derivative; and a start that follows from a parameter."""
     particles = "".join(
         f'<coordinate name="x{i}" velocity="v{i}" start="n/{i + 3}"/><particle name="p{i}" mass="m" x="x{i}"/><potential>{function.replace("exp", "EXP").replace("x", f"x{i}").replace("EXP", "exp")}</potential>'
         for i, function in enumerate(FUNCTIONS)
     )
     head = '<parameter name="m" start="1"/><parameter name="n" start="1.5"/>'
-    build_systems("ensembles", {"Functions": f'<system name="Functions">{head}{particles}<solver method="taylor"/></system>'})
+    name = f"FunctionsIn{form.title()}"
+    build_systems("ensembles", {name: f'<system name="{name}">{head}{particles}<solver method="taylor"/></system>'}, "--form", form)
     ranges = {"m": (1, 2), "n": (0.5, 2.5), **{f"x{i}": (-0.7, 0.7) for i in range(len(FUNCTIONS) - 3)}}
-    rows, asked = starts(ranges, HERE + 3), states("Functions")
-    values, is_left = ensemble("Functions", ranges, asked, [0.4]).run(rows)
+    rows, asked = starts(ranges, HERE + 3), states(name)
+    values, is_left = ensemble(name, ranges, asked, [0.4]).run(rows)
     assert not is_left.any()
     for row, value in zip(rows, values):
-        np.testing.assert_allclose(value[0], alone("Functions", dict(zip(ranges, row)), asked, 0.4)[-1], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(value[0], alone(name, dict(zip(ranges, row)), asked, 0.4)[-1], rtol=1e-9, atol=1e-9)
 
 
 SINES = """

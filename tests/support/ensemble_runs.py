@@ -9,6 +9,7 @@ from scripts.ensembles import Ensemble, lanes_here, source_of
 from scripts.sweep import compile_ensemble
 
 HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")  # the lanes of this processor
+NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # that it can do
 
 
 def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
@@ -42,3 +43,15 @@ def assert_as_alone(name, ranges, stop, count, tolerance):
         expected = alone(name, dict(zip(ranges, row)), asked, stop, 10)
         for k, result in zip((0, 3, 10), value):
             np.testing.assert_allclose(result, expected[k], rtol=tolerance, atol=tolerance)
+
+
+def assert_same_bits(name, ranges, stop):
+    """Of a run among any others: whatever its lane, how many lanes there are, and where the others begin and end."""
+    rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
+    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
+    for lanes in NUMBERS:
+        one = ensemble(name, ranges, asked, [0, stop], lanes)
+        np.testing.assert_array_equal(one.run(rows)[0], values)
+        order = np.random.default_rng(2).permutation(len(rows))[:37]
+        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
+        np.testing.assert_array_equal(one.run(rows[7:8])[0], values[7:8])

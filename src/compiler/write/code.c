@@ -36,12 +36,12 @@ static bool has_solver(const struct Program *program, const char *name) {
 }
 
 /*
- * Whether the functions can be compiled over lanes too: see src/ensemble. Tables of instructions, and blocks in which forces
- * that follow from the accelerations are eliminated, work on numbers of one run.
+ * Whether the functions can be compiled over lanes too: see src/ensemble. Blocks in which forces that follow from the
+ * accelerations are eliminated work on numbers of one run.
  */
 static bool has_lanes(const struct Program *program) {
   bool is_taylor = has_solver(program, "taylor") || has_solver(program, "auto");
-  return program->series != NULL && is_taylor && !program->is_table && !has_oblique_block(program);
+  return program->series != NULL && is_taylor && !has_oblique_block(program);
 }
 
 /*
