@@ -37,9 +37,9 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
   if (space >= SPACE_ROW) fputs(elements[role], file);
 }
 
-/* Whether the operands are constants, of which lanes make a vector. */
+/* Whether the result follows from constants alone, of which lanes make a vector. */
 static bool has_only_numbers(const struct Instruction *instruction) {
-  int arity = opcode_arity(instruction->opcode);
+  int arity = opcode_has_result(instruction->opcode) ? opcode_arity(instruction->opcode) : 0;
   for (int i = 0; i < arity; i++)
     if (space_of(instruction->operands[i]) != SPACE_NUMBER) return false;
   return arity > 0;
