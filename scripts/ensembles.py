@@ -10,7 +10,7 @@ import numpy as np
 
 MARK = "#ifdef LANES"  # of sources that can be compiled over lanes
 # Of src/runtime what goes with them, by patterns.
-RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*.c", "contacts/*.c", "planes/*.c", "methods/projection.c",
+RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*.c", "contacts/*.c", "planes/*.c", "methods/projection.c", "fmi/check.c", "fmi/reverse_sweep.c",
                  *(f"support/{name}.c" for name in ("series_limit", "instructions", "ldlt", "saddle", "oblique"))]  # fmt: skip
 LANES_HEAD = '#include "generated.h"\n'
 ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone

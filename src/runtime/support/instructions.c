@@ -27,6 +27,7 @@ void instructions_seed(struct Frame *frame, const struct Seed *seed) {
   frame->base[SPACE_SEED_STATE] = (Real *)seed->state;
   frame->base[SPACE_SEED_INPUT] = (Real *)seed->input;
   frame->base[SPACE_SEED_TIME] = (Real *)&seed->time;
+  frame->base[SPACE_SEED_RESULT] = (Real *)seed->result;
 }
 
 static inline Real *at(Real *const *base, Place place) {
