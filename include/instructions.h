@@ -115,27 +115,27 @@ struct BlockTable {
   const size_t *start, *column; /* NULL where the pattern is full */
   const int *coordinate;        /* of each row: 1 + its number; of a constraint -1 - its number */
   /* saddle_factor(), saddle_solve() and saddle_least_forces() of a block with constraints, NULL of others */
-  size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
-  void (*solve)(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
-  void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
-                       double *x);
+  size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
+  void (*solve)(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
+  void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                       Real *x);
   /* oblique_solve() of a block with forces that follow from others, NULL of others */
-  void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
-                          double *x);
+  void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                          Real *x);
 };
 
 /* What all tables of a system share. */
 struct InstructionTables {
-  const double *numbers;
-  double (*const *functions)(double);
-  double (*const *functions_of_two)(double, double);
+  const Real *numbers;
+  Real (*const *functions)(Real);
+  Real (*const *functions_of_two)(Real, Real);
   const struct BlockTable *blocks;
   size_t local_count, mass_count, side_count; /* the workspace holds these, then the accelerations */
 };
 
 /* Where the spaces are while a function runs. */
 struct Frame {
-  double *base[SPACE_COUNT];
+  Real *base[SPACE_COUNT];
   const struct InstructionTables *tables;
 };
 

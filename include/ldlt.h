@@ -10,17 +10,18 @@
 #include <stddef.h>
 
 #include "arithmetic.h"
+#include "real.h"
 
 /* Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the row in which M is not definite. */
-size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, double *m);
+size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m);
 
 /*
  * The sum of L_ik D_k L_jk over the columns k < j that rows i and j share, from L in the columns of row j and L D in those
  * of row i; place: where row i has column j.
  */
-double ldlt_product_of_rows(const size_t *start, const size_t *column, const double *m, size_t i, size_t place);
+Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t place);
 
 /* Solves L D L^T x = b in place, with the result of ldlt_factor(). */
-void ldlt_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
+void ldlt_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
 #endif

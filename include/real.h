@@ -5,13 +5,26 @@
 #ifndef REAL_H
 #define REAL_H
 
+#include <stdbool.h>
+
 typedef double Real;
+
+/* What a comparison of two gives. */
+typedef bool Condition;
+#define BOTH(first, second) ((first) && (second))
 
 /* A constant among them. */
 #define REAL(number) (number)
 
+/* The same where an array is initialized, and a function of <math.h> there. */
+#define CONSTANT(number) (number)
+#define FUNCTION(name) name
+
 /* The first where the condition holds, else the second. */
 #define WHERE(condition, first, second) ((condition) ? (first) : (second))
+
+/* Whether it holds in any of them. */
+#define ANYWHERE(condition) (condition)
 
 /* Lets the function return the number unless the condition holds. */
 #define REQUIRE(condition, number)                                                                                     \

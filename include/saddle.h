@@ -11,6 +11,8 @@
 
 #include <stddef.h>
 
+#include "real.h"
+
 #define SADDLE_MASS(elements, n) (2 * (elements) + 1 + 2 * (n))
 #define SADDLE_SIDE(n) (4 * (n))
 
@@ -19,19 +21,19 @@
  * constraints. A constraint that follows from those before it gets an infinite pivot, so that 0 is found for its force.
  * Returns 0, or 1 + the row in which M is not definite.
  */
-size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
+size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*
  * Solves K x = b in place. Where a constraint has little hold, the solution is refined: -J M^-1 J^T has lost twice the
  * digits that K has lost.
  */
-void saddle_solve(size_t n, const size_t *start, const size_t *column, const double *m, double *x);
+void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
 /*
  * Where constraints follow from others, many forces F have the same J^T F. Replaces those in x by the ones among them of
  * least Euclidean norm.
  */
-void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
-                         double *x);
+void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                         Real *x);
 
 #endif

@@ -23,6 +23,12 @@ struct SeriesLimit {
   bool surrounds;       /* what lies before the point counts as well; powers shorten it then too */
 };
 
+/* A call of one of the functions below, where the condition holds. */
+#define LIMIT_WHERE(condition, ...)                                                                                    \
+  do {                                                                                                                 \
+    if (condition) __VA_ARGS__;                                                                                        \
+  } while (0)
+
 /* exp(u), also as the power of a constant */
 void series_limit_exponential(struct SeriesLimit *limit, const double *u, const char *function);
 

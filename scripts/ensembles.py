@@ -1,6 +1,6 @@
 """
-Many runs of an FMU at once: its equations, which stand in its sources, compiled over the vectors of this machine's processor (src/ensemble). Those
-of systems with Taylor series, where nothing switches and no constraint holds, can be. Also a module of the wheel.
+Many runs of an FMU at once: its equations, which stand in its sources, compiled over the vectors of this machine's processor (src/ensemble), and
+once more for one run, for its events and constraints. Those of systems with Taylor series can be. Also a module of the wheel.
 """
 
 import zipfile
@@ -9,6 +9,13 @@ from ctypes import CDLL, Structure, byref, c_bool, c_double, c_size_t, c_void_p
 import numpy as np
 
 MARK = "#ifdef LANES"  # of sources that can be compiled over lanes
+# Of src/runtime what goes with them, by patterns.
+RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*.c", "contacts/*.c", "planes/*.c", "methods/projection.c", "fmi/check.c", "fmi/reverse_sweep.c",
+                 *(f"support/{name}.c" for name in ("series_limit", "instructions", "ldlt", "saddle", "oblique"))]  # fmt: skip
+LANES_HEAD = '#include "generated.h"\n'
+ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone
+SYSTEM, NO_SYSTEM = '#include "system.c"\n', "const struct Lagrangian lagrangian = {0};\n"
+ONE_HEAD = '#undef LANES\n#define LANES 1\n#define SERIES_ROLLED 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
 
 
 def lanes_here(runner):
@@ -21,14 +28,24 @@ def source_of(fmu):
     with zipfile.ZipFile(fmu) as archive:
         names = [name for name in archive.namelist() if name.startswith("sources/") and name.endswith(".c")]
         texts = [archive.read(name).decode() for name in names]
-    return next((f'#include "generated.h"\n{text}' for text in texts if MARK in text), None)
+    return next((text for text in texts if MARK in text), None)
 
 
-def words(root, lanes, source, library):
-    """What a C compiler takes to make the library, but for the C in src/ensemble and src/runtime/support/series_limit.c, compiled or not."""
-    folder = root / "src" / "ensemble"
-    return [f"@{folder / 'lanes.flags'}", f"@{folder / f'lanes{lanes}.flags'}", "-fPIC", "-shared", "-I", folder, "-I", root / "include",
-            "-I", root / "src" / "runtime", source, "-o", library]  # fmt: skip
+def words(root, lanes, source, folder, library):
+    """
+    What a C compiler takes to make the library of an FMU's source, but for the C in src/ensemble and in the runtime, compiled or not. Leaves in the
+    folder what it compiles: the equations over lanes, and those of one run.
+    """
+    ensemble, needs_one = root / "src" / "ensemble", any(mark in source for mark in ONE_MARKS)
+    texts = {"system": source, "lanes": f"{LANES_HEAD}{SYSTEM}", "one": f"{ONE_HEAD}{SYSTEM if needs_one else NO_SYSTEM}"}
+    for name, text in texts.items():
+        (folder / f"{name}.c").write_text(text, encoding="utf-8")
+    return [f"@{ensemble / 'lanes.flags'}", f"@{ensemble / f'lanes{lanes}.flags'}", "-fPIC", "-shared", *includes(root),
+            *(folder / f"{name}.c" for name in ("lanes", "one")), "-o", library]  # fmt: skip
+
+
+def includes(root):
+    return [word for path in ("src/ensemble", "include", "src/runtime") for word in ("-I", root / path)]
 
 
 class Request(Structure):

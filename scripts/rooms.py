@@ -73,7 +73,7 @@ RUNTIME = House(
     """.split(),
     ["src/runtime"],
 )
-ENSEMBLE = House(["src/ensemble"], ["src/ensemble"])
+ENSEMBLE = House(["src/ensemble/single", "src/ensemble"], ["src/ensemble"])
 HOUSES = [LAGC, RUNTIME, ENSEMBLE]
 
 

@@ -6,7 +6,6 @@ until all are there, so that the same command goes on after a kill. Also a modul
 """
 
 import hashlib
-import itertools
 import json
 import os
 import shutil
@@ -27,8 +26,9 @@ from .variables import settable, why_not
 
 CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
 LANES_CHUNK, LANES_PARTS = 1000, 25  # the same in lanes, which take less time for a run than to write it
+LARGEST_CHUNK = 20000  # so that memory does not grow with the number of runs
 LANES_FROM = 2000  # runs, with which the lanes need less time than a compiler for them
-IN_FLIGHT = 3  # tasks a worker thread, so that memory does not grow with the number of runs
+IN_FLIGHT = 3  # tasks a worker thread, likewise
 
 
 def known_name(name, description):
@@ -55,7 +55,7 @@ def points(variations, random, seed):
         if isinstance(values, tuple) and values[2] is None:
             raise Problem(f"'{name}' has no COUNT; expected {name}=FROM:TO:COUNT, or --random RUNS")
         axes.append(np.linspace(*values) if isinstance(values, tuple) else values)
-    return np.array(list(itertools.product(*axes)))
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
 def replace(temporary, path):
@@ -63,6 +63,12 @@ def replace(temporary, path):
     with open(temporary, "rb+") as file:
         os.fsync(file.fileno())
     os.replace(temporary, path)
+
+
+def read(path):
+    """A table; pyarrow's read_table would first load what data sets of many files need."""
+    with pq.ParquetFile(path) as file:
+        return file.read()
 
 
 class Parts:
@@ -93,7 +99,7 @@ class Parts:
 
     def is_whole(self, chunk, runs):
         try:
-            return pq.read_table(self.path(chunk)).num_rows == runs
+            return read(self.path(chunk)).num_rows == runs
         except (pa.ArrowException, OSError):
             return False
 
@@ -101,7 +107,7 @@ class Parts:
         """One file of all parts in the order of the runs, a part at a time."""
         temporary, writer = output.with_suffix(".part"), None
         for chunk in range(count):
-            table = pq.read_table(self.path(chunk))
+            table = read(self.path(chunk))
             writer = writer or pq.ParquetWriter(temporary, table.schema)
             writer.write_table(table)
         writer.close()
@@ -128,7 +134,7 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
 def simulate(executor, width, archive, runner, rows, names, settings, parts, ensemble=None):
     """Keeps that many tasks in flight; writes each as it ends."""
     least, most = (LANES_CHUNK, LANES_PARTS) if ensemble else (CHUNK, PARTS)
-    size = max(least, -(-len(rows) // most))
+    size = min(max(least, -(-len(rows) // most)), LARGEST_CHUNK)
     count = -(-len(rows) // size)
     runs_of = lambda chunk: range(chunk * size, min((chunk + 1) * size, len(rows)))
     finished = parts.finished(runs_of)
@@ -171,14 +177,24 @@ def simulate_with_dask(address, *words):
 
 
 def print_summary(output):
-    table = pq.read_table(output, columns=["energyError", "runTime", "problem"])
-    problems = [p for p in table["problem"].to_pylist() if p is not None]
-    errors = np.abs(np.array(table["energyError"].to_pylist(), dtype=float))
-    print(f"{table.num_rows} runs, {len(problems)} failed")
-    if problems:
-        print(f"the first failure: {problems[0]}")
-    if np.any(np.isfinite(errors)):
-        print(f"largest relative error of the energy: {np.nanmax(errors):.3g}")
+    """Of the file, a part at a time."""
+    count, failed, first, largest = 0, 0, None, None  # largest: error of the energy, where it has a law
+    with pq.ParquetFile(output) as file:
+        for group in range(file.num_row_groups):
+            table = file.read_row_group(group, columns=["energyError", "problem"])
+            count += table.num_rows
+            problems = table["problem"].drop_null()
+            failed += len(problems)
+            first = first or (problems[0].as_py() if problems else None)
+            errors = np.abs(table["energyError"].to_numpy())
+            errors = errors[np.isfinite(errors)]
+            if errors.size:
+                largest = max(largest or 0.0, np.max(errors))
+    print(f"{count} runs, {failed} failed")
+    if failed:
+        print(f"the first failure: {first}")
+    if largest is not None:
+        print(f"largest relative error of the energy: {largest:.3g}")
     print(f"result  {output.resolve()}")
 
 

@@ -1,5 +1,6 @@
 #include "ensemble.h"
 
+#include "lane_events.h"
 #include "lane_steps.h"
 #include "lane_values.h"
 
@@ -7,6 +8,7 @@
 struct Group {
   const struct Ensemble *ensemble;
   struct LaneSteps steps;
+  struct LaneEvents events;
   Mask is_active;
   size_t run[LANES], time[LANES]; /* of each active lane, and the next of the times */
   size_t next, end;               /* runs that are to come */
@@ -15,7 +17,8 @@ struct Group {
 static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *variable, int lane, double value) {
   if (variable->kind == VARIABLE_STATE) steps->x[variable->index][0][lane] = value;
   if (variable->kind == VARIABLE_INPUT) steps->constants[variable->index][lane] = value;
-  if (variable->kind == VARIABLE_PARAMETER) steps->parameter[variable->index][lane] = value;
+  if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
+    steps->parameter[variable->index][lane] = value;
 }
 
 /* Whether the FMU would take the value. */
@@ -56,7 +59,7 @@ static void load(struct Group *group, int lane) {
 static void follow(struct Group *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
-  struct Point point = {.parameter = steps->parameter};
+  struct Point point = {.parameter = steps->parameter, .work = steps->point_work};
   if (lagrangian.initial_state == NULL) return;
   lagrangian.initial_state(&point, steps->state);
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
@@ -79,32 +82,45 @@ static void fill(struct Group *group) {
     is_new &= group->is_active;
     if (!any_lane(is_new)) return;
     follow(group, is_new);
+    if (lane_events_are_needed()) leave(group, lane_events_start(&group->events, is_new));
     leave(group, lane_steps_start(&group->steps) & is_new);
   } while (any_lane(~group->is_active) && group->next < group->end);
 }
 
-/* The states at the times that the series reach; a run is over at the last of them. */
+/* The lanes whose next time lies before their events, or in their reach where there is none; time: these times. */
+static Mask find_reached(const struct Group *group, Lanes *time) {
+  const double *times = group->ensemble->times;
+  Lanes end = group->steps.origin + group->steps.reach;
+  Mask is_reached = {0};
+  for (int i = 0; i < LANES; i++) {
+    double next = times[group->time[i]];
+    bool is_before = group->events.happens[i] ? next < group->events.time[i] : next <= end[i];
+    if (!group->is_active[i] || !is_before) continue;
+    (*time)[i] = next;
+    is_reached[i] = -1;
+  }
+  return is_reached;
+}
+
+/* What is asked at the times that the series reach; a run is over at the last of them. */
 static void deliver(struct Group *group) {
   const struct Ensemble *ensemble = group->ensemble;
-  const double *times = ensemble->times;
-  Lanes end = group->steps.origin + group->steps.reach;
   for (;;) {
     Lanes time = group->steps.origin;
-    Mask is_reached = {0};
-    for (int i = 0; i < LANES; i++) {
-      if (!group->is_active[i] || !(times[group->time[i]] <= end[i])) continue;
-      time[i] = times[group->time[i]];
-      is_reached[i] = -1;
-    }
+    Mask is_reached = find_reached(group, &time), is_over = {0};
     if (!any_lane(is_reached)) return;
-    leave(group, lane_values_tell(ensemble, &group->steps, time, is_reached, group->run, group->time));
+    lane_steps_take_state(&group->steps, time);
+    Mask is_lost = lane_events_project(&group->events, time, is_reached);
+    is_lost |= lane_values_tell(ensemble, &group->events, time, is_reached, group->run, group->time);
     for (int i = 0; i < LANES; i++)
-      if (is_reached[i] && ++group->time[i] == ensemble->time_count) group->is_active[i] = 0;
+      if (is_reached[i] && ++group->time[i] == ensemble->time_count) is_over[i] = -1;
+    leave(group, is_lost | lane_events_may_not_end(&group->events, time, is_over));
+    group->is_active &= ~is_over;
   }
 }
 
 bool ensemble_serves(const struct Ensemble *ensemble) {
-  bool serves = lagrangian.steps.max_steps == 0;
+  bool serves = lagrangian.steps.max_steps == 0 && lagrangian.constraints.guide_count == 0;
   for (size_t i = 0; i < ensemble->varied_count; i++)
     serves &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
   for (size_t i = 0; i < ensemble->asked_count; i++)
@@ -116,11 +132,16 @@ bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {
   struct Group group = {.ensemble = ensemble, .next = first, .end = first + count};
   double tolerance = ensemble->tolerance > 0.0 ? ensemble->tolerance : lagrangian.steps.tolerance;
   if (!lane_steps_create(&group.steps, tolerance, ensemble->times[ensemble->time_count - 1])) return false;
-  for (fill(&group); any_lane(group.is_active); fill(&group)) {
+  bool has_memory = lane_events_create(&group.events, &group.steps);
+  if (has_memory) fill(&group);
+  for (; has_memory && any_lane(group.is_active); fill(&group)) {
     leave(&group, lane_steps_expand(&group.steps, group.is_active));
+    leave(&group, lane_events_find(&group.events, group.is_active));
     deliver(&group);
     leave(&group, lane_steps_move(&group.steps) & group.is_active);
+    leave(&group, lane_events_go_on(&group.events, group.is_active));
   }
+  lane_events_destroy(&group.events);
   lane_steps_destroy(&group.steps);
-  return true;
+  return has_memory;
 }

@@ -4,6 +4,11 @@
 
 #include "lanes.h"
 
+/* By their names in C. */
+#define lanes_fabs lanes_absolute
+#define lanes_fmin lanes_smaller
+#define lanes_fmax lanes_larger
+
 /* Lane by lane, by the function of C. */
 #define LANE_FUNCTION(name)                                                                                            \
   LANES_INLINE Lanes lanes_##name(Lanes x) {                                                                           \

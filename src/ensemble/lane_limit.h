@@ -6,13 +6,26 @@
 #define SERIES_LIMIT_H
 
 #include "lane_series.h"
-#include "single_lane.h"
+#include "single/single_lane.h"
 
 struct SeriesLimit {
   int order;      /* of the polynomials */
   Lanes step;     /* what the functions below shorten */
   Mask shortened; /* the lanes in which they did */
 };
+
+/* Takes back what was shortened outside of the lanes. */
+LANES_INLINE void lane_limit_keep(struct SeriesLimit *limit, struct SeriesLimit before, Mask lanes) {
+  limit->step = lanes_select(lanes, limit->step, before.step);
+  limit->shortened = before.shortened | (limit->shortened & lanes);
+}
+
+#define LIMIT_WHERE(condition, ...)                                                                                    \
+  do {                                                                                                                 \
+    struct SeriesLimit before_limit = *limit;                                                                          \
+    __VA_ARGS__;                                                                                                       \
+    lane_limit_keep(limit, before_limit, condition);                                                                   \
+  } while (0)
 
 /* Lets the rule shorten the step where u may go further than the bound from u_0. other: NULL where there is none. */
 void lane_limit(struct SeriesLimit *limit, SingleLimit *rule, Lanes bound, const Lanes *u, const Lanes *other,

@@ -5,9 +5,15 @@
 #include "lanes.h"
 
 typedef Lanes Real;
+typedef Mask Condition;
+#define BOTH(first, second) ((first) & (second))
 
 #define REAL(number) LANES_OF(number)
+#define CONSTANT(number) LANES_CONSTANT(number)
+#define FUNCTION(name) lanes_##name
 #define WHERE(condition, first, second) lanes_select(condition, LANES_OF(first), LANES_OF(second))
+
+#define ANYWHERE(condition) any_lane(condition)
 
 /* The lanes of which the functions below refused a condition; whoever calls them empties it before. */
 extern _Thread_local Mask lanes_refused;

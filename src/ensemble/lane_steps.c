@@ -7,17 +7,8 @@
 
 _Thread_local Mask lanes_refused;
 
-/* What a system's table names of the runtime of FMUs. The method is this file; nobody asks how matrices are factored. */
-struct Solver {
-  bool hands_over; /* to another method where the system is stiff */
-};
-struct Lu {
-  int nothing;
-};
-extern const struct Solver solver_taylor, solver_auto;
-extern const struct Lu lu_dense, lu_sparse;
-const struct Solver solver_taylor = {.hands_over = false}, solver_auto = {.hands_over = true};
-const struct Lu lu_dense = {0}, lu_sparse = {0};
+/* The one method that hands over to another where a system is stiff (single/single_run.c). */
+extern const struct Solver solver_auto;
 
 static const double logarithm_of_2 = 0.69314718055994530942;
 
@@ -37,7 +28,8 @@ static Series *take_series(Lanes **block, size_t count) {
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t series = states + inputs + lagrangian.taylor.rows;
-  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count + inputs + 6 * states;
+  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count +
+                lagrangian.work_count + inputs + 6 * states;
   size_t size = (rows + 1) * sizeof(Lanes);
   char *memory = malloc(size);
   if (memory == NULL) return false;
@@ -59,6 +51,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   steps->change = take(&block, states);
   steps->state = take(&block, states);
   steps->rate = take(&block, states);
+  steps->point_work = take(&block, lagrangian.work_count);
   return true;
 }
 
@@ -103,8 +96,9 @@ static Lanes change_and_rate(const struct LaneSteps *steps, size_t i, Lanes s, L
   return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
 }
 
-Lanes lane_steps_state(const struct LaneSteps *steps, size_t i, Lanes time) {
-  return steps->x[i][0] + (change(steps, i, time - steps->origin) + steps->low[i]);
+void lane_steps_take_state(struct LaneSteps *steps, Lanes time) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    steps->state[i] = steps->x[i][0] + (change(steps, i, time - steps->origin) + steps->low[i]);
 }
 
 /* --- The promise of the last coefficients -------------------------------------------------------------------------- */
@@ -158,12 +152,13 @@ static Lanes promised_step(const struct LaneSteps *steps) {
 
 /* --- The defect ---------------------------------------------------------------------------------------------------- */
 
-static struct Point point_at(const struct LaneSteps *steps, Lanes time, const Lanes *state) {
+struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time) {
   return (struct Point){.time = time,
-                        .state = state,
+                        .state = steps->state,
                         .input = steps->constants,
                         .parameter = steps->parameter,
-                        .prepared = steps->prepared};
+                        .prepared = steps->prepared,
+                        .work = steps->point_work};
 }
 
 /*
@@ -175,7 +170,7 @@ static Mask right_side(struct LaneSteps *steps, Lanes s, double share, Lanes *de
     steps->state[i] = steps->x[i][0] + (steps->change[i] + steps->low[i]);
     if (share != 0.0) steps->state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
   }
-  struct Point point = point_at(steps, steps->origin + s, steps->state);
+  struct Point point = lane_steps_point(steps, steps->origin + s);
   lanes_refused = (Mask){0};
   lagrangian.taylor.start(&point, derivative, steps->work);
   return lanes_refused;
@@ -287,7 +282,7 @@ static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *
  */
 static Mask may_be_stiff(struct LaneSteps *steps) {
   enum { FAST_STEPS = 12 };
-  if (!lagrangian.solver->hands_over) return (Mask){0};
+  if (lagrangian.solver != &solver_auto) return (Mask){0};
   Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);
   Mask is_fast = (FALL_OF_FAST * FALL_OF_FAST * last > before) & ~steps->is_limited;
   steps->fast = lanes_select(is_fast, steps->fast + 1.0, (Lanes){0});
@@ -298,7 +293,7 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
   measure_scales(steps);
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->x[i][1] = steps->derivative[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) steps->input[i][0] = steps->constants[i];
-  struct Point point = point_at(steps, steps->origin, NULL);
+  struct Point point = lane_steps_point(steps, steps->origin);
   lagrangian.taylor.series(&point, steps->order, (const Series *)steps->input, steps->x, steps->work);
   Lanes promised = promised_step(steps);
   struct SeriesLimit limit = {.order = steps->order - 1, .step = lanes_smaller(promised, LANES_OF(steps->longest))};
@@ -341,7 +336,7 @@ Mask lane_steps_start(struct LaneSteps *steps) {
   lanes_refused = (Mask){0};
   lagrangian.prepare(steps->parameter, steps->prepared);
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->state[i] = steps->x[i][0];
-  struct Point point = point_at(steps, steps->origin, steps->state);
+  struct Point point = lane_steps_point(steps, steps->origin);
   lagrangian.taylor.start(&point, steps->derivative, steps->work);
   return lanes_refused;
 }

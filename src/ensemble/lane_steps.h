@@ -19,7 +19,8 @@ struct LaneSteps {
   Lanes *low;  /* what rounding left of the state at the origin */
   Series *x, *input, *work;   /* x[i][0] is the state at the origin */
   Lanes *derivative, *change; /* at the end of the reach, where they were measured; see taylor.h */
-  Lanes *state, *rate;        /* scratch */
+  Lanes *state, *rate;        /* a state that is looked at, and scratch */
+  Lanes *point_work;          /* of generated functions */
   Mask is_limited;            /* the step is short for another reason than the size of its coefficients */
   Lanes fast;                 /* how many of the last steps fast modes may have bounded, one after another */
   Lanes path, steps;          /* of the last steps that are not, how far they moved the state, and how many */
@@ -41,7 +42,10 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active);
 /* Moves the origin to the end of the reach. Returns the lanes in which many steps have hardly moved the state. */
 Mask lane_steps_move(struct LaneSteps *steps);
 
-/* The state variable at a time within the reach. */
-Lanes lane_steps_state(const struct LaneSteps *steps, size_t i, Lanes time);
+/* For generated functions, at a time and at steps->state. */
+struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time);
+
+/* steps->state at a time within the reach. */
+void lane_steps_take_state(struct LaneSteps *steps, Lanes time);
 
 #endif

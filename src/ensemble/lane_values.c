@@ -9,9 +9,9 @@ bool lane_values_can_tell(const struct ScalarVariable *variable) {
   return variable->type == TYPE_REAL && (variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_RESULT);
 }
 
-static Lanes value_of(const struct ScalarVariable *variable, const struct Point *point, const Lanes *derivative) {
+static Lanes value_of(const struct ScalarVariable *variable, const struct Point *point, const Lanes *acceleration) {
   if (variable->kind == VARIABLE_STATE) return point->state[variable->index];
-  return lagrangian.results.result(point, derivative + lagrangian.coordinate_count, variable->index);
+  return lagrangian.results.result(point, acceleration, variable->index);
 }
 
 static bool asks_for_accelerations(const struct Ensemble *ensemble) {
@@ -22,19 +22,27 @@ static bool asks_for_accelerations(const struct Ensemble *ensemble) {
   return false;
 }
 
-Mask lane_values_tell(const struct Ensemble *ensemble, const struct LaneSteps *steps, Lanes time, Mask is_reached,
-                      const size_t *run, const size_t *place) {
-  struct Point point = {.time = time,
-                        .state = steps->state,
-                        .input = steps->constants,
-                        .parameter = steps->parameter,
-                        .prepared = steps->prepared};
-  for (size_t i = 0; i < lagrangian.state_count; i++) steps->state[i] = lane_steps_state(steps, i, time);
+/* What result() takes, at steps->state, in lanes that are not lost. */
+static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *is_lost) {
+  struct LaneSteps *steps = events->steps;
+  if (lagrangian.constraints.accelerations != NULL) {
+    *is_lost = lane_events_accelerations(events, time);
+    return events->acceleration;
+  }
+  struct Point point = lane_steps_point(steps, time);
   lanes_refused = (Mask){0};
-  if (asks_for_accelerations(ensemble)) lagrangian.derivatives(&point, steps->rate);
-  Mask is_lost = lanes_refused;
+  lagrangian.derivatives(&point, steps->rate);
+  *is_lost = lanes_refused;
+  return steps->rate + lagrangian.coordinate_count;
+}
+
+Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
+                      const size_t *run, const size_t *place) {
+  struct Point point = lane_steps_point(events->steps, time);
+  Mask is_lost = {0};
+  const Lanes *acceleration = asks_for_accelerations(ensemble) ? accelerations(events, time, &is_lost) : NULL;
   for (size_t i = 0; i < ensemble->asked_count; i++) {
-    Lanes value = value_of(&lagrangian.variables[ensemble->asked[i]], &point, steps->rate);
+    Lanes value = value_of(&lagrangian.variables[ensemble->asked[i]], &point, acceleration);
     is_lost |= ~lanes_are_finite(value);
     for (int j = 0; j < LANES; j++)
       if (is_reached[j])

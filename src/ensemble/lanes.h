@@ -22,6 +22,18 @@ typedef uint64_t Bits __attribute__((vector_size(LANES * sizeof(uint64_t))));
 /* The same number in all lanes; lanes stay what they are. */
 #define LANES_OF(number) ((number) - (Lanes){0})
 
+/* Likewise, in the initializer of an array that is static. */
+#if LANES == 8
+#define LANES_CONSTANT(number)                                                                                         \
+  { number, number, number, number, number, number, number, number }
+#elif LANES == 4
+#define LANES_CONSTANT(number)                                                                                         \
+  { number, number, number, number }
+#else
+#define LANES_CONSTANT(number)                                                                                         \
+  { number, number }
+#endif
+
 LANES_INLINE Lanes lanes_select(Mask mask, Lanes first, Lanes second) {
   return (Lanes)(((Mask)first & mask) | ((Mask)second & ~mask));
 }

@@ -3,17 +3,15 @@
 import ctypes
 import subprocess
 
-import fmpy
 import mpmath
 import numpy as np
 import pytest
-from fmpy import read_model_description
 
 from building import build_systems
 from closed_forms import kepler, pendulum_angle
+from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemble, starts, states
 from fmu import ROOT, archive
-from scripts.ensembles import Ensemble, lanes_here, source_of, words
-from scripts.sweep import compile_ensemble
+from scripts.ensembles import includes, source_of
 
 # Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
 SYSTEMS = {
@@ -29,53 +27,20 @@ SYSTEMS = {
     "DampedPendulum": ({"theta": (-3, 3), "tau": (-3, 3), "b": (0, 1)}, 5),  # by auto, but not stiff; so are the next two
     "ElasticPendulum": ({"theta": (-1, 1), "k": (10, 100), "c": (0, 5)}, 2),
     "Gyrocompass": ({"alpha": (-1, 1), "b": (0, 1e-3)}, 0.1),
+    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # whose masses are factored as it runs, as are the next one's
+    "RobotArm": ({"q[1]": (-0.5, 0.5), "w[3]": (-1, 1)}, 0.5),  # in tables
 }
-HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")
-NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # of lanes, that this processor can do
-
-
-def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
-    reference = {v.name: v.valueReference for v in read_model_description(archive(name)).modelVariables}
-    library = compile_ensemble(source_of(archive(name)), lanes)
-    return Ensemble(library, [reference[v] for v in varied], [reference[v] for v in asked], times, tolerance)
-
-
-def states(name):
-    return [unknown.variable.derivative.name for unknown in read_model_description(archive(name)).derivatives]
-
-
-def starts(ranges, count, seed=1):
-    generator = np.random.default_rng(seed)
-    return np.array([generator.uniform(*span, count) for span in ranges.values()]).T
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_each_run_is_that_of_the_fmu_alone(name):
-    """The states and the energies at three times, more runs than lanes; each takes its own number of steps."""
-    ranges, stop = SYSTEMS[name]
-    asked = [*states(name), "kineticEnergy", "totalEnergy"]
-    rows, times = starts(ranges, 3 * HERE + 1), [0, 0.3 * stop, stop]
-    values, is_left = ensemble(name, ranges, asked, times).run(rows)
-    assert not is_left.any()
-    for row, value in zip(rows, values):
-        alone = fmpy.simulate_fmu(str(archive(name)), start_values=dict(zip(ranges, row)), stop_time=stop, output_interval=0.1 * stop, output=asked, relative_tolerance=1e-10)
-        for k, result in zip((0, 3, 10), value):
-            expected = np.array(list(alone[k])[1:])
-            np.testing.assert_allclose(result, expected, rtol=2e-9, atol=2e-9)
+    """More runs than lanes; each takes its own number of steps."""
+    assert_as_alone(name, *SYSTEMS[name], 3 * HERE + 1, 2e-9)
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])
 def test_a_run_has_the_same_bits_among_any_others(name):
-    """Whatever its lane, how many lanes there are, and where the others begin and end."""
-    ranges, stop = SYSTEMS[name]
-    rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
-    values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
-    for lanes in NUMBERS:
-        one = ensemble(name, ranges, asked, [0, stop], lanes)
-        np.testing.assert_array_equal(one.run(rows)[0], values)
-        order = np.random.default_rng(2).permutation(len(rows))[:37]
-        np.testing.assert_array_equal(one.run(rows[order])[0], values[order])
-        np.testing.assert_array_equal(one.run(rows[7:8])[0], values[7:8])
+    assert_same_bits(name, *SYSTEMS[name])
 
 
 def test_pendulums_in_closed_form():
@@ -185,8 +150,8 @@ def test_runs_that_end_in_a_singularity_are_left_alone():
 
 
 def test_what_lanes_do_not_serve():
-    """Methods that are exact, events, constraints, and masses that are factored as they run; and values that are no Real or no state."""
-    for name in ("ParticleCartesian", "BouncingBall", "FourBar", "ChainPendulum", "Rope", "StateFeedback"):
+    """Methods that are exact, and systems without states; and values that are no Real or no state."""
+    for name in ("ParticleCartesian", "StateFeedback"):
         assert source_of(archive(name)) is None, name
     assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
     assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
@@ -198,21 +163,22 @@ FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(
              "1/(4 + x)^4", "atan2(x, 1 + x^2)", "(1 + x^2)/(3 - x)", "sin(time + x)"]  # fmt: skip
 
 
-def test_functions_and_their_series():
+@pytest.mark.parametrize("form", ["statements", "tables"])
+def test_functions_and_their_series(form):
     """A particle for each function, in it as a potential, whose force is its derivative; and a start that follows from a parameter."""
     particles = "".join(
         f'<coordinate name="x{i}" velocity="v{i}" start="n/{i + 3}"/><particle name="p{i}" mass="m" x="x{i}"/><potential>{function.replace("exp", "EXP").replace("x", f"x{i}").replace("EXP", "exp")}</potential>'
         for i, function in enumerate(FUNCTIONS)
     )
     head = '<parameter name="m" start="1"/><parameter name="n" start="1.5"/>'
-    build_systems("ensembles", {"Functions": f'<system name="Functions">{head}{particles}<solver method="taylor"/></system>'})
+    name = f"FunctionsIn{form.title()}"
+    build_systems("ensembles", {name: f'<system name="{name}">{head}{particles}<solver method="taylor"/></system>'}, "--form", form)
     ranges = {"m": (1, 2), "n": (0.5, 2.5), **{f"x{i}": (-0.7, 0.7) for i in range(len(FUNCTIONS) - 3)}}
-    rows, asked = starts(ranges, HERE + 3), states("Functions")
-    values, is_left = ensemble("Functions", ranges, asked, [0.4]).run(rows)
+    rows, asked = starts(ranges, HERE + 3), states(name)
+    values, is_left = ensemble(name, ranges, asked, [0.4]).run(rows)
     assert not is_left.any()
     for row, value in zip(rows, values):
-        alone = fmpy.simulate_fmu(str(archive("Functions")), start_values=dict(zip(ranges, row)), stop_time=0.4, output_interval=0.4, output=asked, relative_tolerance=1e-10)
-        np.testing.assert_allclose(value[0], list(alone[-1])[1:], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(value[0], alone(name, dict(zip(ranges, row)), asked, 0.4)[-1], rtol=1e-9, atol=1e-9)
 
 
 SINES = """
@@ -233,7 +199,9 @@ void sines(size_t count, const double *x, double *s, double *c) {
 def test_sines(tmp_path):
     """To less than 1.5 units in the last place, also beside the multiples of quarter turns, far out, and where there is none."""
     (tmp_path / "sines.c").write_text(SINES)
-    subprocess.run(["cc", *map(str, words(ROOT, HERE, tmp_path / "sines.c", tmp_path / "sines.so")), "-fvisibility=default", "-lm"], check=True)
+    flags = [f"@{ROOT / 'src' / 'ensemble' / f'lanes{lanes}.flags'}" for lanes in ("", HERE)]
+    command = ["cc", *flags, "-fPIC", "-shared", *map(str, includes(ROOT)), tmp_path / "sines.c", "-o", tmp_path / "sines.so", "-fvisibility=default", "-lm"]
+    subprocess.run(command, check=True)
     generator = np.random.default_rng(3)
     quarters = np.arange(-2000, 2000) * (np.pi / 2)
     x = np.concatenate([generator.uniform(-4, 4, 4000), generator.uniform(-1.1e5, 1.1e5, 4000), quarters, quarters * (1 + 1e-15), 10.0 ** generator.uniform(-300, 300, 4000)])

@@ -182,3 +182,20 @@ def test_on_a_cluster_that_exists(tmp_path):
         assert running.wait(timeout=120) == 0
     table = pq.read_table(tmp_path / "x.parquet").to_pydict()
     assert table["run"] == list(range(8000)) and set(table["problem"]) == {None}
+
+
+def test_kills_at_random_times_lose_nothing(tmp_path):
+    """In lanes: while Python loads, while runs are computed, while parts are written and joined. The file is that of a sweep that nobody killed."""
+    words = ["SimplePendulum", "--vary", "theta=-3:3", "--random", "200000", "--stop", "1"]
+    begin = time.monotonic()
+    whole, _ = sweep(tmp_path / "whole.parquet", *words)
+    length, generator, output = time.monotonic() - begin, np.random.default_rng(4), tmp_path / "killed.parquet"
+    for kill in range(12):
+        process = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(generator.uniform(0.2, 1) * length)
+        process.send_signal(signal.SIGKILL)
+        if process.wait() == 0:  # it was over before; the next one begins anew
+            output.unlink()
+    killed, _ = sweep(output, *words)
+    assert {name: values for name, values in killed.items() if name != "runTime"} == {name: values for name, values in whole.items() if name != "runTime"}
+    assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == []

@@ -36,17 +36,12 @@ static bool has_solver(const struct Program *program, const char *name) {
 }
 
 /*
- * Whether all that the Taylor series of the motion takes can be compiled over lanes: see src/ensemble. Solvers of
- * equations at run time, and what switches, work on numbers of one run.
+ * Whether the functions can be compiled over lanes too: see src/ensemble. Blocks in which forces that follow from the
+ * accelerations are eliminated work on numbers of one run.
  */
 static bool has_lanes(const struct Program *program) {
   bool is_taylor = has_solver(program, "taylor") || has_solver(program, "auto");
-  bool is_smooth = program->equations->switching == NULL && program->routines[FUNCTION_ACCELERATIONS] == NULL;
-  if (program->series == NULL || !is_taylor || !is_smooth || program->is_table || program->blocks.count > 0)
-    return false;
-  for (size_t i = 0; i < program->series->limit.count; i++)
-    if (program->series->limit.items[i].is_gated) return false;
-  return true;
+  return program->series != NULL && is_taylor && !has_oblique_block(program);
 }
 
 /*
@@ -88,7 +83,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
-    fputs("#include \"instance/projection.h\"\n#include \"saddle.h\"\n", file);
+    fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
   fputs("\n", file);
 }

@@ -7,10 +7,10 @@
 
 static void write_functions(FILE *file, const struct Encoding *encoding, int arity, const char *type,
                             const char *name) {
-  fprintf(file, "static double (*const %s[])(%s) = {", name, type);
+  fprintf(file, "static Real (*const %s[])(%s) = {", name, type);
   for (enum Operation function = 0; function < OPERATION_COUNT; function++)
     if (encoding->function[function] > 0 && operation_arity(function) == arity)
-      fprintf(file, "%s, ", function_in_c(function));
+      fprintf(file, "FUNCTION(%s), ", function_in_c(function));
   fputs("NULL};\n", file);
 }
 
@@ -31,14 +31,15 @@ static void write_blocks(FILE *file, const struct Program *program) {
 
 void instruction_tables_shared(FILE *file, const struct Encoding *encoding) {
   const struct Program *program = encoding->program;
-  fputs("static const double numbers[] = {", file);
+  fputs("static const Real numbers[] = {", file);
   for (size_t i = 0; i < encoding->numbers.count; i++) {
+    fputs("CONSTANT(", file);
     write_c_number(file, graph_value(program->model->graph, encoding->numbers.nodes[i]));
-    fputs(i % 8 == 7 ? ",\n    " : ", ", file);
+    fputs(i % 8 == 7 ? "),\n    " : "), ", file);
   }
-  fputs("0.0};\n", file);
-  write_functions(file, encoding, 1, "double", "functions");
-  write_functions(file, encoding, 2, "double, double", "functions_of_two");
+  fputs("CONSTANT(0.0)};\n", file);
+  write_functions(file, encoding, 1, "Real", "functions");
+  write_functions(file, encoding, 2, "Real, Real", "functions_of_two");
   write_blocks(file, program);
   fprintf(file,
           "static const struct InstructionTables tables = {numbers, functions, functions_of_two, blocks, %zu, %zu, "
@@ -80,7 +81,7 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
             takes(name, "*c,") ? ", .prepared = c" : "");
   begin_frame(file, takes(name, "*seed"));
   set_base(file, "TARGET", text->target);
-  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
   if (takes(name, "*prepared"))
     fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
   if (text->accelerations == IN_TARGET)
@@ -101,13 +102,13 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
   write_words(file, text->name, &tables.words);
   write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, count);
   write_sizes(file, "unsigned char", format_text("%s_place", text->name), tables.place, count);
-  fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic double %s(%s, size_t result) {\n", text->comment,
+  fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic Real %s(%s, size_t result) {\n", text->comment,
           tables.operation_count, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
-  fprintf(file, "  double value[%zu] = {NAN};\n", tables.largest_place + 1);
+  fprintf(file, "  Real value[%zu] = {REAL(NAN)};\n", tables.largest_place + 1);
   set_base(file, "TARGET", "value");
-  set_base(file, "ACCELERATION", "(double *)a");
-  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(double *)da");
+  set_base(file, "ACCELERATION", "(Real *)a");
+  if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
   fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
           text->name, text->name, text->name);
 }
@@ -122,11 +123,11 @@ void instruction_tables_results(FILE *file, const struct Encoding *encoding) {
 }
 
 static void set_rows(FILE *file) {
-  fputs("  Series time = {point->time, 1.0};\n", file);
+  fputs("  Series time = {point->time, REAL(1.0)};\n", file);
   set_base(file, "TIME_ROW", "time");
-  set_base(file, "ROW", "(double *)w");
-  set_base(file, "STATE_ROW", "(double *)x");
-  set_base(file, "INPUT_ROW", "(double *)input");
+  set_base(file, "ROW", "(Real *)w");
+  set_base(file, "STATE_ROW", "(Real *)x");
+  set_base(file, "INPUT_ROW", "(Real *)input");
 }
 
 static void write_limit(FILE *file, const struct Encoding *encoding) {

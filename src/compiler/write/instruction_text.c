@@ -38,12 +38,21 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
   if (space >= SPACE_ROW) fputs(elements[role], file);
 }
 
+/* Whether the result follows from constants alone, of which lanes make a vector. */
+static bool has_only_numbers(const struct Instruction *instruction) {
+  int arity = opcode_has_result(instruction->opcode) ? opcode_arity(instruction->opcode) : 0;
+  for (int i = 0; i < arity; i++)
+    if (space_of(instruction->operands[i]) != SPACE_NUMBER) return false;
+  return arity > 0;
+}
+
 /* The statement of opcode_facts() with its operands. */
 static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
                              const char *target) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
-  bool is_number = instruction->opcode == COPY && space_of(instruction->operands[0]) == SPACE_NUMBER;
-  for (const char *text = is_number ? "REAL($1)" : facts->statement; *text != '\0'; text++) {
+  bool is_number = has_only_numbers(instruction);
+  if (is_number) fputs("REAL(", file);
+  for (const char *text = facts->statement; *text != '\0'; text++) {
     if (*text != '$') {
       fputc(*text, file);
       continue;
@@ -54,6 +63,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
     else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
     else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);
   }
+  if (is_number) fputs(")", file);
 }
 
 /* function(size, pattern of the block, its elements; with what the rows are, where the function takes it */

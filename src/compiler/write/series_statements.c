@@ -108,9 +108,9 @@ static void write_check(FILE *file, const struct Program *program, const struct 
   const struct LimitFacts *facts = limit_facts(check->rule);
   fputs("  ", file);
   if (check->is_gated) {
-    fputs("if (", file);
+    fputs("LIMIT_WHERE(", file);
     write_place(file, program, check->opener, VALUE, NULL);
-    fputs(" > 0.0) ", file);
+    fputs(" > 0.0, ", file);
   }
   fprintf(file, "series_limit_%s(limit, ", facts->name);
   write_place(file, program, check->row, ROW, NULL);
@@ -127,7 +127,7 @@ static void write_check(FILE *file, const struct Program *program, const struct 
     fputs(", ", file);
     write_c_number(file, check->share);
   }
-  fputs(");\n", file);
+  fputs(check->is_gated ? "));\n" : ");\n", file);
 }
 
 /* The spaces that checks read. */

@@ -1,5 +1,7 @@
 #include "events/chebyshev.h"
 
+#include <math.h>
+
 #include "arithmetic.h"
 
 /* cos(pi k / 8) */
@@ -9,21 +11,38 @@ static const double cosines[2 * CHEBYSHEV_DEGREE] = {
     -1.0, -0.92387953251128675613, -0.70710678118654752440, -0.38268343236508977173,
     0.0,  0.38268343236508977173,  0.70710678118654752440,  0.92387953251128675613};
 
-double chebyshev_time(double from, double to, int node) {
+Real chebyshev_time(Real from, Real to, int node) {
   if (node == 0) return to;
   if (node == CHEBYSHEV_DEGREE) return from;
   return from + 0.5 * (1.0 + cosines[node]) * (to - from);
 }
 
-void chebyshev_coefficients(const double *f, double *c) {
+void chebyshev_coefficients(const Real *f, Real *c) {
   for (int j = 0; j <= CHEBYSHEV_DEGREE; j++) {
-    double sum = 0.5 * (f[0] + (j % 2 == 0 ? f[CHEBYSHEV_DEGREE] : -f[CHEBYSHEV_DEGREE]));
+    Real sum = 0.5 * (f[0] + (j % 2 == 0 ? f[CHEBYSHEV_DEGREE] : -f[CHEBYSHEV_DEGREE]));
     for (int k = 1; k < CHEBYSHEV_DEGREE; k++) sum += f[k] * cosines[j * k % (2 * CHEBYSHEV_DEGREE)];
     c[j] = sum * (j == 0 || j == CHEBYSHEV_DEGREE ? 1.0 : 2.0) / CHEBYSHEV_DEGREE;
   }
 }
 
-void chebyshev_powers(const double *c, double half, double *power) {
+Real chebyshev_range(const Real *c) {
+  Real sum = REAL(0.0);
+  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
+  return sum;
+}
+
+Real chebyshev_tail(const Real *c) {
+  return fabs(c[CHEBYSHEV_DEGREE]) + fabs(c[CHEBYSHEV_DEGREE - 1]);
+}
+
+void chebyshev_derivative(const Real *c, Real *d) {
+  d[CHEBYSHEV_DEGREE] = REAL(0.0);
+  d[CHEBYSHEV_DEGREE - 1] = 2.0 * CHEBYSHEV_DEGREE * c[CHEBYSHEV_DEGREE];
+  for (int k = CHEBYSHEV_DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
+  d[0] *= 0.5;
+}
+
+void chebyshev_powers(const Real *c, Real half, Real *power) {
   /* T_j of each row by powers, from T_(j+1) = 2 s T_j - T_(j-1) */
   static const double polynomials[CHEBYSHEV_DEGREE + 1][CHEBYSHEV_DEGREE + 1] = {{1},
                                                                                  {0, 1},
@@ -34,9 +53,9 @@ void chebyshev_powers(const double *c, double half, double *power) {
                                                                                  {-1, 0, 18, 0, -48, 0, 32},
                                                                                  {0, -7, 0, 56, 0, -112, 0, 64},
                                                                                  {1, 0, -32, 0, 160, 0, -256, 0, 128}};
-  double scale = 1.0;
+  Real scale = REAL(1.0);
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++, scale /= half) {
-    double sum = 0.0;
+    Real sum = REAL(0.0);
     for (int j = k; j <= CHEBYSHEV_DEGREE; j++) sum += c[j] * polynomials[j][k];
     power[k] = sum * scale;
   }

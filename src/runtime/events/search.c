@@ -12,9 +12,6 @@
 
 enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
 
-/* What the last coefficients may have of all, for a polynomial that is the function. */
-static const double resolved = 1e-4;
-
 struct Search {
   struct Instance *instance;
   double *state, *rounded; /* state_count each */
@@ -73,21 +70,6 @@ static void measure_noise(struct Search *search, double time) {
   }
 }
 
-/* The coefficients of its derivative, up to a factor. */
-static void differentiate(const double *c, double *d) {
-  d[CHEBYSHEV_DEGREE] = 0.0;
-  d[CHEBYSHEV_DEGREE - 1] = 2.0 * CHEBYSHEV_DEGREE * c[CHEBYSHEV_DEGREE];
-  for (int k = CHEBYSHEV_DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
-  d[0] *= 0.5;
-}
-
-/* How far the polynomial may go from its first coefficient. */
-static double range_of_polynomial(const double *c) {
-  double sum = 0.0;
-  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
-  return sum;
-}
-
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
@@ -100,15 +82,15 @@ static enum Verdict judge_signs(const double *f, double noise) {
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
-  double reach = range_of_polynomial(c);
+  double reach = chebyshev_range(c);
   if (reach <= noise) return f[0] < -noise ? FALLS : STAYS; /* unless it has fallen, it does not, whatever it is */
-  double tail = fabs(c[CHEBYSHEV_DEGREE]) + fabs(c[CHEBYSHEV_DEGREE - 1]);
+  double tail = chebyshev_tail(c);
   if (c[0] - reach > 2.0 * tail) return STAYS;
-  if (tail > resolved * reach + noise) return UNKNOWN;
-  differentiate(c, d);
-  double margin = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * tail;
-  if (d[0] - range_of_polynomial(d) > margin) return STAYS; /* it rises */
-  if (-d[0] - range_of_polynomial(d) > margin) return f[0] < -noise ? FALLS : STAYS;
+  if (tail > chebyshev_resolved * reach + noise) return UNKNOWN;
+  chebyshev_derivative(c, d);
+  double margin = chebyshev_tail_of_derivative * tail;
+  if (d[0] - chebyshev_range(d) > margin) return STAYS; /* it rises */
+  if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
   return UNKNOWN;
 }
 

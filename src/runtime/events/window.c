@@ -72,13 +72,12 @@ static double largest_acceleration(const struct Window *window) {
 /* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion. */
 static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
                            double *series) {
-  double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES], sum = 0.0;
+  double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];
   for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
   chebyshev_coefficients(f, c);
-  for (int k = 1; k <= CHEBYSHEV_DEGREE; k++) sum += fabs(c[k]);
   chebyshev_powers(c, 0.5 * (window->to - window->from), series);
   double rounding = 64.0 * DBL_EPSILON * fmax(fabs(c[0]), nominal);
-  return fabs(c[CHEBYSHEV_DEGREE - 1]) + fabs(c[CHEBYSHEV_DEGREE]) <= resolved_motion * sum + rounding;
+  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + rounding;
 }
 
 /* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */

@@ -8,12 +8,12 @@ enum { INDEX_MASK = (1 << PLACE_BITS) - 1 };
 
 struct Frame instructions_frame(const struct InstructionTables *tables, const struct Point *point) {
   struct Frame frame = {.tables = tables};
-  frame.base[SPACE_NUMBER] = (double *)tables->numbers;
-  frame.base[SPACE_PARAMETER] = (double *)point->parameter;
-  frame.base[SPACE_PREPARED] = (double *)point->prepared;
-  frame.base[SPACE_STATE] = (double *)point->state;
-  frame.base[SPACE_INPUT] = (double *)point->input;
-  frame.base[SPACE_TIME] = (double *)&point->time;
+  frame.base[SPACE_NUMBER] = (Real *)tables->numbers;
+  frame.base[SPACE_PARAMETER] = (Real *)point->parameter;
+  frame.base[SPACE_PREPARED] = (Real *)point->prepared;
+  frame.base[SPACE_STATE] = (Real *)point->state;
+  frame.base[SPACE_INPUT] = (Real *)point->input;
+  frame.base[SPACE_TIME] = (Real *)&point->time;
   if (point->work == NULL) return frame;
   frame.base[SPACE_LOCAL] = point->work;
   frame.base[SPACE_MASS] = frame.base[SPACE_LOCAL] + tables->local_count;
@@ -23,21 +23,21 @@ struct Frame instructions_frame(const struct InstructionTables *tables, const st
 }
 
 void instructions_seed(struct Frame *frame, const struct Seed *seed) {
-  frame->base[SPACE_SEED_PARAMETER] = (double *)seed->parameter;
-  frame->base[SPACE_SEED_STATE] = (double *)seed->state;
-  frame->base[SPACE_SEED_INPUT] = (double *)seed->input;
-  frame->base[SPACE_SEED_TIME] = (double *)&seed->time;
-  frame->base[SPACE_SEED_RESULT] = (double *)seed->result;
+  frame->base[SPACE_SEED_PARAMETER] = (Real *)seed->parameter;
+  frame->base[SPACE_SEED_STATE] = (Real *)seed->state;
+  frame->base[SPACE_SEED_INPUT] = (Real *)seed->input;
+  frame->base[SPACE_SEED_TIME] = (Real *)&seed->time;
+  frame->base[SPACE_SEED_RESULT] = (Real *)seed->result;
 }
 
-static inline double *at(double *const *base, Place place) {
+static inline Real *at(Real *const *base, Place place) {
   return base[place >> PLACE_BITS] + (place & INDEX_MASK);
 }
 
 /* Returns 0, or the number of the coordinate in which the block is singular. */
 static int factor(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
-  double *mass = frame->base[SPACE_MASS] + block->first_mass;
+  Real *mass = frame->base[SPACE_MASS] + block->first_mass;
   size_t singular = block->factor != NULL
                         ? block->factor(block->count, block->start, block->column, block->coordinate, mass)
                         : ldlt_factor(block->count, block->start, block->column, mass);
@@ -46,7 +46,7 @@ static int factor(const struct Frame *frame, size_t number) {
 
 static void solve(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
-  double *mass = frame->base[SPACE_MASS] + block->first_mass, *side = frame->base[SPACE_SIDE] + block->first_side;
+  Real *mass = frame->base[SPACE_MASS] + block->first_mass, *side = frame->base[SPACE_SIDE] + block->first_side;
   if (block->solve_obliquely != NULL)
     block->solve_obliquely(block->count, block->start, block->column, block->coordinate, mass, side);
   else if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, side);
@@ -83,13 +83,13 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
 }
 
 int instructions_run(const struct Frame *frame, const uint32_t *code) {
-  double *const *base = frame->base;
+  Real *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
     uint32_t count = code[1], spaces = code[2];
-    double *r = base[space_of_operand(spaces, 0)];
-    const double *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
+    Real *r = base[space_of_operand(spaces, 0)];
+    const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
     switch (opcode) {
     case COPY: EACH(2, R = A);
@@ -108,20 +108,20 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     case INVERSE_FOURTH: EACH(2, R = 1.0 / (A * A * A * A));
     case SQUARE_ROOT: EACH(2, R = sqrt(A));
     case INVERSE_ROOT: EACH(2, R = 1.0 / sqrt(A));
-    case LESS_THAN: EACH(3, R = A < B ? 1.0 : 0.0);
-    case GATE_OF: EACH(3, R = A > 0.0 ? B : 0.0);
-    case SIGN_OF: EACH(2, R = A > 0.0 ? 1.0 : A < 0.0 ? -1.0 : 0.0);
+    case LESS_THAN: EACH(3, R = WHERE(A < B, 1.0, 0.0));
+    case GATE_OF: EACH(3, R = WHERE(A > 0.0, B, 0.0));
+    case SIGN_OF: EACH(2, R = WHERE(A > 0.0, 1.0, WHERE(A < 0.0, -1.0, 0.0)));
     case CALL: {
-      double (*function)(double) = frame->tables->functions[*code++];
+      Real (*function)(Real) = frame->tables->functions[*code++];
       EACH(2, R = function(A));
     }
     case CALL_OF_TWO: {
-      double (*function)(double, double) = frame->tables->functions_of_two[*code++];
+      Real (*function)(Real, Real) = frame->tables->functions_of_two[*code++];
       EACH(3, R = function(A, B));
     }
-    case CHECK_POSITIVE: EACH(2, if (!(A > 0.0)) return (int)code[0]);
-    case CHECK_PIVOT: EACH(3, if (!(A > 1e-14 * B)) return (int)code[0]);
-    case CHECK_DIAGONAL: EACH(3, if (!(A > 1e-28 * B)) return (int)code[0]);
+    case CHECK_POSITIVE: EACH(2, REQUIRE(A > 0.0, (int)code[0]));
+    case CHECK_PIVOT: EACH(3, REQUIRE(A > 1e-14 * B, (int)code[0]));
+    case CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-28 * B, (int)code[0]));
     case FACTOR:
       for (; count > 0; count--) {
         int singular = factor(frame, *code++);
@@ -171,25 +171,25 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
   break
 
 void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k) {
-  double *const *base = frame->base;
+  Real *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
     uint32_t count = code[1], spaces = code[2];
     const uint32_t space_r = space_of_operand(spaces, 0), space_a = space_of_operand(spaces, 1);
     const uint32_t space_b = space_of_operand(spaces, 2), space_c = space_of_operand(spaces, 3);
-    double *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);
-    const double *const row_a = base[space_a], *const a = row_a + (space_a >= SPACE_ROW ? k : 0);
-    const double *const row_b = base[space_b], *const b = row_b + (space_b >= SPACE_ROW ? k : 0);
-    const double *const row_c = base[space_c], *const c = row_c + (space_c >= SPACE_ROW ? k : 0);
+    Real *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);
+    const Real *const row_a = base[space_a], *const a = row_a + (space_a >= SPACE_ROW ? k : 0);
+    const Real *const row_b = base[space_b], *const b = row_b + (space_b >= SPACE_ROW ? k : 0);
+    const Real *const row_c = base[space_c], *const c = row_c + (space_c >= SPACE_ROW ? k : 0);
     code += 3;
     switch (opcode) {
     case SERIES_COPY: EACH(2, R = A);
-    case SERIES_ZERO: EACH(1, R = 0.0);
+    case SERIES_ZERO: EACH(1, R = REAL(0.0));
     case SERIES_SUM: EACH(3, R = A + B);
     case SERIES_DIFFERENCE: EACH(3, R = A - B);
     case SERIES_NEGATION: EACH(2, R = -A);
-    case SERIES_GATE: EACH(3, R = *ROW_A > 0.0 ? B : 0.0);
+    case SERIES_GATE: EACH(3, R = WHERE(*ROW_A > 0.0, B, 0.0));
     case SERIES_MULTIPLE: EACH(3, R = *ROW_A * B);
     case SERIES_SHARE: EACH(3, R = A / *ROW_B);
     case SERIES_PRODUCT: EACH_UNROLLED(3, R = series_product(K, ROW_A, ROW_B));
@@ -206,8 +206,8 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_AREA: EACH(3, R = series_area(k, ROW_A, ROW_B));
     case SERIES_ANGLE: EACH(4, R = series_angle(k, ROW_A, ROW_B, ROW_C, ROW_R));
     case SERIES_ABSOLUTE: EACH(2, R = series_absolute(k, ROW_A));
-    case SERIES_LARGER: EACH(4, R = series_sign(k, ROW_A) > 0.0 ? B : C);
-    case SERIES_SMALLER: EACH(4, R = series_sign(k, ROW_A) < 0.0 ? B : C);
+    case SERIES_LARGER: EACH(4, R = WHERE(series_sign(k, ROW_A) > 0.0, B, C));
+    case SERIES_SMALLER: EACH(4, R = WHERE(series_sign(k, ROW_A) < 0.0, B, C));
     case SERIES_REST: EACH_UNROLLED(4, R = A - series_rest(K, ROW_B, ROW_C));
     case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
     case SERIES_STATE: EACH(2, (&R)[1] = A * (1.0 / (k + 1)));
@@ -222,26 +222,30 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
 #undef B
 #undef C
 
+static void check_limit(const struct Frame *frame, const struct LimitCheck *check, struct SeriesLimit *limit) {
+  const Real *u = at(frame->base, check->row);
+  switch (check->rule) {
+  case LIMIT_EXPONENTIAL: series_limit_exponential(limit, u, check->function); break;
+  case LIMIT_HYPERBOLIC: series_limit_hyperbolic(limit, u, check->function); break;
+  case LIMIT_TANH: series_limit_tanh(limit, u); break;
+  case LIMIT_TANGENT: series_limit_tangent(limit, u); break;
+  case LIMIT_POSITIVE: series_limit_positive(limit, u, check->function); break;
+  case LIMIT_QUOTIENT: series_limit_quotient(limit, u, check->share); break;
+  case LIMIT_ROOT: series_limit_root(limit, u, check->share); break;
+  case LIMIT_WHOLE_POWER: series_limit_whole_power(limit, u, check->share); break;
+  case LIMIT_DIVISION: series_limit_division(limit, u, at(frame->base, check->other_row), check->share); break;
+  case LIMIT_POWER: series_limit_power(limit, u, *at(frame->base, check->exponent)); break;
+  case LIMIT_SIGN: series_limit_sign(limit, u, check->function); break;
+  case LIMIT_ANGLE: series_limit_angle(limit, u, at(frame->base, check->other_row)); break;
+  case LIMIT_RULE_COUNT: break;
+  }
+}
+
 void instructions_limit(const struct Frame *frame, const struct LimitCheck *checks, size_t count,
                         struct SeriesLimit *limit) {
   for (size_t i = 0; i < count; i++) {
     const struct LimitCheck *check = &checks[i];
-    if (check->is_gated && !(*at(frame->base, check->opener) > 0.0)) continue;
-    const double *u = at(frame->base, check->row);
-    switch (check->rule) {
-    case LIMIT_EXPONENTIAL: series_limit_exponential(limit, u, check->function); break;
-    case LIMIT_HYPERBOLIC: series_limit_hyperbolic(limit, u, check->function); break;
-    case LIMIT_TANH: series_limit_tanh(limit, u); break;
-    case LIMIT_TANGENT: series_limit_tangent(limit, u); break;
-    case LIMIT_POSITIVE: series_limit_positive(limit, u, check->function); break;
-    case LIMIT_QUOTIENT: series_limit_quotient(limit, u, check->share); break;
-    case LIMIT_ROOT: series_limit_root(limit, u, check->share); break;
-    case LIMIT_WHOLE_POWER: series_limit_whole_power(limit, u, check->share); break;
-    case LIMIT_DIVISION: series_limit_division(limit, u, at(frame->base, check->other_row), check->share); break;
-    case LIMIT_POWER: series_limit_power(limit, u, *at(frame->base, check->exponent)); break;
-    case LIMIT_SIGN: series_limit_sign(limit, u, check->function); break;
-    case LIMIT_ANGLE: series_limit_angle(limit, u, at(frame->base, check->other_row)); break;
-    case LIMIT_RULE_COUNT: break;
-    }
+    if (check->is_gated) LIMIT_WHERE(*at(frame->base, check->opener) > 0.0, check_limit(frame, check, limit));
+    else check_limit(frame, check, limit);
   }
 }

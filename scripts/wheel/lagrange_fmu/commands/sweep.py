@@ -37,17 +37,27 @@ def runner(place):
     return compiled(place, "sweep_runs", ["sweep"], "the library that runs sweeps cannot be compiled", lambda library: [*words, "-o", library])
 
 
+def ensemble_runtime(place):
+    """What runs in lanes have of the runtime of FMUs, as an object: all in one piece, once for all systems."""
+    from ..ensembles import RUNTIME_PARTS, includes
+
+    source, runtime = place / "ensemble_runtime.c", RUNTIME / "src" / "runtime"
+    files = [file for part in RUNTIME_PARTS for file in sorted(runtime.glob(part))]
+    source.write_text("".join(f'#include "{file.relative_to(runtime).as_posix()}"\n' for file in files), encoding="utf-8")
+    words = ["-std=c11", "-O2", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-c", *includes(RUNTIME), source]
+    what = "the runtime of many runs at once cannot be compiled"
+    return compiled(place, "ensemble_runtime.o", ["ensemble_runtime"], what, lambda library: [*words, "-o", library])
+
+
 def compile_ensemble(place, source, lanes):
     """What runs many at once; not on Windows, where nobody has tried it."""
     from ..ensembles import words
 
     if os.name == "nt":
         return None
-    text = place / "system.c"
-    text.write_text(source, encoding="utf-8")
-    rest = [*sorted((RUNTIME / "src" / "ensemble").glob("*.c")), RUNTIME / "src" / "runtime" / "support" / "series_limit.c", "-lm"]
+    rest = [*sorted((RUNTIME / "src" / "ensemble").rglob("*.c")), ensemble_runtime(place), "-lm"]
     what = "the FMU's equations cannot be compiled for many runs at once"
-    return compiled(place, "ensemble", ["ensemble", source, lanes], what, lambda library: [*words(RUNTIME, lanes, text, library), *rest])
+    return compiled(place, "ensemble", ["ensemble", source, lanes], what, lambda library: [*words(RUNTIME, lanes, source, place, library), *rest])
 
 
 def run(arguments):

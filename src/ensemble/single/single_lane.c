@@ -1,4 +1,4 @@
-#include "single_lane.h"
+#include "single/single_lane.h"
 
 #include "series.h"
 #include "series_limit.h"

@@ -1,0 +1,195 @@
+#include "lane_events.h"
+
+#include <stdlib.h>
+
+#include "events/chebyshev.h"
+
+bool lane_events_are_needed(void) {
+  return single_run_is_needed();
+}
+
+bool lane_events_create(struct LaneEvents *events, struct LaneSteps *steps) {
+  size_t forces = lagrangian.coordinate_count + lagrangian.constraints.count;
+  size_t rows = forces + CHEBYSHEV_NODES * indicator_count(lagrangian.switches) + 1;
+  *events = (struct LaneEvents){.steps = steps};
+  if (!lane_events_are_needed()) return true;
+  events->run = single_run_create(LANES, steps->tolerance, steps->length);
+  events->acceleration = aligned_alloc(sizeof(Lanes), rows * sizeof(Lanes));
+  if (events->run == NULL || events->acceleration == NULL) {
+    lane_events_destroy(events);
+    return false;
+  }
+  events->indicator = events->acceleration + forces;
+  return true;
+}
+
+void lane_events_destroy(struct LaneEvents *events) {
+  single_run_destroy(events->run);
+  free(events->acceleration);
+}
+
+static struct LaneView view_of(const struct LaneSteps *steps, int lane) {
+  return (struct LaneView){.number = (size_t)lane,
+                           .stride = LANES,
+                           .order = steps->order,
+                           .origin = steps->origin[lane],
+                           .reach = steps->reach[lane],
+                           .series = (double *)steps->x + lane,
+                           .low = (double *)steps->low + lane,
+                           .parameter = (double *)steps->parameter + lane,
+                           .prepared = (double *)steps->prepared + lane,
+                           .input = (double *)steps->constants + lane};
+}
+
+Mask lane_events_start(struct LaneEvents *events, Mask lanes) {
+  Mask lost = {0};
+  for (int i = 0; i < LANES; i++) {
+    if (!lanes[i]) continue;
+    struct LaneView view = view_of(events->steps, i);
+    lost[i] = single_run_start(events->run, &view) ? 0 : -1;
+  }
+  return lost;
+}
+
+/* --- Whether there is an event ---------------------------------------------------------------------------------------- */
+
+/* The lanes in which a contact is closed, or a friction sticks. */
+static Mask are_touched(const struct LaneSteps *steps) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  Mask touched = {0};
+  if (switches == NULL) return touched;
+  for (size_t i = 0; i < switches->contact_count; i++) touched |= steps->parameter[switches->contacts[i].mode] > 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) touched |= steps->parameter[switches->frictions[i].mode] == 0.0;
+  return touched;
+}
+
+Mask lane_events_accelerations(struct LaneEvents *events, Lanes time) {
+  struct LaneSteps *steps = events->steps;
+  struct Point point = lane_steps_point(steps, time);
+  lanes_refused = (Mask){0};
+  lagrangian.constraints.accelerations(&point, events->acceleration);
+  return lanes_refused;
+}
+
+/* The indicators at a time; returns the lanes in which there are none. */
+static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feels_forces, Lanes *indicator) {
+  struct LaneSteps *steps = events->steps;
+  lane_steps_take_state(steps, time);
+  Mask refused = feels_forces ? lane_events_accelerations(events, time) : (Mask){0};
+  struct Point point = lane_steps_point(steps, time);
+  lagrangian.switches->indicators(&point, events->acceleration, indicator);
+  return refused;
+}
+
+/* The lanes in which a function, whose values at the nodes are f, stays positive: judge_signs() of events/search.c. */
+static Mask stay_positive(const Lanes *f) {
+  Lanes c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES];
+  chebyshev_coefficients(f, c);
+  Lanes tail = chebyshev_tail(c);
+  chebyshev_derivative(c, d);
+  Mask is_far = c[0] - chebyshev_range(c) > 2.0 * tail;
+  Mask rises = (tail <= chebyshev_resolved * chebyshev_range(c)) &
+               (d[0] - chebyshev_range(d) > chebyshev_tail_of_derivative * tail);
+  return is_far | rises;
+}
+
+/* The sign that an indicator has while its mode stays, as indicator_sign() of events/indicators.c tells it. */
+static Lanes sign_of(const struct LaneSteps *steps, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_branch = indicator < switches->branch_count;
+  return is_branch ? steps->parameter[switches->branches[indicator].mode] : LANES_OF(1.0);
+}
+
+/* The lanes in which surely nothing happens from one time to another; where something can hide, nobody knows that here. */
+static Mask are_quiet(struct LaneEvents *events, Lanes from, Lanes to) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t count = indicator_count(switches);
+  Mask quiet = ~(Mask){0};
+  if (switches->watched_limit != NULL) return (Mask){0};
+  bool feels_forces = switches->feels_forces || any_lane(are_touched(events->steps));
+  for (int node = 0; node < CHEBYSHEV_NODES; node++)
+    quiet &= ~evaluate_indicators(events, chebyshev_time(from, to, node), feels_forces,
+                                  events->indicator + (size_t)node * count);
+  for (size_t i = 0; i < count && any_lane(quiet); i++) {
+    Lanes f[CHEBYSHEV_NODES], sign = sign_of(events->steps, i);
+    for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = sign * events->indicator[node * count + i];
+    quiet &= stay_positive(f);
+  }
+  return quiet;
+}
+
+Mask lane_events_find(struct LaneEvents *events, Mask active) {
+  struct LaneSteps *steps = events->steps;
+  Mask lost = {0};
+  Lanes from = steps->origin;
+  events->happens = (Mask){0};
+  events->time = steps->origin + steps->reach;
+  if (lagrangian.switches == NULL) return lost;
+  for (int i = 0; i < LANES; i++)
+    if (active[i]) from[i] = single_run_searched(events->run, (size_t)i);
+  Mask quiet = are_quiet(events, from, lanes_smaller(events->time, LANES_OF(steps->length)));
+  for (int i = 0; i < LANES; i++) {
+    if (!active[i]) continue;
+    struct LaneView view = view_of(steps, i);
+    double time = events->time[i];
+    enum LaneEvent event = NO_EVENT;
+    if (quiet[i]) single_run_pass_quietly(events->run, &view);
+    else event = single_run_find_event(events->run, &view, &time);
+    lost[i] = event == EVENT_UNKNOWN ? -1 : 0;
+    events->happens[i] = event == EVENT ? -1 : 0;
+    events->time[i] = time;
+  }
+  return lost;
+}
+
+/* --- Constraints ------------------------------------------------------------------------------------------------------ */
+
+/* The lanes in which a constraint holds. */
+static Mask are_held(const struct LaneSteps *steps) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t of_switches = switches != NULL ? switches->contact_count + switches->friction_count : 0;
+  return lagrangian.constraints.count > of_switches ? ~(Mask){0} : are_touched(steps);
+}
+
+Mask lane_events_go_on(struct LaneEvents *events, Mask active) {
+  struct LaneSteps *steps = events->steps;
+  Mask lost = {0}, happens = events->happens & active;
+  for (int i = 0; i < LANES; i++) {
+    if (!happens[i]) continue;
+    struct LaneView view = view_of(steps, i);
+    single_run_go_on(events->run, &view);
+  }
+  steps->origin = lanes_select(happens, events->time, steps->origin);
+  Mask held = are_held(steps) & active;
+  if (any_lane(happens)) lagrangian.prepare(steps->parameter, steps->prepared);
+  for (int i = 0; i < LANES; i++) {
+    if (!held[i]) continue;
+    struct LaneView view = view_of(steps, i);
+    lost[i] = single_run_keep_constraints(events->run, &view) ? 0 : -1;
+  }
+  if (any_lane(happens | held)) lost |= lane_steps_start(steps);
+  return lost & active;
+}
+
+Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes) {
+  struct LaneSteps *steps = events->steps;
+  Mask lost = {0}, held = are_held(steps) & lanes;
+  for (int i = 0; i < LANES; i++) {
+    if (!held[i]) continue;
+    struct LaneView view = view_of(steps, i);
+    lost[i] = single_run_project(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
+  }
+  return lost;
+}
+
+Mask lane_events_may_not_end(struct LaneEvents *events, Lanes time, Mask lanes) {
+  struct LaneSteps *steps = events->steps;
+  Mask may_not = {0};
+  if (lagrangian.switches == NULL) return may_not;
+  for (int i = 0; i < LANES; i++) {
+    if (!lanes[i]) continue;
+    struct LaneView view = view_of(steps, i);
+    may_not[i] = single_run_may_end(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
+  }
+  return may_not;
+}

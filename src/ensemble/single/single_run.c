@@ -1,0 +1,232 @@
+#include "single/single_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "instance/event_laws.h"
+#include "instance/projection.h"
+#include "stepping/start.h"
+
+/* So many events in a run are for the FMU, which may find that they have no end. */
+enum { EVENT_LIMIT = 100000 };
+
+/* What is kept of each lane. */
+struct LaneCourse {
+  struct EventProgress progress;
+  double *state, *parameter; /* behind the last event */
+};
+
+struct SingleRun {
+  struct Instance instance;
+  struct CommunicationStep step; /* the whole run */
+  struct LaneCourse *courses;    /* of the lanes, and behind them their numbers */
+  /* Of the lane that was taken last: the origin and the order of its series, the state and the coefficients behind it. */
+  double origin, *state;
+  int order;
+  Series *series; /* with what rounding left of the state as the first coefficients */
+};
+
+/* --- The solver, whose steps are made elsewhere ----------------------------------------------------------------------- */
+
+static bool create_nothing(struct Instance *instance) {
+  (void)instance;
+  return true;
+}
+
+static void destroy_nothing(struct Instance *instance) {
+  (void)instance;
+}
+
+/* As taylor_change() of methods/taylor.h. */
+static double change(const double *x, int order, double s) {
+  int j = order;
+  double square = s * s, first = x[j], second = x[j - 1];
+  for (j -= 2; j > 1; j -= 2) {
+    first = first * square + x[j];
+    second = second * square + x[j - 1];
+  }
+  return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
+}
+
+static bool interpolate_lane(struct Instance *instance, double time, double *state) {
+  const struct SingleRun *run = instance->solver_memory;
+  double s = time - run->origin;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    state[i] = run->state[i] + (change(run->series[i], run->order, s) + run->series[i][0]);
+  return true;
+}
+
+/* The names that the system's table gives to its method. */
+const struct Solver solver_taylor = {
+    .name = "a lane", .create = create_nothing, .destroy = destroy_nothing, .interpolate = interpolate_lane};
+const struct Solver solver_auto = {
+    .name = "a lane", .create = create_nothing, .destroy = destroy_nothing, .interpolate = interpolate_lane};
+
+/* --- Lanes and the instance ------------------------------------------------------------------------------------------- */
+
+static void take_numbers(double *numbers, size_t count, const double *lane, size_t stride) {
+  for (size_t i = 0; i < count; i++) numbers[i] = lane[i * stride];
+}
+
+static void give_numbers(const double *numbers, size_t count, double *lane, size_t stride) {
+  for (size_t i = 0; i < count; i++) lane[i * stride] = numbers[i];
+}
+
+static void take_values(struct SingleRun *run, const struct LaneView *lane) {
+  struct Instance *instance = &run->instance;
+  take_numbers(instance->input, lagrangian.input_count, lane->input, lane->stride);
+  take_numbers(instance->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);
+}
+
+static void take_state(struct SingleRun *run, const struct LaneView *lane) {
+  take_numbers(run->instance.state, lagrangian.state_count, lane->series, SERIES_LENGTH * lane->stride);
+}
+
+static void give_state(const double *state, const struct LaneView *lane) {
+  give_numbers(state, lagrangian.state_count, lane->series, SERIES_LENGTH * lane->stride);
+}
+
+/* Its polynomials for interpolate_lane(), which reads them many times. */
+static void take_series(struct SingleRun *run, const struct LaneView *lane) {
+  run->origin = lane->origin;
+  run->order = lane->order;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    const double *row = lane->series + i * SERIES_LENGTH * lane->stride;
+    run->state[i] = row[0];
+    take_numbers(run->series[i] + 1, (size_t)lane->order, row + lane->stride, lane->stride);
+    run->series[i][0] = lane->low[i * lane->stride];
+  }
+}
+
+/* The instance becomes the lane's run, in its last step. */
+static void take(struct SingleRun *run, const struct LaneView *lane) {
+  take_values(run, lane);
+  take_numbers(run->instance.prepared, lagrangian.prepared_count, lane->prepared, lane->stride);
+  run->instance.prepared_is_stale = false;
+  run->instance.situation->last_step = (struct Span){lane->origin, lane->origin + lane->reach};
+}
+
+/* --- The functions ---------------------------------------------------------------------------------------------------- */
+
+bool single_run_is_needed(void) {
+  return lagrangian.event_laws != NULL || lagrangian.constraints.projection != NULL;
+}
+
+static void *allocate(size_t count, size_t size) {
+  return calloc(count, size);
+}
+
+struct SingleRun *single_run_create(size_t lanes, double tolerance, double end) {
+  size_t numbers = lagrangian.state_count + lagrangian.parameter_count;
+  struct SingleRun *run = calloc(1, sizeof *run + lagrangian.state_count * (sizeof(Series) + sizeof(double)));
+  struct LaneCourse *courses = calloc(lanes, sizeof *courses + numbers * sizeof(double));
+  bool is_created = run != NULL && courses != NULL &&
+                    instance_create(&run->instance, KIND_CO_SIMULATION, &(struct Allocator){allocate, free},
+                                    &(struct Log){.wanted = 0});
+  if (!is_created) {
+    free(run);
+    free(courses);
+    return NULL;
+  }
+  run->instance.situation->tolerance = tolerance;
+  run->step = (struct CommunicationStep){.start = 0.0, .end = end, .length = end};
+  run->courses = courses;
+  run->series = (Series *)(run + 1);
+  run->state = (double *)(run->series + lagrangian.state_count);
+  double *number = (double *)(courses + lanes);
+  for (size_t i = 0; i < lanes; i++, number += numbers) {
+    courses[i].state = number;
+    courses[i].parameter = number + lagrangian.state_count;
+  }
+  return run;
+}
+
+void single_run_destroy(struct SingleRun *run) {
+  if (run == NULL) return;
+  run->instance.solver_memory = NULL;
+  instance_destroy(&run->instance);
+  free(run->courses);
+  free(run);
+}
+
+bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
+  struct Instance *instance = &run->instance;
+  double tolerance = instance->situation->tolerance;
+  instance_reset(instance);
+  instance->situation->tolerance = tolerance;
+  instance->situation->phase = PHASE_INITIALIZATION;
+  take_values(run, lane);
+  take_state(run, lane);
+  instance->prepared_is_stale = true;
+  if (start_find(instance) != STATUS_DONE) return false;
+  instance->situation->phase = PHASE_STEP_COMPLETE;
+  if (evaluate_prepare(instance) != STATUS_DONE || !start_step(instance)) return false;
+  instance->solver_memory = run;
+  give_state(instance->state, lane);
+  give_numbers(instance->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);
+  run->courses[lane->number].progress = (struct EventProgress){.searched = run->step.start};
+  return true;
+}
+
+enum LaneEvent single_run_find_event(struct SingleRun *run, const struct LaneView *lane, double *time) {
+  struct Instance *instance = &run->instance;
+  struct LaneCourse *course = &run->courses[lane->number];
+  const struct Span *last = &instance->situation->last_step;
+  if (course->progress.count >= EVENT_LIMIT) return EVENT_UNKNOWN;
+  take(run, lane);
+  take_series(run, lane);
+  instance->solver_memory = run;
+  if (lagrangian.event_laws->pass(instance, &run->step, &course->progress) != NULL) return EVENT_UNKNOWN;
+  if (last->end > last->start) return NO_EVENT;
+  *time = last->end;
+  memcpy(course->state, instance->event_state, lagrangian.state_count * sizeof *course->state);
+  memcpy(course->parameter, instance->parameter, lagrangian.parameter_count * sizeof *course->parameter);
+  return EVENT;
+}
+
+double single_run_searched(const struct SingleRun *run, size_t lane) {
+  return run->courses[lane].progress.searched;
+}
+
+void single_run_pass_quietly(struct SingleRun *run, const struct LaneView *lane) {
+  struct EventProgress *progress = &run->courses[lane->number].progress;
+  progress->searched = fmax(progress->searched, fmin(lane->origin + lane->reach, run->step.end));
+  progress->gathered = progress->nearer = 0;
+}
+
+void single_run_go_on(struct SingleRun *run, const struct LaneView *lane) {
+  const struct LaneCourse *course = &run->courses[lane->number];
+  give_state(course->state, lane);
+  give_numbers(course->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);
+  for (size_t i = 0; i < lagrangian.state_count; i++) lane->low[i * lane->stride] = 0.0;
+}
+
+/* Brings the instance's state back to the constraints. */
+static bool project(struct SingleRun *run, const struct LaneView *lane, double time) {
+  take(run, lane);
+  return solver_project(&run->instance, time, run->instance.state) == NULL;
+}
+
+bool single_run_project(struct SingleRun *run, const struct LaneView *lane, double time, double *state) {
+  take_numbers(run->instance.state, lagrangian.state_count, state, lane->stride);
+  bool is_done = project(run, lane, time);
+  give_numbers(run->instance.state, lagrangian.state_count, state, lane->stride);
+  return is_done;
+}
+
+bool single_run_keep_constraints(struct SingleRun *run, const struct LaneView *lane) {
+  take_state(run, lane);
+  bool is_done = project(run, lane, lane->origin);
+  give_state(run->instance.state, lane);
+  return is_done;
+}
+
+bool single_run_may_end(struct SingleRun *run, const struct LaneView *lane, double time, const double *state) {
+  if (lagrangian.event_laws == NULL) return true;
+  take(run, lane);
+  take_numbers(run->instance.state, lagrangian.state_count, state, lane->stride);
+  return lagrangian.event_laws->check(&run->instance, time) == NULL;
+}
