@@ -13,7 +13,7 @@
 #include "evaluation/services.h"
 #include "planes/cone_newton.h"
 
-enum { TRIALS = 40, STRICT_TRIALS = 4, SWEEPS = 10 }; /* sweeps: in each trial so many more */
+enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, LAW_SWEEPS = 10 }; /* sweeps: in each trial so many more */
 
 /* What of its part each push takes: where friction presses a contact together, all of it would go to and fro without end. */
 static const double parts[] = {1.0, 0.3};
@@ -68,7 +68,7 @@ static void sweep(struct Cones *cones, double part) {
 }
 
 /* Of a push by itself; in a plane the larger eigenvalue of the mobility along and across. */
-static double scale_of(const struct Cones *cones, size_t row, size_t rows) {
+static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) {
   size_t n = cones->pushes->count;
   const double *m = &cones->pushes->mobility[row * n + row];
   double scale = m[0];
@@ -81,7 +81,7 @@ static bool fill_scales(struct Cones *cones) {
   bool moves = true;
   for (size_t row = 0; row < cones->pushes->count;) {
     size_t rows = cones_row_count(cones, row);
-    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of(cones, row, rows);
+    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of_push(cones, row, rows);
     moves &= row >= cones->pushes->contact_count || cones->scale[row] > 0.0;
     row += rows;
   }
@@ -93,14 +93,14 @@ static bool come_to_law(struct Cones *cones, double *best, double *swept, double
   size_t bytes = cones->pushes->count * sizeof(double);
   double least = INFINITY, enough = law_holds;
   memset(swept, 0, bytes);
-  for (int trial = 0; trial < TRIALS && !(least <= enough); trial++) {
+  for (int trial = 0; trial < LAW_TRIALS && !(least <= enough); trial++) {
     memcpy(cones->impulse, swept, bytes);
-    for (int count = 0; count < SWEEPS * (trial + 1); count++) sweep(cones, parts[2 * trial / TRIALS]);
+    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep(cones, parts[2 * trial / LAW_TRIALS]);
     memcpy(swept, cones->impulse, bytes);
     double miss = cone_newton(cones, work);
     if (miss < least) memcpy(best, cones->impulse, bytes);
     least = fmin(least, miss);
-    if (trial + 1 >= STRICT_TRIALS) enough = law_nearly_holds;
+    if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
   }
   memcpy(cones->impulse, best, bytes);
   return least <= enough;

@@ -9,10 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEP_LIMIT = 60 };
+enum { NEWTON_LIMIT = 60 };
 
 /* A step that leaves more of what is missing is none; less of a pivot is rounding; so is what is missing, of the largest impulse. */
-static const double least_gain = 0.9, least_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
+static const double least_gain_of_step = 0.9, least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
 
 struct ConeNewton {
   struct Cones *cones;
@@ -46,7 +46,7 @@ static void fill_nothing(const struct ConeNewton *newton, size_t row) {
   newton->miss[row] = newton->cones->scale[row] * newton->cones->impulse[row];
 }
 
-static void fill_contact(const struct ConeNewton *newton, size_t row) {
+static void fill_law_of_contact(const struct ConeNewton *newton, size_t row) {
   const struct Cones *cones = newton->cones;
   fill_rate(newton, row);
   if (!(cones->scale[row] * cones->impulse[row] - newton->miss[row] > 0.0)) fill_nothing(newton, row);
@@ -77,7 +77,7 @@ static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t row
   for (size_t i = 0; i < rows; i++) newton->miss[row + i] = scale * cones->impulse[row + i] - share * wish[i];
 }
 
-static void fill_friction(const struct ConeNewton *newton, size_t row, size_t rows) {
+static void fill_law_of_friction(const struct ConeNewton *newton, size_t row, size_t rows) {
   const struct Cones *cones = newton->cones;
   double wish[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
   for (size_t i = 0; i < rows; i++) {
@@ -94,8 +94,8 @@ static double fill_equations(const struct ConeNewton *newton) {
   double most = 0.0;
   for (size_t row = 0; row < newton->n;) {
     size_t rows = cones_row_count(newton->cones, row);
-    if (row < newton->cones->pushes->contact_count) fill_contact(newton, row);
-    else fill_friction(newton, row, rows);
+    if (row < newton->cones->pushes->contact_count) fill_law_of_contact(newton, row);
+    else fill_law_of_friction(newton, row, rows);
     row += rows;
   }
   for (size_t row = 0; row < newton->n; row++) most = fmax(most, fabs(newton->miss[row]));
@@ -103,7 +103,7 @@ static double fill_equations(const struct ConeNewton *newton) {
   return most;
 }
 
-static void swap(double *a, double *b) {
+static void swap_numbers(double *a, double *b) {
   double other = *a;
   *a = *b;
   *b = other;
@@ -118,10 +118,10 @@ static double take_pivot(const struct ConeNewton *newton, size_t k) {
         row = i;
         column = j;
       }
-  for (size_t j = 0; j < n && row != k; j++) swap(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
-  for (size_t i = 0; i < n && column != k; i++) swap(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
-  swap(&newton->miss[row], &newton->miss[k]);
-  swap(&newton->column[column], &newton->column[k]);
+  for (size_t j = 0; j < n && row != k; j++) swap_numbers(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
+  for (size_t i = 0; i < n && column != k; i++) swap_numbers(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
+  swap_numbers(&newton->miss[row], &newton->miss[k]);
+  swap_numbers(&newton->column[column], &newton->column[k]);
   return fabs(slope_row(newton, k)[k]);
 }
 
@@ -133,7 +133,7 @@ static void find_step(const struct ConeNewton *newton) {
   for (; rank < n; rank++) {
     double pivot = take_pivot(newton, rank);
     largest = fmax(largest, pivot);
-    if (!(pivot > least_pivot * largest)) break;
+    if (!(pivot > least_law_pivot * largest)) break;
     const double *first = slope_row(newton, rank);
     for (size_t i = rank + 1; i < n; i++) {
       double *row = slope_row(newton, i), share = row[rank] / first[rank];
@@ -163,13 +163,13 @@ double cone_newton(struct Cones *cones, double *work) {
   newton.before = newton.step + n;
   newton.column = newton.before + n;
   double miss = fill_equations(&newton);
-  for (int count = 0; count < STEP_LIMIT && miss > rounded_miss * largest_impulse(cones); count++) {
+  for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * largest_impulse(cones); count++) {
     memcpy(newton.before, cones->impulse, bytes);
     find_step(&newton);
     for (size_t i = 0; i < n; i++)
       if (cones->scale[i] > 0.0) cones->impulse[i] -= newton.step[i] / cones->scale[i];
     double next = fill_equations(&newton);
-    if (!(next < least_gain * miss)) {
+    if (!(next < least_gain_of_step * miss)) {
       memcpy(cones->impulse, newton.before, bytes);
       break;
     }
