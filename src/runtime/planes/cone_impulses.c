@@ -44,6 +44,19 @@ size_t cones_row_count(const struct Cones *cones, size_t row) {
   return row >= pushes->contact_count && is_in_plane(cones->settlement->switches, pushes->member[row]) ? 2 : 1;
 }
 
+double cones_largest(const struct Cones *cones) {
+  double largest = 0.0;
+  for (size_t i = 0; i < cones->pushes->count; i++) largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
+  return largest;
+}
+
+/* What is left of the law's equations, as a share of the largest impulse, without what rounding makes of the rates. */
+static double share_of_miss(const struct Cones *cones, double miss) {
+  double fastest = 0.0;
+  for (size_t i = 0; i < cones->pushes->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
+  return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
+}
+
 static void push_contact(struct Cones *cones, size_t row, double part) {
   double whole = fmax(cones->impulse[row] - cones_rate_behind(cones, row) / cones->scale[row], 0.0);
   cones->impulse[row] += part * (whole - cones->impulse[row]);
@@ -97,7 +110,7 @@ static bool come_to_law(struct Cones *cones, double *best, double *swept, double
     memcpy(cones->impulse, swept, bytes);
     for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep(cones, parts[2 * trial / LAW_TRIALS]);
     memcpy(swept, cones->impulse, bytes);
-    double miss = cone_newton(cones, work);
+    double miss = share_of_miss(cones, cone_newton(cones, work));
     if (miss < least) memcpy(best, cones->impulse, bytes);
     least = fmin(least, miss);
     if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;

@@ -149,12 +149,6 @@ static void find_step(const struct ConeNewton *newton) {
   }
 }
 
-static double largest_impulse(const struct Cones *cones) {
-  double largest = 0.0;
-  for (size_t i = 0; i < cones->pushes->count; i++) largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
-  return largest;
-}
-
 double cone_newton(struct Cones *cones, double *work) {
   size_t n = cones->pushes->count, bytes = n * sizeof(double);
   struct ConeNewton newton = {.cones = cones, .n = n, .slope = work};
@@ -163,7 +157,7 @@ double cone_newton(struct Cones *cones, double *work) {
   newton.before = newton.step + n;
   newton.column = newton.before + n;
   double miss = fill_equations(&newton);
-  for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * largest_impulse(cones); count++) {
+  for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * cones_largest(cones); count++) {
     memcpy(newton.before, cones->impulse, bytes);
     find_step(&newton);
     for (size_t i = 0; i < n; i++)
@@ -175,5 +169,5 @@ double cone_newton(struct Cones *cones, double *work) {
     }
     miss = next;
   }
-  return miss > 0.0 ? miss / largest_impulse(cones) : 0.0;
+  return miss;
 }

@@ -7,7 +7,7 @@
 /* Numbers of workspace for n rows. */
 size_t cone_newton_work_count(size_t n);
 
-/* Goes on from the impulses as long as they come nearer to the law. Returns how far they are from it, as a share of the largest. */
+/* Goes on from the impulses as long as they come nearer to the law. Returns how far they are from it, as a rate. */
 double cone_newton(struct Cones *cones, double *work);
 
 #endif

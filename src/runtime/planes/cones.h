@@ -22,4 +22,7 @@ double cones_limit(const struct Cones *cones, size_t row);
 /* How many rows the push at a row has that are one in the law: 2 for a friction in a plane. */
 size_t cones_row_count(const struct Cones *cones, size_t row);
 
+/* The largest impulse, as the rate that it makes by itself. */
+double cones_largest(const struct Cones *cones);
+
 #endif
