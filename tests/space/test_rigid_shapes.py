@@ -5,6 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from scipy.spatial.transform import Rotation
 
 import fmu
@@ -49,11 +50,37 @@ IN_PLANE = f"""<system name="InPlane">{HEAD}<coordinate name="x" velocity="vx" u
   <body name="solid" in="f" mass="m" {BALL}/>{WEIGHT}
   <shape name="ball" in="f" type="sphere" radius="r"/><shape name="floor" type="plane"/>
   {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+# A ball whose centre of mass is below its middle.
+TOP = f"""<system name="TippeTop">{HEAD}{free("a", BALL, "r").replace("<body", '<body z="-0.15*r"')}{WEIGHT}
+  <shape name="ball" in="a" type="sphere" radius="r"/><shape name="floor" type="plane"/>
+  {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+CRADLE = f"""<system name="Cradle3D">{HEAD}<for index="i" from="1" to="4"><coordinate name="x[i]" velocity="vx[i]" unit="m" start="0.2*i"/>
+  <coordinate name="y[i]" velocity="vy[i]" unit="m"/><coordinate name="z[i]" velocity="vz[i]" unit="m"/>
+  <particle name="p[i]" mass="m" x="x[i]" y="y[i]" z="z[i]"/><shape name="s[i]" in="p[i]" type="sphere" radius="r"/></for>
+  <for index="i" from="2" to="4"><contact name="c[i]" between="s[i]" and="s[i-1]" restitution="e" friction="mu"/></for>
+  <experiment stopTime="2" stepSize="0.01"/></system>"""
+
+
+def column(boxes):
+    """Boxes, each with a sole that stands on the plane which is the top of the one below."""
+    every = "".join(
+        free(f"b{k}", BOX, f"{k - 0.5}*C")
+        + f'''<shape name="sole{k}" in="b{k}" type="box" sizeX="A" sizeY="B" z="-C/2"/><shape name="top{k}" in="b{k}" type="plane" z="C/2"/>
+  {CONTACT.format(f"sole{k}", f"top{k - 1}").replace("touch", f"c{k}")}'''
+        for k in range(1, boxes + 1)
+    )
+    return f"""<system name="Column{boxes}">{HEAD}{SIDES}{WEIGHT}<shape name="top0" type="plane"/>{every}<experiment stopTime="2"/></system>"""
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("rigid-shapes", {"OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE})
+    texts = {"OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
+    build_systems("rigid-shapes", texts | {"Column2": column(2)})
+
+
+@pytest.fixture(scope="module")
+def column_of_five():
+    build_systems("rigid-column", {"Column5": column(5)})
 
 
 class Running:
@@ -254,6 +281,85 @@ def test_dice(seed):
         assert energy == pytest.approx(2 * G * 0.1, abs=1e-9)
         assert sorted(abs(rotation(instance, "a")[2])) == pytest.approx([0, 0, 1], abs=1e-9)
         assert sum(whole(instance, *[f"touch[{i}].closed" for i in range(1, 9)])) == 4
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_hostile_starts(seed):
+    """Boxes that start on a corner, an edge or a face, with no friction or far too much: energy never grows, or they are refused with a reason."""
+    chance = np.random.default_rng(seed)
+    turn = [Rotation.from_euler("zyx", [chance.uniform(0, 6), *angles]) for angles in (chance.uniform(0.1, 1.4, 2), (chance.uniform(0.1, 1.4), 0), (0, 0))][seed % 3]
+    corners = np.array([[x, y, z] for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (-0.1, 0.1)])
+    values = {"A": 0.2, "B": 0.2, "C": 0.2, "az": -turn.apply(corners)[:, 2].min(), "mu": [0.0, 10.0][seed // 3 % 2], "e": [0.0, 1.0][seed // 6]}
+    instance = fmu.Instance("RigidCrate")
+    try:
+        instance.initialize(values | pose("a", turn, chance.normal(0, 2, 3)) | {"avx": chance.normal()})
+        energy = instance.get("totalEnergy")
+        while instance.time < 1:
+            instance.run(instance.time + 0.05, 0.05)
+            assert instance.get("totalEnergy") < energy + 1e-9
+            energy = instance.get("totalEnergy")
+    except FMICallException:
+        reasons = " ".join(message[2] for message in instance.messages)
+        assert values["mu"] > 1 and any(words in reasons for words in ("solution there", "without end", "no accelerations")), reasons
+    instance.free()
+
+
+def test_tippe_top():
+    """Its spin turns it over, losing energy, while Jellett's integral stays: the angular momentum times the way from the centre of mass to the pole."""
+    m, r, moment = 1.0, 0.02, 0.4 * 0.02**2
+    values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": 0.02} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])
+    with Running("TippeTop", values) as instance:
+        jellett, energies, ups = [], [], []
+        for time in np.arange(1, 31) * 0.1:
+            instance.run(time, 0.1)
+            matrix = rotation(instance, "a")
+            angular = moment * matrix @ np.array([instance.get(f"aBody.omega{axis}") for axis in "XYZ"])
+            jellett.append(angular @ (matrix @ [0, 0, 0.15 * r] - [0, 0, r]))
+            energies.append(instance.get("totalEnergy"))
+            ups.append(matrix[2, 2])
+        assert jellett == pytest.approx([jellett[0]] * len(jellett), rel=1e-9)
+        assert np.all(np.diff(energies) < 1e-9) and energies[-1] < 0.8 * energies[0]
+        assert ups[0] > 0.9 and ups[-1] < -0.9
+
+
+def test_row_of_balls():
+    """One that hits a row of equal ones that touch hands its velocity on to the last, and stands still, in any direction of the row."""
+    way = np.array([2.0, -1.0, 2.0]) / 3
+    values = {f"{x}[{i}]": 0.2 * i * way[k] for i in (2, 3, 4) for k, x in enumerate("xyz")}
+    values |= {f"{x}[1]": -0.3 * way[k] for k, x in enumerate("xyz")} | {f"v{x}[1]": way[k] for k, x in enumerate("xyz")}
+    with Running("Cradle3D", values | {"e": 1.0}) as instance:
+        instance.run(2.0, 0.1)
+        for i in (1, 2, 3, 4):
+            assert [instance.get(f"v{x}[{i}]") for x in "xyz"] == pytest.approx(way * (i == 4), abs=1e-12)
+
+
+def check_column(boxes, time):
+    """At rest each corner bears a quarter of what is above it, and nothing creeps."""
+    places = [f"b{k}{x}" for k in range(1, boxes + 1) for x in ("x", "y", "z", "q1", "q2", "q3")]
+    with Running(f"Column{boxes}", {"mu": 0.5}) as instance:
+        before = [instance.get(name) for name in places]
+        instance.run(time, time / 10)
+        assert [instance.get(name) for name in places] == pytest.approx(before, abs=1e-9)
+        for k in range(1, boxes + 1):
+            assert [instance.get(f"c{k}[{i}].force") for i in (1, 2, 3, 4)] == pytest.approx([(boxes - k + 1) * 2 * G / 4] * 4, rel=1e-9)
+
+
+def test_column():
+    """Also on a slope, and where the upper one is thrown along the lower, which it drags as far as friction does: momentum says how far."""
+    check_column(2, 10.0)
+    with Running("Column2", {"mu": 0.5, "slope": 0.4}) as instance:
+        instance.run(1.0, 0.1)
+        assert [instance.get(f"b{k}v{x}") for k in (1, 2) for x in "xyz"] == pytest.approx([0] * 6, abs=1e-12)
+    with Running("Column2", {"mu": 0.1, "b2vx": 0.2}) as instance:
+        # The upper one slows down by mu g and moves the lower one by nothing: below it are two weights.
+        instance.run(1.0, 0.1)
+        assert [instance.get("b1x"), instance.get("b2x")] == pytest.approx([0, 0.2**2 / (2 * 0.1 * G)], abs=1e-9)
+
+
+@pytest.mark.release
+def test_column_of_five(column_of_five):
+    """For 100 s."""
+    check_column(5, 100.0)
 
 
 @pytest.mark.parametrize(
