@@ -32,6 +32,8 @@ LAGC = House(
     src/compiler/read/expressions
     src/compiler/read/xml
     src/compiler/read/meshes
+    src/compiler/read/robots/description
+    src/compiler/read/robots/mjcf
     src/compiler/read/robots
     src/compiler/read/context
     src/compiler/read/space

@@ -19,6 +19,7 @@ from numerics.plots import stiff_legend, stiff_plot, work_precision_plot
 from numerics.space import accelerations
 from numerics.stiff import comparison as stiff
 from numerics.switching import comparison as switching
+from numerics.touching import comparison as touching
 from numerics.work_precision import comparison as work_precision
 from numerics.work_precision import energy
 from numerics.work_precision.peers import PEERS
@@ -37,7 +38,7 @@ class Section(NamedTuple):
 
 def machine_section(quick, progress):
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.processor())
-    packages = ["fmpy", "scipy", "heyoka", "mujoco", "exudyn", "pin", "sympy", "python-flint"]
+    packages = ["fmpy", "scipy", "heyoka", "mujoco", "drake", "exudyn", "pin", "sympy", "python-flint"]
     versions = []
     for package in packages:
         try:
@@ -169,6 +170,15 @@ def switching_section(quick, progress):
                    runs=runs)  # fmt: skip
 
 
+def touching_section(quick, progress):
+    samples, missing, failures = touching.collect(quick, progress)
+    write_csv(FOLDER / "touching.csv", ["problem", "method", "setting", "error", "seconds"], [[s.problem, s.method, s.setting, s.error, min(s.times)] for s in samples])
+    rows = touching.rows(samples)
+    write_csv(FOLDER / "touching_times.csv", touching.HEADER, rows)
+    absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
+    return Section([], paragraphs([*absent, *failures]) + folded("in words", paragraphs(touching.NOTES)) + table(touching.HEADER, rows))
+
+
 def accelerations_part(quick, progress):
     title = "One evaluation of the accelerations of a robot"
     try:
@@ -214,7 +224,8 @@ def missing_peers(samples, peers=PEERS):
 
 
 SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
-            ("Switching", switching_section), ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
+            ("Switching", switching_section), ("Bodies that touch", touching_section),
+            ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
             ("References", references_section), ("Machine and versions", machine_section)]  # fmt: skip
 
 
@@ -244,7 +255,7 @@ def main(words=None):
     parser.add_argument("--quick", action="store_true", help="five systems, few tolerances: two minutes")
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
-    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 1 + len(switching.PROBLEMS) + len(switching.GROWING)
+    count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 2 + len(switching.PROBLEMS) + len(switching.GROWING)
     progress, sections = Progress(count + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
         sections[title] = attempt(title, section, quick, progress)

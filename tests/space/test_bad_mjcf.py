@@ -54,7 +54,8 @@ CASES = [
     ("damping", 10, '<joint name="elbow" damping="-1"/>', 10, 'damping="-1" of <joint> is negative'),
     ("no mass", 11, '<geom size="0.1" mass="0"/>', 10, "the joint 'elbow' moves no inertia"),
     ("no size", 11, "<geom/>", 11, "a <geom> of type sphere has a size of 0"),
-    ("mesh", 11, '<geom type="mesh" mesh="m"/>', 11, "the inertia of a <geom> of type mesh is not known; expected an <inertial>"),
+    ("mesh", 11, '<geom type="mesh" mesh="m"/>', 11, "there is no <mesh> 'm' in an <asset>; expected one of the file"),
+    ("height field", 11, '<geom type="hfield"/>', 11, "the inertia of a <geom> of type hfield is not known; expected an <inertial>"),
     ("plane between", 11, '<geom type="plane" fromto="0 0 0 1 1 1"/>', 11, "fromto of a <geom> gives no place"),
     ("two inertias", 11, '<inertial mass="1" diaginertia="1 1 1" fullinertia="1 1 1 0 0 0"/>', 11, "<inertial> has diaginertia and fullinertia"),
     ("kinds of actuators", 3, '<default><position kp="4"/><default class="a"/></default>', 15, "<motor> inherits the <position> of a <default>"),
@@ -63,7 +64,13 @@ CASES = [
     ("dynamics", 15, '<actuator><general dyntype="filter" joint="elbow"/></actuator>', 15, 'dyntype="filter" of <general> is not known'),
     ("tendon", 15, "<tendon/>", 15, f"<tendon> {UNKNOWN} a <spring>"),
     ("include", 15, '<include file="x.xml"/>', 15, f"<include> {UNKNOWN} one file"),
-    ("weld", 15, '<equality><weld body1="upper"/></equality>', 15, f"<weld> {UNKNOWN} a <joint> that closes the loop"),
+    ("weld", 15, '<equality><weld body1="uper"/></equality>', 15, "there is no body 'uper' for a <weld>; expected one of the file"),
+    ("weld to its own", 15, '<equality><weld body1="upper" body2="upper"/></equality>', 15, "nothing moves what the joint 'loop1' holds"),
+    ("no anchor", 15, '<equality><connect body1="lower"/></equality>', 15, "<connect> needs the attribute 'anchor'"),
+    ("one site", 15, '<equality><connect site1="lower"/></equality>', 15, "<connect> needs the attribute 'site2'"),
+    ("pose", 15, '<equality><weld body1="lower" relpose="1 2 3"/></equality>', 15, 'relpose="1 2 3" of <weld>; expected 7 numbers'),
+    ("flex", 15, '<equality><flex name="a"/></equality>', 15, f"<flex> {UNKNOWN} rigid bodies"),
+    ("tendons", 15, '<equality><distance geom1="a"/></equality>', 15, f"<distance> {UNKNOWN} a <joint>, <connect> or <weld>"),
     ("square", 15, '<equality><joint joint1="elbow" joint2="shoulder" polycoef="0 1 2"/></equality>', 15, "polycoef of <joint> is not linear"),
 ]  # fmt: skip
 
@@ -87,6 +94,23 @@ def test_bad_line(name, replaced, new, line, message, tmp_path):
     lines = RIGHT.splitlines()
     lines[replaced - 1] = new
     check(tmp_path, "\n".join(lines), line, message)
+
+
+KEYS = '<keyframe><key name="home" qpos="0.1 0.2"/><key name="short" qpos="1"/><key name="odd" qvel="0 x"/><key name="free" ctrl="1 2"/></keyframe>'
+BAD_KEYS = [
+    ("hom", 1, "there is no <key> 'hom'; did you mean 'home'?"),
+    ("short", 16, 'qpos="1" of <key>; expected 2 numbers'),
+    ("odd", 16, 'qvel="0 x" of <key>; expected 2 numbers'),
+    ("free", 16, 'ctrl="1 2" of <key>; expected 1 number'),
+]
+
+
+@pytest.mark.parametrize("key, line, message", BAD_KEYS)
+def test_bad_keyframe(key, line, message, tmp_path):
+    (tmp_path / "arm.xml").write_text(RIGHT.replace("</mujoco>", f"{KEYS}\n</mujoco>"))
+    (tmp_path / "system.xml").write_text(f'<system name="S"><include file="arm.xml" as="arm" keyframe="{key}"/></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and re.search(rf"^arm\.xml:{line}: {re.escape(message)}", result.stderr, re.MULTILINE), result.stderr
 
 
 def test_no_world(tmp_path):

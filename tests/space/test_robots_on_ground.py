@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -77,6 +78,71 @@ def test_where_shapes_are():
         assert instance.get("r.roller_ground1.force") == pytest.approx(expected, rel=1e-9)
     finally:
         instance.free()
+
+
+def test_links_that_stand_are_named(tmp_path):
+    """Only these touch; a name that is none, or of a link without a shape, is told."""
+    (tmp_path / "dog.urdf").write_text(DOG)
+
+    def read(names):
+        (tmp_path / "system.xml").write_text(STANDING.replace('ground="true"', f'ground="{names}"'))
+        return lagc("system.xml", "-o", "out", cwd=tmp_path)
+
+    assert read(" lf_shank rh_shank ").returncode == 0
+    variables = (tmp_path / "out" / "modelDescription.xml").read_text()
+    assert [f"dog.{leg}_shank_ground1.force" in variables for leg in LEGS] == [True, False, False, True]
+    assert "dog.trunk_ground1.force" not in variables
+    assert "there is no link 'lf_shnk' for the ground; did you mean 'lf_shank'?" in read("rf_shank lf_shnk").stderr
+    assert "dog.urdf:2: the link 'lf_thigh' has no shape that could stand on the ground" in read("lf_thigh").stderr
+
+
+ANYMAL = "anymal_b_simple_description/robots/anymal.urdf"
+FEET = ["LF", "RF", "LH", "RH"]
+POSE = {f"{foot}_{joint}": angle * (1 if foot[1] == "F" else -1) for foot in FEET for joint, angle in (("HAA", 0.0), ("HFE", 0.7), ("KFE", -1.0))}
+
+
+@pytest.fixture(scope="module")
+def anymal():
+    """The path of ANYmal's URDF, of which the FMU stands on its feet."""
+    pin = pytest.importorskip("pinocchio")
+    path = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots" / ANYMAL
+    servo = '<coordinate name="{0}" start="{1}"/><input name="{0}_torque" value="kp*({1} - dog.{0}) - kd*dog.{0}_velocity"/>'
+    servos = "".join(servo.format(joint, angle) for joint, angle in POSE.items())
+    torques = "".join(f'<output name="{joint}_torque" unit="N.m">kp*({angle} - dog.{joint}) - kd*dog.{joint}_velocity</output>' for joint, angle in POSE.items())
+    text = f"""<system name="Anymal"><parameter name="kp" start="300" unit="N.m/rad"/><parameter name="kd" start="15" unit="N.m.s/rad"/>
+<include file="{path}" as="dog" base="floating" ground="{" ".join(f"{foot}_FOOT" for foot in FEET)}"><coordinate name="base_z" start="0.53"/>{servos}</include>{torques}</system>"""
+    build_systems("anymal", {"Anymal": text})
+    return path
+
+
+@pytest.mark.release
+def test_anymal_stands(anymal, open_fmu):
+    """
+    At rest the weights of all links, the forces on the feet and the torques of the motors balance along each of its 18 velocities, by
+    Pinocchio; little friction lets the feet slide apart until they push sideways no more.
+    """
+    import pinocchio as pin
+
+    instance = open_fmu("Anymal")
+    instance.initialize({"dog.ground_friction": 0.02}, tolerance=1e-10)
+    instance.run(40.0, 0.5)
+    model = pin.buildModelFromUrdf(str(anymal), pin.JointModelFreeFlyer())
+    data, joints = model.createData(), [*model.names[2:]]
+    q = np.array([instance.get(f"dog.base_{name}") for name in ("x", "y", "z", "qx", "qy", "qz", "qw")] + [instance.get(f"dog.{joint}") for joint in joints])
+    balance = pin.computeGeneralizedGravity(model, data, q)
+    balance[6:] -= [instance.get(f"{joint}_torque") for joint in joints]
+    pin.computeJointJacobians(model, data, q)
+    pin.updateFramePlacements(model, data)
+    forces = [instance.get(f"dog.{foot}_FOOT_ground1.force") for foot in FEET]
+    for foot, force in zip(FEET, forces):
+        # The middle of its sphere, along the axes of the world.
+        frame = model.getFrameId(f"{foot}_FOOT", pin.FrameType.BODY)
+        jacobian = pin.getFrameJacobian(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
+        lever = data.oMf[frame].rotation @ [0, 0, 0.02325]
+        balance -= jacobian[:3].T @ [0, 0, force] + jacobian[3:].T @ np.cross(lever, [0, 0, force])
+    weight = 9.81 * sum(inertia.mass for inertia in model.inertias)
+    assert sum(forces) == pytest.approx(weight, rel=2e-9) and min(forces) > 0.2 * weight
+    assert np.max(np.abs(balance)) < 1e-6 * weight
 
 
 def test_a_mesh_that_is_missing(tmp_path):

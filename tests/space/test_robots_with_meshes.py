@@ -50,14 +50,18 @@ def test_a_cube_is_a_box():
         assert forces[0] > 0 and forces[1] == pytest.approx(forces[0], rel=1e-9)
 
 
-def scene_of(tmp_path, parts, ground=False):
+def scene_of_file(tmp_path, robot, system, ground):
     """What is drawn, and what lagc says."""
-    (tmp_path / "robot.urdf").write_text(ROBOT.format(parts))
-    (tmp_path / "system.xml").write_text(SYSTEM.format("Told", "robot.urdf").replace(*([WITHOUT_GROUND, ""] if not ground else ["", ""])))
+    (tmp_path / "system.xml").write_text(system.format("Told", robot).replace(*([WITHOUT_GROUND, ""] if not ground else ["", ""])))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     tree = ElementTree.parse(tmp_path / "out" / "modelDescription.xml")
     return [element for element in tree.iter() if element.tag in ("shape", "mesh") and element.get("type") != "plane"], result.stderr
+
+
+def scene_of(tmp_path, parts, ground=False):
+    (tmp_path / "robot.urdf").write_text(ROBOT.format(parts))
+    return scene_of_file(tmp_path, "robot.urdf", SYSTEM, ground)
 
 
 def test_visuals_are_drawn(tmp_path):
@@ -123,3 +127,46 @@ def test_what_cannot_touch(tmp_path):
     (tmp_path / "cube.obj").write_text(obj_text(ball, triangles_of(ball)))
     things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
     assert len(things) == 2 and re.search(r"touches at 32 of them; it reaches up to 0\.\d+ m beyond these", told)
+
+
+MJCF = """<mujoco model="roller"><compiler meshdir="parts"/>
+<asset><mesh name="cube" file="cube.stl" scale="0.4 0.6 -0.2"/><mesh file="cube.stl"/><mesh name="lost" file="lost.stl"/><material name="sand" rgba="1 0.5 0 1"/></asset>
+<worldbody><body name="roller"><freejoint/><inertial mass="3" diaginertia="1 1 1"/>{}</body></worldbody></mujoco>"""
+MJCF_SYSTEM = SYSTEM.replace(' base="floating"', "")
+
+
+def mjcf_scene_of(tmp_path, parts, ground=False):
+    (tmp_path / "parts").mkdir(exist_ok=True)
+    (tmp_path / "parts" / "cube.stl").write_text(CUBE_STL)
+    (tmp_path / "robot.xml").write_text(MJCF.format(parts))
+    return scene_of_file(tmp_path, "robot.xml", MJCF_SYSTEM, ground)
+
+
+def test_geoms_that_are_meshes(tmp_path):
+    """What cannot touch is drawn in place of what can; colours are those of geoms and materials."""
+    seen = '<geom type="mesh" mesh="cube" contype="0" conaffinity="0" material="sand" pos="0.1 0 0"/><geom contype="0" conaffinity="0" size="0.1" rgba="0 0 1 0.5"/>'
+    things, told = mjcf_scene_of(tmp_path, f'{seen}<geom type="mesh" mesh="cube"/>', ground=True)
+    assert [(thing.tag, thing.get("color")) for thing in things] == [("mesh", None), ("shape", "#ff8000ff"), ("shape", "#0000ff80")] and told == ""
+    assert float(things[1].get("x")) == 0.1
+    variables = (tmp_path / "out" / "modelDescription.xml").read_text()
+    assert "r.roller_ground1.force" in variables and "r.roller_ground2.force" not in variables
+
+
+def test_meshes_of_mjcf_that_are_lost(tmp_path):
+    """They are told, and no errors where the motion does not depend on them."""
+    lost = '<geom type="mesh" mesh="lost"/>'
+    assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost)[1]
+    assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost, ground=True)[1]
+    (tmp_path / "robot.xml").write_text(MJCF.replace("<inertial", "<site").replace("mass=", "name=").replace(' diaginertia="1 1 1"', "").format(lost))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and "robot.xml:3: the inertia of a <geom> of type mesh is not known: the mesh 'parts/lost.stl' is not there" in result.stderr
+
+
+@pytest.mark.parametrize("ground", [False, True])
+def test_a_mesh_of_mjcf_touches_as_that_of_urdf(ground, tmp_path):
+    (tmp_path / "cube.stl").write_text(CUBE_STL)
+    urdf, _ = scene_of(tmp_path, '<collision><geometry><mesh filename="cube.stl" scale="0.4 0.6 -0.2"/></geometry></collision>', ground)
+    mjcf, _ = mjcf_scene_of(tmp_path, '<geom type="mesh" mesh="cube"/>', ground)
+    assert [{key: value for key, value in thing.items() if key not in ("name", "in")} for thing in urdf] == [
+        {key: value for key, value in thing.items() if key not in ("name", "in")} for thing in mjcf
+    ]

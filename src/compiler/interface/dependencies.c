@@ -82,7 +82,8 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
 static void follow_acceleration(struct Dependencies *dependencies, size_t coordinate, enum Dependency kind) {
   const struct Equations *equations = dependencies->equations;
   if (graph_limit(dependencies->graph) != NULL) return;
-  if (!is_looped(equations, coordinate)) {
+  const struct InertiaBlock *block = inertia_block_of(equations->inertia, coordinate);
+  if (block->is_unrolled && block->tree == NULL) {
     descend(dependencies, equations->acceleration[coordinate], kind);
     return;
   }

@@ -6,7 +6,6 @@
 #include "algebra/kinks.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "interface/arrays.h"
 #include "interface/symbol_names.h"
 #include "mechanics/switching.h"
 
@@ -282,6 +281,12 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   mark_moved_states(interface, model, equations);
 }
 
+/* The expression where one stands for itself; in trees each would hold all of the tree. */
+static Node acceleration_of(const struct Model *model, const struct Equations *equations, size_t i) {
+  bool is_in_tree = !equations->explicit_form && inertia_block_of(equations->inertia, i)->tree != NULL;
+  return is_in_tree ? model->unknowns.accelerations[i] : equations->acceleration[i];
+}
+
 /* Coordinates, velocities and the work of forces, then the derivatives of each. */
 static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   size_t n = model->coordinates.count;
@@ -298,7 +303,7 @@ static void append_states(struct Interface *interface, const struct Model *model
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
   for (size_t i = 0; i < n; i++)
-    append_derivative(interface, &model->velocities.items[i], n + i, equations->acceleration[i]);
+    append_derivative(interface, &model->velocities.items[i], n + i, acceleration_of(model, equations, i));
   if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
   interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
 }
@@ -325,6 +330,5 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->count_in_fmi2 = interface->count;
   append_indicators(interface, equations->switching);
   if (!interface->depends_on_time) append_time(interface, model);
-  arrays_find(interface);
   return interface;
 }

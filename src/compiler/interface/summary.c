@@ -43,13 +43,22 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
   return shorter ? expanded : node;
 }
 
+/* The same of a tree, whose mass matrix is not formed: row i of M a. */
+static Node inertial_side_in_tree(const struct Model *model, const struct Equations *equations, size_t i) {
+  Node *accelerations = allocate(row_count(equations), sizeof *accelerations);
+  Node *product = allocate(row_count(equations), sizeof *product);
+  for (size_t k = 0; k < row_count(equations); k++) accelerations[k] = unknown_of_row(model, k);
+  inertia_add_product(model->graph, equations->inertia, accelerations, product);
+  return product[i];
+}
+
 /* Row i of M a and the forces of constraints, or the acceleration itself. */
 static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
                           size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-  Node sum = ZERO;
+  Node sum = block->tree != NULL ? inertial_side_in_tree(model, equations, i) : ZERO;
   for (size_t k = 0; k < block->count; k++) {
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));

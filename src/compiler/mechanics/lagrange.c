@@ -54,7 +54,8 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
   inertia_add_product(graph, inertia, rows, other);
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
-    if (is_driven(model, inertia->blocks[b].coordinates[0])) continue; /* its M is that of the drive, 1 */
+    /* The M of a driven coordinate is that of the drive, 1; that of a tree is not formed. */
+    if (is_driven(model, inertia->blocks[b].coordinates[0]) || inertia->blocks[b].tree != NULL) continue;
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);
@@ -181,12 +182,12 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   int errors = diagnostics->errors;
   struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
-  Node kinetic = add(graph, model->energies.kinetic.node, energy_of_stillness(model));
+  Node stillness = energy_of_stillness(model), kinetic = add(graph, model->energies.kinetic.node, stillness);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   equations->has_work = model->forces.work_line > 0;
   const struct Constraints *constraints = equations->constraints;
   const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
-  equations->inertia = inertia_derive(model, momentum, &border, diagnostics);
+  equations->inertia = inertia_derive(model, momentum, stillness, &border, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     add_constraints(model, equations);

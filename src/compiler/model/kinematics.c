@@ -77,6 +77,11 @@ static void turn_axes(struct Graph *graph, struct Pose *pose, const struct Matri
   pose->angular_velocity = vector_add(graph, matrix_apply_transposed(graph, turn, pose->angular_velocity), spin);
 }
 
+void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step) {
+  pose_translate(graph, pose, step->origin, step->velocity);
+  turn_axes(graph, pose, &step->rotation, step->angular_velocity);
+}
+
 /* Rodrigues: cos I + sin [e x] + (1 - cos) e e^T */
 void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate) {
   Node cosine = function(graph, COSINE, angle, ZERO), sine = function(graph, SINE, angle, ZERO);

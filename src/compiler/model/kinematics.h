@@ -49,6 +49,9 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
 /* Turns it by a quaternion of norm 1, q[0] + q[1] i + q[2] j + q[3] k. */
 void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
 
+/* Moves and turns the frame by a step, as seen from itself. */
+void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step);
+
 /* The velocity of a point of the frame at an offset, along its axes. */
 struct Vector velocity_at(struct Graph *graph, const struct Pose *pose, struct Vector offset, struct Vector rate);
 

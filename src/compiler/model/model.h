@@ -50,6 +50,8 @@ struct ReferenceFrame {
   size_t parent;   /* among the model's */
   bool is_of_body; /* turns with the planar body of its name */
   struct Pose pose;
+  struct Pose *steps; /* from the parent to the frame, each as seen from the one before */
+  size_t step_count;
 };
 
 /* A Cartesian force along a component of a position, which is a function of displacements too. */
@@ -195,6 +197,7 @@ struct Model {
   struct Forces forces;
   struct Unknowns unknowns;
   bool linearized;
+  bool unrolled;                   /* the accelerations are wanted as expressions */
   struct LinearizationPoint point; /* where linearized */
   struct SolverChoice solver;
   struct Experiment experiment;

@@ -65,6 +65,33 @@ static void compute_blocks(const struct Program *program, struct Values *values,
   values_compute(values, targets.nodes, targets.count, false);
 }
 
+/* Whether the row is of a tree that constraints hold. */
+static bool is_in_tree(const struct Program *program, size_t row) {
+  const struct InertiaBlock *block = inertia_block_of(program->equations->inertia, row);
+  return block->tree != NULL && block->constraint_count > 0;
+}
+
+/* The changes in trees are expressions; pivots of constraints too. */
+static void append_trees(const struct Program *program, struct Values *values, const Node *change) {
+  size_t n = program->equations->count, constraints = program->equations->constraints->count;
+  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), is_in_tree(program, i) ? change[i] : ZERO);
+  for (size_t j = 0; j < constraints; j++)
+    if (is_in_tree(program, n + j))
+      values_copy(values, target_place(n + constraints + j), program->expressions->corrections.pivot[j]);
+}
+
+/* What of the right sides, of slopes and of pivots is there as expressions. */
+static struct NodeList nodes_of_correction(const struct Program *program, const Node *side) {
+  const struct Corrections *corrections = &program->expressions->corrections;
+  size_t n = program->equations->count, constraints = program->equations->constraints->count;
+  struct NodeList nodes = {0};
+  append_nodes(&nodes, corrections->slope, constraints);
+  append_nodes(&nodes, corrections->pivot, constraints);
+  for (size_t i = 0; i < n + constraints; i++)
+    if (is_in_tree(program, i)) append_node(&nodes, side[i]);
+  return nodes;
+}
+
 /* side: a right side for each row; starting: fixed coordinates stay where they are. */
 static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *side,
                                           bool starting) {
@@ -72,8 +99,9 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   const struct Equations *equations = program->equations;
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
-  compute_blocks(program, values, side, slope, constraints);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
+  const struct NodeList further = nodes_of_correction(program, side);
+  compute_blocks(program, values, side, further.nodes, further.count);
+  append_trees(program, values, side);
   for (size_t j = 0; j < constraints; j++) {
     values_copy(values, target_place(n + j), side[n + j]);
     values_copy(values, target_place(n + 2 * constraints + j), slope[j]);

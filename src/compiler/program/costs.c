@@ -13,6 +13,13 @@ static double operations_of(const struct Routine *routine) {
   return count;
 }
 
+/* Of a Jacobian matrix; 0 for none. */
+static double operations_of_jacobian(const struct Program *program) {
+  if (program->expressions->jacobian == NULL || program->expressions->jacobian->value != NULL)
+    return operations_of(program->routines[FUNCTION_JACOBIAN]);
+  return (double)program->interface->state_count * operations_of(program->routines[FUNCTION_DIRECTIONAL]);
+}
+
 /* Elements of the rows of L with their diagonals, and the sum of the squares of their numbers. */
 static void count_factors(const struct Program *program, double *elements, double *squares) {
   const struct Elimination *factors = program->expressions->jacobian->factors;
@@ -28,7 +35,7 @@ struct OperationCounts operation_counts_of(const struct Program *program) {
   double elements, squares;
   count_factors(program, &elements, &squares);
   return (struct OperationCounts){.derivatives = operations_of(program->routines[FUNCTION_DERIVATIVES]),
-                                  .jacobian = operations_of(program->routines[FUNCTION_JACOBIAN]),
+                                  .jacobian = operations_of_jacobian(program),
                                   .series = operations_of(program->series->order),
                                   .recurrences = (double)program->series->recurrences,
                                   .factor = squares,
@@ -41,11 +48,11 @@ enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
 /* Of an evaluation of the equations by a method of Runge and Kutta or an implicit one, with its share in linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
   double work = 250.0 + operations_of(program->routines[FUNCTION_DERIVATIVES]);
-  if (program->routines[FUNCTION_JACOBIAN] == NULL) return work;
+  if (program->expressions->jacobian == NULL) return work;
   double elements, squares, systems = 4.0 * STAGES - 2.0;
   count_factors(program, &elements, &squares);
   return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
-         (operations_of(program->routines[FUNCTION_JACOBIAN]) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
+         (operations_of_jacobian(program) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
 }
 
 static double work_of_series(const struct Program *program) {

@@ -9,8 +9,9 @@
 /* A constraint that is solved for at run time. */
 struct Row {
   Place side, target, force;
-  Place turn; /* its element of dJ w */
-  bool turns; /* has one */
+  Place turn;     /* its element of dJ w */
+  bool turns;     /* has one */
+  bool is_looped; /* others have forces that no other constraint can take over */
 };
 
 static struct Row *rows_create(const struct Program *program) {
@@ -23,6 +24,7 @@ static struct Row *rows_create(const struct Program *program) {
       if (row >= n)
         rows[row - n] = (struct Row){.side = place_in(SPACE_SIDE, looped->first_side + i),
                                      .target = target_place(row),
+                                     .is_looped = true,
                                      .force = place_in(SPACE_ACCELERATION, row)};
     }
   }
@@ -59,6 +61,7 @@ static void append_turns(const struct Program *program, struct Values *values, s
   for (size_t k = 0; k < jacobian->count; k++) {
     if (along[k] == ZERO) continue;
     struct Row *row = &rows[jacobian->positions[k].row];
+    if (!row->is_looped) continue;
     Place term = routine_local(values->routine), side = side_of(program, jacobian->positions[k].column);
     routine_append(values->routine, PRODUCT, term, values_place(values, along[k]), side, 0);
     Place sum = row->turns ? routine_local(values->routine) : term;
@@ -84,12 +87,14 @@ void append_least_forces_along(const struct Program *program, struct Values *val
     if (turns && blocks->items[b].block->constraint_count > 0) append_origins(program, values, b, rows);
   append_turns(program, values, rows);
   for (size_t j = 0; j < count; j++) {
+    if (!rows[j].is_looped) continue;
     if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].side, rows[j].target, rows[j].turn, 0);
     else routine_copy(values->routine, rows[j].side, rows[j].target);
   }
   for (size_t b = 0; b < blocks->count; b++)
     if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Place)b, 0, 0, 0);
   for (size_t j = 0; j < count; j++) {
+    if (!rows[j].is_looped) continue;
     if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].side, rows[j].turn, 0);
     else routine_copy(values->routine, rows[j].target, rows[j].side);
   }

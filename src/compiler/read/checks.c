@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/robots/rigid_body.h"
+#include "read/robots/description/rigid_body.h"
 
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;

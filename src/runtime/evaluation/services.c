@@ -27,10 +27,29 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
   return evaluate_derivatives(instance, &point, derivative);
 }
 
+/* Column by column, by what differentiates along directions; behind the inputs of the point in the workspace. */
+static int jacobian_by_directions(struct Instance *instance, const struct Point *point, double *values) {
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
+  const size_t states = lagrangian.state_count;
+  double *direction = instance->work + lagrangian.input_count, *column = direction + states, *zeros = column + states;
+  const struct Seed seed = {.state = direction, .input = zeros, .parameter = zeros + lagrangian.input_count};
+  int singular = 0;
+  memset(direction, 0, states * sizeof *direction);
+  memset(zeros, 0, (lagrangian.input_count + lagrangian.parameter_count) * sizeof *zeros);
+  for (size_t j = 0; j < states && singular == 0; j++) {
+    direction[j] = 1.0;
+    singular = lagrangian.directional(point, &seed, column);
+    direction[j] = 0.0;
+    for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) values[k] = column[pattern->row[k]];
+  }
+  return singular;
+}
+
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
   struct Point point = solver_point(instance, time, state);
   instance->situation->statistics[STATISTIC_JACOBIANS]++;
-  instance->singular = lagrangian.implicit.jacobian(&point, values);
+  instance->singular = lagrangian.implicit.jacobian != NULL ? lagrangian.implicit.jacobian(&point, values)
+                                                            : jacobian_by_directions(instance, &point, values);
   return instance->singular == 0;
 }
 

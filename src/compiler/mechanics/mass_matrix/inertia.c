@@ -61,16 +61,19 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
   return result;
 }
 
+static struct FactorPattern pattern_of(const struct InertiaBlock *block) {
+  return (struct FactorPattern){block->count, block->start, block->column};
+}
+
+void block_factor(struct Graph *graph, struct InertiaBlock *block) {
+  const struct FactorPattern pattern = pattern_of(block);
+  block->factor = factors_create(graph, &pattern, block->mass);
+}
+
 void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
-  for (size_t i = 0; i < block->count; i++)
-    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++)
-      x[i] = subtract(graph, x[i], multiply(graph, block->factor[k], x[block->column[k]]));
-  for (size_t i = 0; i < block->count; i++) x[i] = divide(graph, x[i], block->factor[block->start[i + 1] - 1]);
-  for (size_t i = block->count; i-- > 0;)
-    for (size_t k = block->start[i]; k + 1 < block->start[i + 1]; k++) {
-      size_t j = block->column[k];
-      x[j] = subtract(graph, x[j], multiply(graph, block->factor[k], x[i]));
-    }
+  const struct FactorPattern pattern = pattern_of(block);
+  if (block->tree != NULL) articulated_solve(graph, block->tree, x);
+  else factors_solve(graph, &pattern, block->factor, x);
 }
 
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
@@ -83,9 +86,21 @@ void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Nod
   }
 }
 
+/* The same for a tree. */
+static void add_product_of_tree(struct Graph *graph, const struct InertiaBlock *block, const Node *vector, Node *sum) {
+  Node *x = allocate(block->count, sizeof *x), *product = allocate(block->count, sizeof *product);
+  for (size_t i = 0; i < block->count; i++) x[i] = vector[block->coordinates[i]];
+  articulated_add_product(graph, block->tree, x, product);
+  for (size_t i = 0; i < block->count; i++) {
+    Node *total = &sum[block->coordinates[i]];
+    *total = add(graph, *total, product[i]);
+  }
+}
+
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum) {
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
+    if (block->tree != NULL) add_product_of_tree(graph, block, vector, sum);
     for (size_t row = 0; row < block->count; row++)
       for (size_t k = block->start[row]; k < block->start[row + 1]; k++) {
         size_t i = block->coordinates[row], j = block->coordinates[block->column[k]];

@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "mechanics/mass_matrix/mass_elements.h"
+#include "mechanics/mass_matrix/articulated.h"
 
 /* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
 struct Pivot {
@@ -31,6 +31,8 @@ struct InertiaBlock {
   size_t force_count, *forces;
   Node *oblique;
   Node *factor; /* of unrolled blocks: the elements of L, and those of D on the diagonal; NULL in others */
+  /* In place of elements and factors, of which it has none; NULL for those. Its rows are the coordinates, ascending. */
+  const struct ArticulatedTree *tree;
 };
 
 struct Inertia {
@@ -49,6 +51,9 @@ struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *in
 /* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution);
 
+/* Factors a block that has no factors yet. */
+void block_factor(struct Graph *graph, struct InertiaBlock *block);
+
 /* Solves for the coordinates of one unrolled block, in their order of elimination, in place. */
 void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x);
 
@@ -58,7 +63,7 @@ void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, con
 /* Where the block of i and j keeps an element, in its mass; the end of that where it is not in the pattern. */
 size_t inertia_find(const struct Inertia *inertia, size_t i, size_t j);
 
-/* K_ij */
+/* K_ij, which is not known in trees: ZERO. */
 Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);
 
 /* The block that a row belongs to. */

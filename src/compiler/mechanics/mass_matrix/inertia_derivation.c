@@ -4,6 +4,60 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/mass_matrix/pivots.h"
 
+/* The trees of a model that have factors, by their numbers. */
+struct Trees {
+  const size_t *tree_of; /* of each row; NO_TREE for none */
+  struct KnownTree {
+    const struct ArticulatedTree *tree;
+  } * items;
+};
+
+/* The rows of one tree, ascending. */
+static size_t *rows_of_tree(const struct Links *links, size_t tree, size_t row_count, size_t *count) {
+  size_t *rows = allocate(row_count, sizeof *rows);
+  *count = 0;
+  for (size_t i = 0; i < row_count; i++)
+    if (links->tree_of[i] == tree) rows[(*count)++] = i;
+  return rows;
+}
+
+static struct Trees find_trees(const struct Model *model, struct Links *links, size_t rows_in_all) {
+  struct Graph *graph = model->graph;
+  size_t count;
+  struct Trees trees = {links->tree_of, allocate(rows_in_all, sizeof *trees.items)};
+  for (size_t i = 0; i < rows_in_all && graph_limit(graph) == NULL; i++) {
+    size_t tree = links->tree_of[i];
+    if (tree == NO_TREE || trees.items[tree].tree != NULL) continue;
+    size_t *rows = rows_of_tree(links, tree, rows_in_all, &count);
+    trees.items[tree].tree = articulated_create(graph, links, tree, rows, count);
+    if (trees.items[tree].tree != NULL && tree_has_factors(model, trees.items[tree].tree)) continue;
+    trees.items[tree].tree = NULL;
+    for (size_t k = 0; k < count; k++) links->tree_of[rows[k]] = NO_TREE;
+  }
+  return trees;
+}
+
+/* Keeps the coordinates of each tree together, as elements of M would. */
+static void couple_trees(const struct Trees *trees, size_t coordinates, struct Elements *elements) {
+  size_t *last = allocate(coordinates, sizeof *last); /* 1 + the last coordinate of each tree */
+  for (size_t i = 0; i < coordinates; i++) {
+    size_t tree = trees->tree_of[i];
+    if (tree == NO_TREE) continue;
+    if (last[tree] > 0) elements_append(elements, i, last[tree] - 1, ZERO);
+    last[tree] = i + 1;
+  }
+}
+
+/* The block of a tree: members are its rows. */
+static void create_block_of_tree(struct Inertia *inertia, size_t number, size_t *members,
+                                 const struct ArticulatedTree *tree) {
+  struct InertiaBlock *block = &inertia->blocks[number];
+  block->tree = tree;
+  block->is_unrolled = true;
+  block->coordinates = members;
+  block->start = allocate(block->count + 1, sizeof *block->start);
+}
+
 /* The block of the elements from one to before another; members: its rows, ascending. */
 static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
                          const struct Elements *elements, size_t from, size_t to) {
@@ -28,7 +82,7 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
 
 /* count: all rows, the last of which are those of constraints. */
 static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
-                                     struct Elements *elements) {
+                                     struct Elements *elements, const struct Trees *trees) {
   struct Components components = find_components(count, elements);
   size_t *start = sort_by_components(elements, &components);
   struct Inertia *inertia = allocate(1, sizeof *inertia);
@@ -43,8 +97,11 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
   for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
-  for (size_t b = 0; b < components.count; b++)
-    create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
+  for (size_t b = 0; b < components.count; b++) {
+    size_t first = members[b][0], tree = first < inertia->coordinate_count ? trees->tree_of[first] : NO_TREE;
+    if (tree != NO_TREE) create_block_of_tree(inertia, b, members[b], trees->items[tree].tree);
+    else create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
+  }
   return inertia;
 }
 
@@ -73,32 +130,38 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
 
 /* The same matrix with the borders J and J^T. */
 static struct Inertia *create_bordered(const struct Graph *graph, size_t count, struct Elements *elements,
-                                       const struct Border *border) {
+                                       const struct Border *border, const struct Trees *trees) {
   const struct Elements *jacobian = border->jacobian;
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
-  struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements);
+  struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements, trees);
   add_oblique(inertia, border->oblique);
   return inertia;
 }
 
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
-                               struct Diagnostics *diagnostics) {
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
+                               const struct Border *border, struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
-  struct Elements elements = elements_of(model, momentum);
-  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements);
+  bool is_linear = model->linearized || (model->solver.method != NULL && model->solver.method->needs_linear);
+  size_t rows = count + border->count;
+  /* The formulas of linear systems need M itself. */
+  struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, border, stillness);
+  struct Trees trees = find_trees(model, links, rows);
+  struct Elements elements = elements_of(model, momentum, trees.tree_of);
+  couple_trees(&trees, count, &elements);
+  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
   if (!is_right || border->count > 0)
-    inertia = is_right ? create_bordered(model->graph, count, &elements, border) : NULL;
+    inertia = is_right ? create_bordered(model->graph, count, &elements, border, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
   bool power_has_accelerations =
       (model->given.drive_count > 0 || model->given.inputs_move) && model->forces.work_line > 0;
-  bool unroll_all = power_has_accelerations || model->linearized ||
-                    (model->solver.method != NULL && model->solver.method->needs_linear);
+  bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];
-    block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);
+    if (block->tree == NULL)
+      block->is_unrolled = unroll_all || (block->constraint_count == 0 && block->count <= UNROLL_LIMIT);
   }
   pivots_factor(model->graph, inertia);
   return inertia;

@@ -1,6 +1,7 @@
 /* The mass matrix of a model, with its blocks found and checked. */
 #pragma once
 
+#include "mechanics/mass_matrix/border.h"
 #include "mechanics/mass_matrix/inertia.h"
 
 /*
@@ -10,16 +11,8 @@
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * What borders M: the rows J of count constraints, and what their forces add beside J^T; both of constraints and coordinates.
- */
-struct Border {
-  size_t count;
-  const struct Elements *jacobian, *oblique;
-};
-
-/*
- * K from the momenta dL/dv of all coordinates. Reports a coordinate without inertia and an M that is
+ * K from the momenta dL/dv of all coordinates; stillness: energy_of_stillness(). Reports a coordinate without inertia and an M that is
  * singular everywhere or not positive at the start values; NULL then.
  */
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, const struct Border *border,
-                               struct Diagnostics *diagnostics);
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
+                               const struct Border *border, struct Diagnostics *diagnostics);

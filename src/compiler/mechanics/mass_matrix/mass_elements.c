@@ -19,11 +19,12 @@ void elements_append(struct Elements *elements, size_t row, size_t column, Node 
 }
 
 /* M_ij = d p_i / d v_j, row by row; a driven coordinate has 1 alone, for v' = its acceleration. */
-static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum) {
+static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum, const size_t *tree_of) {
   struct Graph *graph = model->graph;
   size_t count = model->coordinates.count;
   struct Elements elements = elements_create();
   for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
+    if (tree_of[i] != NO_TREE) continue;
     if (model->given.drives[i].given) {
       elements_append(&elements, i, i, ONE);
       continue;
@@ -126,8 +127,8 @@ static void shorten_elements(const struct Model *model, const Node *momentum, st
   elements->count = kept;
 }
 
-struct Elements elements_of(const struct Model *model, const Node *momentum) {
-  struct Elements elements = differentiate_momenta(model, momentum);
+struct Elements elements_of(const struct Model *model, const Node *momentum, const size_t *tree_of) {
+  struct Elements elements = differentiate_momenta(model, momentum, tree_of);
   shorten_elements(model, momentum, &elements);
   return elements;
 }

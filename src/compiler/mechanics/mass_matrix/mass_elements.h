@@ -11,8 +11,11 @@ struct Elements {
   size_t count;
 };
 
-/* From the momenta dL/dv of all coordinates; none is ZERO. */
-struct Elements elements_of(const struct Model *model, const Node *momentum);
+/* Of no tree, by number: see links.h. */
+#define NO_TREE ((size_t)-1)
+
+/* From the momenta dL/dv of the coordinates that belong to no tree; none is ZERO. */
+struct Elements elements_of(const struct Model *model, const Node *momentum, const size_t *tree_of);
 
 /* Appends an element; none at its position may be there. */
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node);

@@ -52,7 +52,8 @@ static long ending_coordinate(const struct Inertia *inertia, const double *value
       if (!isfinite(values[block->mass[k]])) return -1;
   }
   for (size_t b = 0; b < inertia->block_count && found == inertia->count; b++)
-    found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
+    if (inertia->blocks[b].tree == NULL)
+      found = end_in_block(&inertia->blocks[b], values, inertia->count, ending, sign);
   return (long)found;
 }
 
@@ -68,7 +69,7 @@ static bool has_all_inertias(const struct Model *model, const struct Inertia *in
                              struct Diagnostics *diagnostics) {
   bool complete = true;
   for (size_t i = 0; i < inertia->count; i++) {
-    if (inertia_element(inertia, i, i) != ZERO) continue;
+    if (inertia_block_of(inertia, i)->tree != NULL || inertia_element(inertia, i, i) != ZERO) continue;
     if (has_coupled_inertia(inertia, i))
       report_error(diagnostics, model->coordinates.items[i].line,
                    "the kinetic energy has no term with the square of '%s', but products with other velocities: it is "
@@ -121,6 +122,36 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
   return false;
 }
 
+/* The smallest share that a pivot of the tree has of its diagonal element; NAN where one is not finite. */
+static double smallest_share_in(const struct ArticulatedTree *tree, size_t coordinate_count, const double *values) {
+  double smallest = 1.0;
+  for (size_t i = 0; i < tree->count; i++) {
+    const struct ArticulatedLink *item = &tree->items[i];
+    for (size_t k = 0; k < item->link->count; k++) {
+      size_t diagonal = item->pattern.start[k + 1] - 1;
+      if (item->link->coordinates[k] >= coordinate_count) continue; /* a constraint */
+      double share = values[item->factor[diagonal]] / fabs(values[item->mass[diagonal]]);
+      if (!isfinite(share)) return NAN;
+      smallest = fmin(smallest, share);
+    }
+  }
+  return smallest;
+}
+
+bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *tree) {
+  const struct Graph *graph = model->graph;
+  double *symbols = allocate(graph->symbol_count, sizeof *symbols);
+  uint64_t seed = 1;
+  size_t n = model->coordinates.count;
+  bool is_regular = false;
+  for (int trial = 0; trial < 8 && !is_regular; trial++) {
+    for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
+    is_regular = smallest_share_in(tree, n, graph_evaluate(graph, symbols)) > 1e-10;
+  }
+  bool is_negative = smallest_share_in(tree, n, graph_evaluate(graph, start_values(model))) < -1e-10;
+  return is_regular && !is_negative;
+}
+
 enum { MAGNITUDE_DEPTH = 8 };
 
 /* An upper bound of |node| that shares its structure, with |sin|, |cos| <= 1. */
@@ -154,43 +185,33 @@ static Node pivot_scale(struct Graph *graph, Node diagonal) {
   return scale;
 }
 
-/* D_j = M_jj - sum_k L_jk^2 D_k,  L_ij = (M_ij - sum_k L_ik L_jk D_k) / D_j */
-static void factor_block(struct Graph *graph, struct InertiaBlock *block) {
-  const size_t *start = block->start, *column = block->column;
-  Node *factor = allocate(start[block->count], sizeof *factor), *row = allocate(block->count, sizeof *row);
-  for (size_t i = 0; i < block->count; i++) {
-    size_t diagonal = start[i + 1] - 1;
-    Node pivot = block->mass[diagonal];
-    for (size_t k = start[i]; k < diagonal; k++) {
-      size_t j = column[k], end = start[j + 1] - 1;
-      Node product = block->mass[k]; /* L_ij D_j */
-      for (size_t l = start[j]; l < end; l++) {
-        Node part = multiply(graph, row[column[l]], factor[start[column[l] + 1] - 1]);
-        product = subtract(graph, product, multiply(graph, part, factor[l]));
-      }
-      factor[k] = row[j] = divide(graph, product, factor[end]);
-      pivot = subtract(graph, pivot, multiply(graph, factor[k], product));
+static void append_pivot(struct Graph *graph, struct Inertia *inertia, size_t coordinate, Node value, Node diagonal) {
+  if (value == ONE || coordinate >= inertia->coordinate_count) return; /* as of driven coordinates */
+  inertia->pivots[inertia->pivot_count++] = (struct Pivot){
+      .value = value, .diagonal = diagonal, .scale = pivot_scale(graph, diagonal), .coordinate = coordinate};
+}
+
+/* From the last links to the first, as they are eliminated. */
+static void append_pivots_of_tree(struct Graph *graph, struct Inertia *inertia, const struct InertiaBlock *block) {
+  for (size_t i = block->tree->count; i-- > 0;) {
+    const struct ArticulatedLink *item = &block->tree->items[i];
+    for (size_t k = 0; k < item->link->count; k++) {
+      size_t diagonal = item->pattern.start[k + 1] - 1;
+      append_pivot(graph, inertia, item->link->coordinates[k], item->factor[diagonal], item->mass[diagonal]);
     }
-    factor[diagonal] = pivot;
-    for (size_t k = start[i]; k < diagonal; k++) row[column[k]] = ZERO;
   }
-  block->factor = factor;
 }
 
 void pivots_factor(struct Graph *graph, struct Inertia *inertia) {
   inertia->pivots = allocate(inertia->count, sizeof *inertia->pivots);
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];
-    if (!block->is_unrolled) continue;
-    factor_block(graph, block);
+    if (block->tree != NULL) append_pivots_of_tree(graph, inertia, block);
+    if (!block->is_unrolled || block->tree != NULL) continue;
+    block_factor(graph, block);
     for (size_t i = 0; i < block->count; i++) {
       size_t diagonal = block->start[i + 1] - 1;
-      if (block->factor[diagonal] == ONE) continue; /* as of driven coordinates */
-      if (block->coordinates[i] >= inertia->coordinate_count) continue;
-      inertia->pivots[inertia->pivot_count++] = (struct Pivot){.value = block->factor[diagonal],
-                                                               .diagonal = block->mass[diagonal],
-                                                               .scale = pivot_scale(graph, block->mass[diagonal]),
-                                                               .coordinate = block->coordinates[i]};
+      append_pivot(graph, inertia, block->coordinates[i], block->factor[diagonal], block->mass[diagonal]);
     }
   }
 }

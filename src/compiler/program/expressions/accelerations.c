@@ -37,11 +37,12 @@ void append_elements(struct NodeList *targets, const struct InertiaBlock *block)
   append_nodes(targets, block->oblique, block->force_count * block->count);
 }
 
-struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations) {
+struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations, bool with_forces) {
   struct NodeList targets = {0};
   size_t rows = equations->explicit_form ? equations->count : row_count(equations);
   for (size_t i = 0; i < rows; i++)
-    append_node(&targets, is_looped(equations, i) ? equations->right_side[i] : equations->acceleration[i]);
+    if (i < equations->count || with_forces || is_looped(equations, i))
+      append_node(&targets, is_looped(equations, i) ? equations->right_side[i] : equations->acceleration[i]);
   const struct Inertia *inertia = equations->inertia;
   for (size_t i = 0; !equations->explicit_form && i < inertia->block_count; i++) {
     const struct InertiaBlock *block = &inertia->blocks[i];
@@ -123,11 +124,11 @@ static void append_block(struct Values *values, const struct Equations *equation
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                           bool with_forces) {
   const struct Inertia *inertia = equations->inertia;
-  struct NodeList targets = accelerations_targets(values->graph, equations);
+  struct NodeList targets = accelerations_targets(values->graph, equations, with_forces);
   values_compute(values, targets.nodes, targets.count, false);
   for (size_t i = 0; i < inertia->pivot_count; i++)
     if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
-  for (size_t i = 0; i < equations->count; i++)
+  for (size_t i = 0; i < (with_forces ? row_count(equations) : equations->count); i++)
     if (!is_looped(equations, i)) values_copy(values, place_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
   for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block, with_forces);
 }

@@ -22,8 +22,8 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations);
 /* The elements of K in a block. */
 void append_elements(struct NodeList *targets, const struct InertiaBlock *block);
 
-/* All nodes that the accelerations rest on. */
-struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations);
+/* All nodes that the accelerations rest on, and the forces of constraints where asked for. */
+struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations, bool with_forces);
 
 /* Whether the pivot depends on parameters alone, so that it is checked when they change. */
 bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);

@@ -43,6 +43,30 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
     if (is_looped(equations, i)) result[i] = right[i];
 }
 
+/* Replaces the right sides of the coordinates in a tree by the changes. */
+static void solve_tree(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block,
+                       Node *side) {
+  Node *x = allocate(block->count, sizeof *x);
+  for (size_t i = 0; i < block->count; i++) x[i] = side[block->coordinates[i]];
+  block_solve(graph, block, x);
+  for (size_t i = 0; i < block->count; i++)
+    if (block->coordinates[i] < equations->count) side[block->coordinates[i]] = x[i];
+}
+
+static void solve_trees(struct Graph *graph, const struct Equations *equations, struct Corrections *corrections) {
+  const struct Inertia *inertia = equations->inertia;
+  corrections->pivot = allocate(equations->constraints->count, sizeof(Node));
+  for (size_t b = 0; b < inertia->block_count; b++) {
+    const struct InertiaBlock *block = &inertia->blocks[b];
+    if (block->tree == NULL || block->constraint_count == 0) continue;
+    solve_tree(graph, equations, block, corrections->position);
+    solve_tree(graph, equations, block, corrections->velocity);
+    for (size_t i = 0; i < block->count; i++)
+      if (block->coordinates[i] >= equations->count)
+        corrections->pivot[block->coordinates[i] - equations->count] = articulated_pivot(block->tree, i);
+  }
+}
+
 /*
  * K (change; forces) = (-M moved; -constraint): with the total of the changes in moved, the limit has the constraints
  * fulfilled and M moved + J^T forces = 0, the least way in the metric of M.
@@ -65,6 +89,7 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
     corrections->position[n + j] = negate(graph, constraints->position[j]);
     corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
   }
+  solve_trees(graph, equations, corrections);
 }
 
 static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
@@ -134,13 +159,16 @@ static void create_initial(struct Expressions *expressions, const Node *seeds) {
   derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
 }
 
-static void create_directional(struct Expressions *expressions) {
+static void create_directional(struct Expressions *expressions, struct Extras extras) {
   struct Graph *graph = expressions->model->graph;
   Node *seeds = create_seeds(graph);
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_pushes(expressions, seeds);
+  if (extras.adjoint)
+    expressions->weighted_gradient = weighted_gradient_create(expressions->model, expressions->equations,
+                                                              expressions->interface, expressions->result, seeds);
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
@@ -214,13 +242,14 @@ static void create_watched_series(struct Expressions *expressions) {
 }
 
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Diagnostics *diagnostics) {
+                                       const struct Interface *interface, struct Extras extras,
+                                       struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   const struct Method *method = equations->method;
   struct Expressions *expressions = allocate(1, sizeof *expressions);
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
   if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
-  create_directional(expressions);
+  create_directional(expressions, extras);
   if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
@@ -232,18 +261,19 @@ struct Expressions *expressions_create(const struct Model *model, const struct E
 
 struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct Equations *equations = expressions->equations;
-  struct NodeList targets = accelerations_targets(expressions->model->graph, equations);
+  struct NodeList targets = accelerations_targets(expressions->model->graph, equations, true);
   append_nodes(&targets, expressions->along, row_count(equations));
   if (equations->constraints->count > 0) {
     append_nodes(&targets, expressions->constraints_along, equations->constraints->jacobian.count);
     append_nodes(&targets, expressions->corrections.position, row_count(equations));
     append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
+    append_nodes(&targets, expressions->corrections.pivot, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.push, equations->count);
   }
   if (expressions->equations->has_work)
     append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
-  if (expressions->jacobian != NULL) {
+  if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);
     for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
@@ -253,6 +283,11 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, linear->a, linear->states * linear->states);
     append_nodes(&targets, linear->b, linear->states * linear->inputs);
     append_nodes(&targets, linear->c, linear->states);
+  }
+  if (expressions->weighted_gradient != NULL) {
+    const struct WeightedGradient *gradient = expressions->weighted_gradient;
+    append_nodes(&targets, gradient->elements, gradient->count);
+    append_nodes(&targets, gradient->side, row_count(equations));
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);

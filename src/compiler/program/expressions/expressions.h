@@ -7,6 +7,7 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/switching.h"
 #include "program/expressions/series_plan.h"
+#include "program/expressions/weighted_gradient.h"
 #include "algebra/node_list.h"
 
 /*
@@ -16,7 +17,7 @@
  */
 struct JacobianExpressions {
   size_t *start, *row;
-  Node *value;
+  Node *value; /* NULL where derivatives along the directions of the state give the columns */
   size_t count;
   struct ConstraintSide *sides; /* by columns */
   size_t side_count;
@@ -34,9 +35,10 @@ struct ConstraintSide {
  * the seed of the state, which holds by how much they have been moved.
  */
 struct Corrections {
-  Node *position, *velocity;
-  Node *slope; /* of each constraint, see constraint_slopes() */
-  Node *push;  /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
+  Node *position, *velocity; /* in trees, of coordinates, the solutions */
+  Node *pivot;               /* of each constraint in a tree, see articulated.h; ZERO of others */
+  Node *slope;               /* of each constraint, see constraint_slopes() */
+  Node *push; /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
 };
 
 struct Expressions {
@@ -54,11 +56,18 @@ struct Expressions {
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
   Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
+  struct WeightedGradient *weighted_gradient; /* NULL unless asked for, and where there is none */
+};
+
+/* What lagc can be asked for beside what every FMU has. */
+struct Extras {
+  bool adjoint; /* gradients by a reverse sweep */
 };
 
 /* Reports errors where the chosen solver does not fit the system; NULL then. */
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Diagnostics *diagnostics);
+                                       const struct Interface *interface, struct Extras extras,
+                                       struct Diagnostics *diagnostics);
 
 /* All nodes that are computed. */
 struct NodeList expressions_targets(const struct Expressions *expressions);

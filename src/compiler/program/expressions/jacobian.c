@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -86,7 +87,45 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   return jacobian;
 }
 
+static bool has_trees(const struct Inertia *inertia) {
+  bool has = false;
+  for (size_t b = 0; b < inertia->block_count; b++) has |= inertia->blocks[b].tree != NULL;
+  return has;
+}
+
+/* An element of the pattern for each state that the nodes rest on, in all rows of the block. */
+static void append_pattern(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+                           const struct InertiaBlock *block) {
+  struct Cone *cone = graph->cone;
+  Node *residuals = allocate(block->count, sizeof *residuals);
+  for (size_t i = 0; i < block->count; i++) residuals[i] = equations->residual[block->coordinates[i]];
+  cone_collect(cone, graph, residuals, block->count, NULL);
+  for (size_t k = 0; k < cone->count && list->count <= JACOBIAN_LIMIT; k++) {
+    Node node = cone->nodes[k];
+    bool is_state =
+        graph->vertices[node].operation == SYMBOL && (graph->vertices[node].kinds & (unsigned)STATE_KINDS) != 0;
+    for (size_t i = 0; i < block->count && is_state; i++)
+      if (block->coordinates[i] < equations->count)
+        append(list, equations->count + block->coordinates[i], column_of(graph, equations->count, node), ONE);
+  }
+}
+
+/* Where accelerations are found by articulated inertias, directions cost less than a formula for each element. */
+static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
+  struct ElementList list = {0};
+  size_t n = equations->count;
+  for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
+  for (size_t i = 0; i < equations->inertia->block_count; i++)
+    append_pattern(&list, graph, equations, &equations->inertia->blocks[i]);
+  if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
+  if (list.count > JACOBIAN_LIMIT) return NULL;
+  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->has_work);
+  jacobian->value = NULL;
+  return jacobian;
+}
+
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
+  if (!equations->explicit_form && has_trees(equations->inertia)) return pattern_for_directions(graph, equations);
   struct ElementList list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);

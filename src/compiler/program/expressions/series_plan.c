@@ -13,7 +13,7 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
   size_t n = equations->explicit_form ? equations->count : row_count(equations);
   for (size_t i = 0; i < n; i++) {
     if (!is_looped(equations, i)) {
-      append_node(&plan->targets, equations->acceleration[i]);
+      if (i < equations->count) append_node(&plan->targets, equations->acceleration[i]);
       continue;
     }
     append_node(&plan->targets, equations->right_side[i]);

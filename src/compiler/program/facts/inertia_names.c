@@ -7,10 +7,21 @@
 static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates,
                        const char **texts) {
   struct SymbolNames names = {0};
-  for (size_t i = 0; i < block->count; i++) {
+  for (size_t i = 0; i < block->count && block->tree == NULL; i++) {
     if (block->coordinates[i] >= coordinates) continue;
     symbol_names_add(&names, graph, block->mass + block->start[i], block->start[i + 1] - block->start[i]);
     texts[block->coordinates[i]] = symbol_names_text(&names, graph);
+  }
+}
+
+/* The inertia of a link rests on that of the links behind it. */
+static void name_pivots_of_trees(const struct Graph *graph, const struct Inertia *inertia, const char **texts) {
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    const struct Pivot *pivot = &inertia->pivots[i];
+    struct SymbolNames names = {0};
+    if (inertia_block_of(inertia, pivot->coordinate)->tree == NULL) continue;
+    symbol_names_add(&names, graph, &pivot->value, 1);
+    texts[pivot->coordinate] = symbol_names_text(&names, graph);
   }
 }
 
@@ -20,5 +31,6 @@ const char *const *inertia_names_of(const struct Program *program) {
   if (n == 0) return NULL;
   const char **texts = allocate(n, sizeof *texts);
   for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], n, texts);
+  name_pivots_of_trees(program->model->graph, inertia, texts);
   return texts;
 }

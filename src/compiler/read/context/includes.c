@@ -81,8 +81,9 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
 }
 
 /* What an <include> may say of a robot. */
-enum { ROBOT_WORDS = 6 };
-static const char *const of_robots[ROBOT_WORDS] = {"base", "tool", "limits", "friction", "effort", "ground"};
+enum { ROBOT_WORDS = 7 };
+static const char *const of_robots[ROBOT_WORDS] = {"base",   "tool",   "limits",  "friction",
+                                                   "effort", "ground", "keyframe"};
 
 /* The <system> in the file of a source, or that its robot is with what the <include> says of it; NULL after reporting why not. */
 static xmlDocPtr load_system(const struct Source *source, const struct RobotOptions *options,
@@ -117,11 +118,14 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin};
     known = allocate(1, sizeof *known);
+    const char *ground = attribute(source->include, "ground");
     struct RobotOptions options = {.floats = attribute_is(source->include, "base", "floating"),
                                    .has_stops = attribute_is(source->include, "limits", "stops"),
                                    .sticks = attribute_is(source->include, "friction", "sticks"),
                                    .is_effort_limited = attribute_is(source->include, "effort", "limited"),
-                                   .has_ground = attribute_is(source->include, "ground", "true"),
+                                   .has_ground = ground != NULL && strcmp(ground, "false") != 0,
+                                   .standing = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
+                                   .keyframe = attribute(source->include, "keyframe"),
                                    .tool = attribute(source->include, "tool")};
     known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;

@@ -3,7 +3,7 @@
 
 #include <libxml/tree.h>
 
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 /* The system as it is written. */
 struct Writer {

@@ -147,9 +147,11 @@ static void write_single(const struct Writer *writer, const struct Joint *joint,
     const char *name = joint->symbol, *unit = unit_of_joint(joint);
     xmlNodePtr coordinate = joint->has_motor ? write_motor(writer, name, unit, effort, description)
                                              : write_coordinate(writer, name, unit, description);
-    if (writer->options->has_stops && (joint->lower > 0 || joint->upper < 0))
-      set_attribute(coordinate, "start", number(joint->lower > 0 ? joint->lower : joint->upper));
-    else set_number(coordinate, "start", joint->start[0]);
+    double start = joint->start.position[0];
+    if (writer->options->has_stops && start < joint->lower) start = joint->lower;
+    if (writer->options->has_stops && start > joint->upper) start = joint->upper;
+    set_number(coordinate, "start", start);
+    set_number(coordinate, "velocityStart", joint->start.velocity[0]);
     motion = (struct Motion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);
   write_stores(writer, joint, &motion);
@@ -164,36 +166,38 @@ static void write_planar(const struct Writer *writer, const struct Joint *joint,
 }
 
 /* From the first component on: 3 for a quaternion alone. */
-static void write_components(const struct Writer *writer, const char *name, int first, const double *start,
+static void write_components(const struct Writer *writer, const char *name, int first, const struct JointStart *start,
                              const char *description) {
   static const char *const components[7] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
-  static const double not_displaced[7] = {[3] = 1};
-  if (start == NULL) start = not_displaced;
   for (int i = first; i < 7; i++) {
     char *full_name = format_text("%s_%s", name, components[i]);
     xmlNodePtr coordinate = write_coordinate(writer, full_name, i < 3 ? "m" : "1", description);
-    set_number(coordinate, "start", start[i]);
+    set_number(coordinate, "start", start->position[i]);
+    set_number(coordinate, "velocityStart", start->velocity[i]);
   }
 }
 
-void write_free_coordinates(const struct Writer *writer, const char *name, const double *start,
+void write_free_coordinates(const struct Writer *writer, const char *name, const struct JointStart *start,
                             const char *description) {
   write_components(writer, name, 0, start, description);
 }
 
-/* Whether the joint says where it starts. */
-static bool has_start(const struct Joint *joint) {
-  return joint->start[3] != 0 || joint->start[4] != 0 || joint->start[5] != 0 || joint->start[6] != 0;
+/* Not turned where the file says nothing. */
+static struct JointStart start_of_quaternion(const struct Joint *joint) {
+  struct JointStart start = joint->start;
+  const double *q = &start.position[3];
+  if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) start.position[3] = 1;
+  return start;
 }
 
 void write_joint(const struct Writer *writer, const struct Joint *joint) {
   char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
                                   joint->parent->name, joint->child->name);
+  struct JointStart start = start_of_quaternion(joint);
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
-  else if (joint->type == FLOATING)
-    write_free_coordinates(writer, joint->symbol, has_start(joint) ? joint->start : NULL, description);
-  else if (joint->type == BALL) write_components(writer, joint->symbol, 3, NULL, description);
+  else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, &start, description);
+  else if (joint->type == BALL) write_components(writer, joint->symbol, 3, &start, description);
 }
 
 /* A control that a spring follows is a position, one that a damper follows a velocity; any other is the force itself, or scales it. */
@@ -231,6 +235,7 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
   if (is_drive) unit = slides ? "m/s" : "rad/s";
   set_attribute(input, "name", name);
   set_attribute(input, "unit", copy_text(unit));
+  set_number(input, "start", actuator->start);
   set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
   set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
   set_content(node, format_text("%s*%s*(%s)", gear, ratio, clamped(actuator->force, force)));

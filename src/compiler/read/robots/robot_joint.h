@@ -1,7 +1,7 @@
 /* What a joint of a robot becomes: coordinates, motors, losses, limits, and the motion of a frame. */
 #pragma once
 
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 #include "read/robots/robot_elements.h"
 
 /* The parameters that the friction of joints shares. */
@@ -13,11 +13,8 @@ void write_joint(const struct Writer *writer, const struct Joint *joint);
 /* The input NAME_control of an actuator, and what it makes of it. */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
 
-/*
- * The six degrees of freedom of a free body, in coordinates whose names begin with this one; from x, y, z and the quaternion at the
- * start, or NULL for no displacement.
- */
-void write_free_coordinates(const struct Writer *writer, const char *name, const double *start,
+/* The six degrees of freedom of a free body, in coordinates whose names begin with this one. */
+void write_free_coordinates(const struct Writer *writer, const char *name, const struct JointStart *start,
                             const char *description);
 
 /* Turns and moves the frame of the joint's child by the coordinates. */

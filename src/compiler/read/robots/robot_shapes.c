@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "model/kinematics.h"
+#include "read/robots/description/robot_file.h"
 
 static const char ground[] = "ground";
 
@@ -66,7 +67,7 @@ void write_shapes(struct Writer *writer, const struct Link *link, bool moves) {
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
     if (link->visual_count > 0) set_attribute(shape, "drawn", copy_text("false"));
-    if (moves && writer->options->has_ground) write_contact(writer, link, name, i + 1);
+    if (moves && link_touches_ground(writer->options, link->name)) write_contact(writer, link, name, i + 1);
   }
   for (size_t i = 0; i < link->visual_count; i++)
     write_shape(writer, link, &link->visuals[i], format_text("%s_visual%zu", link->symbol, i + 1));

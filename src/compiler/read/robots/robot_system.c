@@ -5,7 +5,8 @@
 
 #include "base/memory.h"
 #include "model/kinematics.h"
-#include "read/robots/mjcf.h"
+#include "read/robots/description/robot_file.h"
+#include "read/robots/mjcf/mjcf.h"
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_shapes.h"
@@ -16,6 +17,8 @@
 
 /* Of a floating base, and of the point at the tool. */
 static const char base[] = "base", tool[] = "tool";
+
+static const struct JointStart no_start = {.position = {[3] = 1}};
 
 static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
   const double *shift = placement->translation;
@@ -61,7 +64,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
     write_joint(writer, joint);
   }
   writer->line = link->line;
-  if (joint == NULL && floats) write_free_coordinates(writer, base, NULL, "free motion of the base");
+  if (joint == NULL && floats) write_free_coordinates(writer, base, &no_start, "free motion of the base");
   xmlNodePtr frame = write_element(writer, "frame");
   set_attribute(frame, "name", copy_text(link->symbol));
   if (joint != NULL) {
@@ -121,6 +124,15 @@ static void write_gravity(const struct Writer *writer, const double gravity[3]) 
     if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
 }
 
+static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
+  writer->line = loop->line;
+  xmlNodePtr joint = write_element(writer, "joint");
+  set_attribute(joint, "name", robot_symbol(loop->name));
+  set_attribute(joint, "type", copy_text(loop->is_fixed ? "fixed" : "spherical"));
+  set_attribute(joint, "from", copy_text(loop->links[0]->symbol));
+  set_attribute(joint, "to", copy_text(loop->links[1]->symbol));
+}
+
 static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
@@ -132,6 +144,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
     writer->line = robot->actuators[i].line;
     write_actuator(writer, &robot->actuators[i]);
   }
+  for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */
@@ -154,6 +167,20 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
 
+/* Reports links that are to stand and are none, or have no shape. */
+static void check_standing(const struct Robot *robot, const struct RobotOptions *options,
+                           struct Diagnostics *diagnostics) {
+  const char *rest = options->standing;
+  if (!options->has_ground || rest == NULL) return;
+  for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
+    const struct Link *link = robot_link(robot, name, "the ground", diagnostics);
+    if (link != NULL && link->collision_count == 0)
+      report_error(diagnostics, link->line,
+                   "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it",
+                   name);
+  }
+}
+
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   xmlNodePtr root = xmlDocGetRootElement(document);
@@ -162,6 +189,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
   const struct Link *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);
+    check_standing(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }
   xmlFreeDoc(document);

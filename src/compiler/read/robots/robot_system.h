@@ -4,7 +4,7 @@
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 /*
  * Frees the document of a <robot>, and returns that of its <system>, which follows the schema, with the lines of the file.

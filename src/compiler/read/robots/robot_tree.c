@@ -130,7 +130,7 @@ static void connect_links(struct Connection *connection) {
       report_error(
           connection->diagnostics, child->joint->line,
           "the link '%s' is the child of the joint '%s' and of '%s' on line %ld; expected a tree, in which each "
-          "link has one parent (a loop is closed by a <constraint> around an <include>)",
+          "link has one parent (a <joint> beside an <include> closes a loop)",
           child->name, child->joint->name, joint->name, joint->line);
       continue;
     }
@@ -261,6 +261,16 @@ static void connect_actuators(struct Connection *connection) {
   }
 }
 
+static void connect_loops(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->loop_count; i++)
+    for (int end = 0; end < 2; end++) {
+      struct RobotLoop *loop = &robot->loops[i];
+      const struct Entry *entry = find(connection, &connection->links, loop->link_names[end], loop->name, loop->line);
+      if (entry != NULL) loop->links[end] = robot->links[entry->index];
+    }
+}
+
 /* A joint that has a coordinate must move some inertia with it, its own link's or that of what hangs on it. */
 static void check_inertia(struct Connection *connection) {
   struct Robot *robot = connection->robot;
@@ -306,6 +316,7 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
     find_leader(&connection, robot->joints[i]);
   if (diagnostics->errors == errors) join_fixed_links(&connection);
   if (diagnostics->errors == errors) connect_actuators(&connection);
+  if (diagnostics->errors == errors) connect_loops(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
   return diagnostics->errors == errors;
 }

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 /* Sets what struct Link and struct Joint leave to it; false after reporting what is wrong. */
 bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);

@@ -10,7 +10,7 @@
 #include "read/meshes/hull.h"
 #include "read/meshes/mesh_file.h"
 #include "read/meshes/package_path.h"
-#include "read/robots/robot_file.h"
+#include "read/robots/description/robot_file.h"
 #include "read/xml/nodes.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
@@ -110,19 +110,13 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
   return collision->type != NULL && *problem == NULL;
 }
 
-static void note_mesh_problem(struct RobotFile *urdf, char *problem) {
-  if (problem == NULL) return;
-  if (urdf->mesh_problem == NULL) urdf->mesh_problem = problem;
-  urdf->mesh_problems++;
-}
-
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
   char *problem = NULL;
-  bool has_ground = urdf->options->has_ground;
-  if (geometry == NULL || !read_geometry(urdf, geometry, has_ground, &collision, &problem)) {
-    if (has_ground)
+  bool touches = link_touches_ground(urdf->options, link->name);
+  if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
+    if (touches)
       report_warning(
           urdf->diagnostics, collision.line, "a <collision> of the link '%s' touches nothing: %s", link->name,
           problem != NULL ? problem
@@ -188,9 +182,7 @@ static char *read_color(xmlNodePtr visual) {
   double rgba[4];
   if (color == NULL || !has_attribute(color, "rgba") || parse_numbers(attribute(color, "rgba"), 4, rgba) != 4)
     return NULL;
-  char *text = copy_text("#");
-  for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
-  return text;
+  return color_text(rgba);
 }
 
 /* False where it cannot be drawn. */
@@ -356,6 +348,12 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
   urdf.robot->line = xmlGetLineNo(root);
   urdf.robot->gravity[2] = -9.81;
   urdf.robot->name = required_attribute(&urdf, root, "name");
+  if (options->keyframe != NULL)
+    report_error(
+        diagnostics, urdf.robot->line,
+        "keyframe=\"%s\" is for MJCF; expected start values by <coordinate name=\"...\" start=\"...\"/> in the "
+        "<include>",
+        options->keyframe);
   if (xacro != NULL)
     report_error(
         diagnostics, xmlGetLineNo(xacro),

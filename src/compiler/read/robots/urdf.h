@@ -4,7 +4,7 @@
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 /* The joint types by name, in the order of enum JointType. */
 extern const char *const joint_types[JOINT_TYPES];

@@ -191,32 +191,46 @@ static struct Pose pose_of_planar_body(struct Reader *reader, xmlNodePtr node, c
   return pose;
 }
 
-static struct Pose read_pose(struct Reader *reader, xmlNodePtr node, const char *name,
-                             const struct ReferenceFrame *parent) {
-  struct Pose pose = parent->pose;
-  if (is_element(node, "body")) return pose_of_planar_body(reader, node, name);
-  for (xmlNodePtr step = node->children; step != NULL; step = step->next) {
-    if (is_element(step, "translate")) translate(reader, step, &pose);
-    else if (is_element(step, "rotate")) turn(reader, step, &pose);
+static void append_step(struct Graph *graph, struct ReferenceFrame *frame, const struct Pose *step) {
+  frame->steps = make_room(frame->steps, frame->step_count, sizeof *frame->steps);
+  frame->steps[frame->step_count++] = *step;
+  pose_follow(graph, &frame->pose, step);
+}
+
+/* Adds what moves and turns the frame, which has the pose of its parent. */
+static void read_steps(struct Reader *reader, xmlNodePtr node, const char *name, struct ReferenceFrame *frame) {
+  struct Graph *graph = reader->model->graph;
+  struct Pose step = pose_of_base();
+  if (frame->is_of_body) {
+    step = pose_of_planar_body(reader, node, name);
+    append_step(graph, frame, &step);
+    return;
   }
-  return pose;
+  for (xmlNodePtr element = node->children; element != NULL; element = element->next) {
+    bool is_translation = is_element(element, "translate");
+    if (!is_translation && !is_element(element, "rotate")) continue;
+    step = pose_of_base();
+    if (is_translation) translate(reader, element, &step);
+    else turn(reader, element, &step);
+    append_step(graph, frame, &step);
+  }
 }
 
 static void read_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   const struct ReferenceFrame *parent = parent_of(reader, node);
   if (parent == NULL) return;
-  size_t number = (size_t)(parent - reader->model->mechanism.frames);
-  struct Pose pose = read_pose(reader, node, name, parent);
+  struct ReferenceFrame frame = {.parent = (size_t)(parent - reader->model->mechanism.frames),
+                                 .is_of_body = is_element(node, "body"),
+                                 .pose = parent->pose};
+  read_steps(reader, node, name, &frame);
   if (definitions_are_waiting(reader->definitions)) return;
   struct Model *model = reader->model;
   for (int i = 0; i < 3; i++) {
-    model->given.inputs_move |= graph_depends_on(model->graph, pose.origin.along[i], INPUT);
+    model->given.inputs_move |= graph_depends_on(model->graph, frame.pose.origin.along[i], INPUT);
     for (int j = 0; j < 3; j++)
-      model->given.inputs_move |= graph_depends_on(model->graph, pose.rotation.row[i].along[j], INPUT);
+      model->given.inputs_move |= graph_depends_on(model->graph, frame.pose.rotation.row[i].along[j], INPUT);
   }
-  if (names_find(reader->frames, name) != NULL) return;
-  append_frame(reader, name,
-               (struct ReferenceFrame){.parent = number, .is_of_body = is_element(node, "body"), .pose = pose});
+  if (names_find(reader->frames, name) == NULL) append_frame(reader, name, frame);
 }
 
 static void read_point(struct Reader *reader, xmlNodePtr node, const char *name) {

@@ -9,6 +9,7 @@
 #include "read/context/variables.h"
 #include "read/space/rolling.h"
 #include "read/space/sides.h"
+#include "read/space/vanishing.h"
 
 /*
  * What a joint holds: the place of `to` along the axes of `from`, the directions of its axes, the thread of a screw, and of
@@ -34,27 +35,52 @@ static const struct JointType types[] = {
     {"rolling", {SLIP_X, SLIP_Y, HEIGHT, NOTHING}},
 };
 
-/* Names of what is held and of its force or torque, its unit, and the axis of `from` that it is along or about. */
+/* The beginnings of the names of what is held and of its force or torque, its unit, and the axis that it is along or about, which ends the names. */
 static const struct HeldWords {
   const char *name, *force, *unit;
-  char axis;
+  int axis;
 } words[] = {
-    [ALONG_X] = {"x", "forceX", "m", 'x'},       [ALONG_Y] = {"y", "forceY", "m", 'y'},
-    [ALONG_Z] = {"z", "forceZ", "m", 'z'},       [ABOUT_X] = {"aboutX", "torqueX", "1", 'x'},
-    [ABOUT_Y] = {"aboutY", "torqueY", "1", 'y'}, [ABOUT_Z] = {"aboutZ", "torqueZ", "1", 'z'},
-    [CROSS] = {"aboutZ", "torqueZ", "1", 'z'},   [THREAD] = {"thread", "forceZ", "m", 'z'},
-    [SLIP_X] = {"slipX", "forceX", "m/s", 'x'},  [SLIP_Y] = {"slipY", "forceY", "m/s", 'y'},
-    [HEIGHT] = {"z", "forceZ", "m", 'z'},
+    [ALONG_X] = {"", "force", "m", 0},       [ALONG_Y] = {"", "force", "m", 1},
+    [ALONG_Z] = {"", "force", "m", 2},       [ABOUT_X] = {"about", "torque", "1", 0},
+    [ABOUT_Y] = {"about", "torque", "1", 1}, [ABOUT_Z] = {"about", "torque", "1", 2},
+    [CROSS] = {"about", "torque", "1", 2},   [THREAD] = {"thread", "force", "m", 2},
+    [SLIP_X] = {"slip", "force", "m/s", 0},  [SLIP_Y] = {"slip", "force", "m/s", 1},
+    [HEIGHT] = {"", "force", "m", 2},
 };
 
 static bool is_of_force(enum Held held) {
   return words[held].force[0] == 'f';
 }
 
+/* By how many places the axes are exchanged in a circle, so that z, of which the types tell, is the one that the joint names. */
+static int shift_of(xmlNodePtr node) {
+  char *axis = attribute(node, "axis");
+  return axis != NULL ? *axis - 'x' + 1 : 0;
+}
+
+/* The axis of `from` that it is along or about. */
+static int axis_of(xmlNodePtr node, enum Held held) {
+  return (words[held].axis + shift_of(node)) % 3;
+}
+
+static char *name_of(xmlNodePtr node, enum Held held) {
+  const char *name = words[held].name;
+  int axis = axis_of(node, held);
+  if (held == THREAD) return copy_text(name);
+  return *name == '\0' ? copy_text(axes[axis]) : format_text("%s%c", name, "XYZ"[axis]);
+}
+
+/* The side with its axes exchanged. */
+static void exchange_axes(struct Side *side, int shift) {
+  const struct Matrix given = side->rotation;
+  for (int row = 0; row < 3; row++)
+    for (int axis = 0; axis < 3; axis++) side->rotation.row[row].along[axis] = given.row[row].along[(axis + shift) % 3];
+}
+
 /* What rolls may hold less, where its coordinates hold the rest: the attribute names the axes. */
 static bool is_held(xmlNodePtr node, enum Held held) {
   char *axes_held = attribute(node, "holds");
-  return axes_held == NULL || strchr(axes_held, words[held].axis) != NULL;
+  return axes_held == NULL || strchr(axes_held, *axes[words[held].axis]) != NULL;
 }
 
 static const struct JointType *type_of(xmlNodePtr node) {
@@ -68,7 +94,19 @@ static char *description_of(xmlNodePtr node, const char *joint, enum Held held) 
   char *what =
       format_text("%s of %s on %s at %s", is_of_force(held) ? "force" : "torque", attribute(node, "to"), from, joint);
   if (held == CROSS) return format_text("%s, about the axis across both of its own", what);
-  return format_text("%s, %s the %c axis of %s", what, is_of_force(held) ? "along" : "about", words[held].axis, from);
+  return format_text("%s, %s the %s axis of %s", what, is_of_force(held) ? "along" : "about", axes[axis_of(node, held)],
+                     from);
+}
+
+/* Types with an axis of their own, which is z where they name none. */
+static void check_axis(struct Reader *reader, xmlNodePtr node) {
+  static const char *const with_axis[] = {"pin", "revolute", "cylindrical", "prismatic", "planar", "screw"};
+  bool has_axis = false;
+  for (size_t i = 0; i < sizeof with_axis / sizeof *with_axis; i++)
+    has_axis |= attribute_is(node, "type", with_axis[i]);
+  if (!has_axis && has_attribute(node, "axis"))
+    report_at(reader, node, "<joint type=\"%s\"> has no axis; expected the attribute 'axis' of another type alone",
+              attribute(node, "type"));
 }
 
 /* An attribute that one type needs, or may have, and no other has. */
@@ -82,6 +120,7 @@ static void check_attribute(struct Reader *reader, xmlNodePtr node, const char *
 
 void declare_joint(struct Reader *reader, xmlNodePtr node) {
   const struct JointType *type = type_of(node);
+  check_axis(reader, node);
   check_attribute(reader, node, "pitch", "screw", true);
   check_attribute(reader, node, "radius", "rolling", true);
   check_attribute(reader, node, "shape", "rolling", false);
@@ -93,9 +132,9 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
   for (const enum Held *held = type != NULL ? type->held : &(enum Held){NOTHING}; *held != NOTHING; held++) {
     if (!is_held(node, *held)) continue;
     struct Variable constraint =
-        variable_create(format_text("%s.%s", joint.name, words[*held].name), description_of(node, joint.name, *held),
+        variable_create(format_text("%s.%s", joint.name, name_of(node, *held)), description_of(node, joint.name, *held),
                         scope_line(reader->scope, joint.line));
-    constraint.force_name = format_text("%s.%s", joint.name, words[*held].force);
+    constraint.force_name = format_text("%s.%s%c", joint.name, words[*held].force, "XYZ"[axis_of(node, *held)]);
     constraint.unit = copy_text(words[*held].unit);
     constraint.dimension = unit_of(constraint.unit);
     append_variable(&reader->model->constraints, constraint);
@@ -124,48 +163,42 @@ static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held
   return place_along(graph, from, to, (int)held);
 }
 
-/* The first of a joint's constraints that nothing moves; NULL where all can be moved. */
-static const struct Variable *find_unmoved(const struct Graph *graph, const struct Variable *first, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (graph_is_constant(graph, first[i].node)) return &first[i];
-  return NULL;
+/* Whether nothing moves what a constraint of the joint holds, and it is held where it is. */
+static bool is_idle(const struct Graph *graph, const struct Variable *constraint, const struct Side *from,
+                    const struct Side *to) {
+  const struct Vector places[] = {from->position, to->position};
+  bool is_length = strcmp(constraint->unit, "m") == 0;
+  return vanishes(graph, constraint->node, places, is_length ? sizeof places / sizeof *places : 0);
 }
 
-/* Whether expressions know the axes of what an attribute names. */
-static bool has_axes(struct Reader *reader, xmlNodePtr node, const char *name) {
-  char *full_name = reference_attribute(reader, node, name);
-  return full_name != NULL && scope_find(reader->scope, format_text("%s.R11", full_name)) != NULL;
-}
-
-/* What to write where places, or some axes, are held without the joint. */
-static char *remedy_for(struct Reader *reader, xmlNodePtr node, const struct Variable *first, size_t count) {
+/*
+ * What nothing moves bears nothing: of all forces that keep the motion, a force of 0 is the smallest. Only a joint that holds nothing else
+ * is refused, one that does not fit, and what rolls, whose weight the coordinates would bear in secret.
+ */
+static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variable *first, size_t count,
+                           const struct Side *from, const struct Side *to) {
   const struct Graph *graph = reader->model->graph;
-  const char *from = attribute(node, "from"), *to = attribute(node, "to");
-  size_t unmoved = 0;
-  for (size_t i = 0; i < count; i++) unmoved += graph_is_constant(graph, first[i].node);
-  if (unmoved == count)
-    return format_text("nor does anything move the rest of what it holds; expected '%s' and '%s' that move "
-                       "against one another",
-                       from, to);
-  if (attribute_is(node, "type", "rolling"))
-    return copy_text("expected the axes along which something moves, such as holds=\"x y\"");
-  if (attribute_is(node, "type", "universal") && !graph_is_constant(graph, first[count - 1].node) &&
-      has_axes(reader, node, "from") && has_axes(reader, node, "to"))
-    return format_text("expected <constraint name=\"%s\">%s.R11*%s.R12 + %s.R21*%s.R22 + %s.R31*%s.R32</constraint> "
-                       "for shafts whose places are held already",
-                       attribute(node, "name"), from, to, from, to, from, to);
-  return copy_text("expected a type that leaves it out, such as pin for what moves in a plane, or a <constraint> of "
-                   "what moves alone");
-}
-
-static void check_held(struct Reader *reader, xmlNodePtr node, const struct Variable *first, size_t count) {
-  const struct Graph *graph = reader->model->graph;
-  const struct Variable *unmoved = find_unmoved(graph, first, count);
-  if (unmoved != NULL)
-    report_at(reader, node, "the joint '%s' holds %s, which nothing moves: it is %g at all times; %s",
-              attribute(node, "name"), strrchr(unmoved->name, '.') + 1, graph_value(graph, unmoved->node),
-              remedy_for(reader, node, first, count));
-  for (size_t i = 0; i < count && reader->diagnostics->errors == 0; i++) check_constraint(reader, &first[i]);
+  const char *joint = attribute(node, "name");
+  size_t idle_count = 0;
+  for (size_t i = 0; i < count; i++) {
+    const char *held = strrchr(first[i].name, '.') + 1;
+    bool is_idle_here = is_idle(graph, &first[i], from, to);
+    idle_count += is_idle_here;
+    if (is_idle_here && attribute_is(node, "type", "rolling"))
+      report_at(reader, node,
+                "the joint '%s' holds %s, which nothing moves; expected the axes along which something moves, such as "
+                "holds=\"x y\"",
+                joint, held);
+    else if (is_idle_here) first[i].node = ZERO;
+    else if (graph_is_constant(graph, first[i].node))
+      report_at(reader, node,
+                "the joint '%s' holds %s, which nothing moves: it is %g at all times; expected 0, where it fits", joint,
+                held, graph_value(graph, first[i].node));
+  }
+  if (idle_count == count && reader->diagnostics->errors == 0)
+    report_at(reader, node,
+              "nothing moves what the joint '%s' holds; expected '%s' and '%s' that move against one another", joint,
+              attribute(node, "from"), attribute(node, "to"));
 }
 
 void read_joint(struct Reader *reader, xmlNodePtr node) {
@@ -176,9 +209,13 @@ void read_joint(struct Reader *reader, xmlNodePtr node) {
   is_right &= read_side(reader, node, "to", &to);
   if (is_right && attribute_is(node, "type", "rolling")) is_right = can_roll(reader, node, &to);
   if (type == NULL || !is_right) return;
+  exchange_axes(&from, shift_of(node));
+  exchange_axes(&to, shift_of(node));
   struct Variable *first = &model->constraints.items[reader->present->number];
   size_t count = 0;
   for (const enum Held *held = type->held; *held != NOTHING; held++)
     if (is_held(node, *held)) first[count++].node = expression_of(reader, node, *held, &from, &to);
-  if (reader->diagnostics->errors == 0) check_held(reader, node, first, count);
+  if (reader->diagnostics->errors == 0) leave_out_idle(reader, node, first, count, &from, &to);
+  for (size_t i = 0; i < count && reader->diagnostics->errors == 0; i++)
+    if (first[i].node != ZERO) check_constraint(reader, &first[i]);
 }

@@ -7,7 +7,7 @@
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 enum { LEFT_OUT_LIMIT = 20 };
 
@@ -21,10 +21,19 @@ struct RobotFile {
   size_t mesh_problems; /* how many there are */
 };
 
+/* The next of several names with blanks between them, which *rest then stands behind; NULL for none. */
+char *next_name(const char **rest);
+
 void leave_out(struct RobotFile *file, const char *what);
 
 /* Notes the elements inside that are none of these names, of which the last is NULL. */
 void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names);
+
+/* Notes why a mesh cannot be drawn; NULL for nothing. */
+void note_mesh_problem(struct RobotFile *file, char *problem);
+
+/* As pages have it, such as "#ff8000ff", by shares of red, green, blue, and how little is seen through it. */
+char *color_text(const double rgba[4]);
 
 /* Warns of all that was left out, unless there were errors. */
 void tell_left_out(struct RobotFile *file);
@@ -43,6 +52,9 @@ size_t parse_numbers(const char *text, size_t limit, double *values);
 bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, size_t count, double *values);
 double required_number(struct RobotFile *file, xmlNodePtr node, const char *name);
 double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *name);
+
+/* Whether the shapes of a link of this name touch a ground. */
+bool link_touches_ground(const struct RobotOptions *options, const char *link);
 
 void add_link(struct RobotFile *file, struct Link *link);
 void add_joint(struct RobotFile *file, struct Joint *joint);

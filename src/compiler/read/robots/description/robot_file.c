@@ -1,4 +1,4 @@
-#include "read/robots/robot_file.h"
+#include "read/robots/description/robot_file.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,6 +6,14 @@
 
 #include "base/memory.h"
 #include "read/xml/nodes.h"
+
+char *next_name(const char **rest) {
+  static const char blanks[] = " \t\r\n";
+  const char *name = *rest + strspn(*rest, blanks);
+  size_t length = strcspn(name, blanks);
+  *rest = name + length;
+  return length > 0 ? format_text("%.*s", (int)length, name) : NULL;
+}
 
 void leave_out(struct RobotFile *file, const char *what) {
   for (size_t i = 0; i < file->left_out_count; i++)
@@ -94,6 +102,18 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
   return value;
 }
 
+void note_mesh_problem(struct RobotFile *file, char *problem) {
+  if (problem == NULL) return;
+  if (file->mesh_problem == NULL) file->mesh_problem = problem;
+  file->mesh_problems++;
+}
+
+char *color_text(const double rgba[4]) {
+  char *text = copy_text("#");
+  for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
+  return text;
+}
+
 void tell_left_out(struct RobotFile *file) {
   char *list = copy_text("");
   for (size_t i = 0; i < file->left_out_count; i++)
@@ -103,6 +123,14 @@ void tell_left_out(struct RobotFile *file) {
   if (file->mesh_problem != NULL && file->diagnostics->errors == 0)
     report_warning(file->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", file->mesh_problems,
                    file->mesh_problems == 1 ? " is" : "es are", file->mesh_problem);
+}
+
+bool link_touches_ground(const struct RobotOptions *options, const char *link) {
+  const char *rest = options->standing;
+  if (!options->has_ground || rest == NULL) return options->has_ground;
+  for (char *name = next_name(&rest); name != NULL; name = next_name(&rest))
+    if (strcmp(name, link) == 0) return true;
+  return false;
 }
 
 void add_link(struct RobotFile *file, struct Link *link) {

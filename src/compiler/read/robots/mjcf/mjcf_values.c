@@ -1,4 +1,4 @@
-#include "read/robots/mjcf_values.h"
+#include "read/robots/mjcf/mjcf_values.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -163,7 +163,7 @@ struct Matrix3 rotation_of_z(const double direction[3]) {
   return rotation_about(axis, atan2(across, direction[2]));
 }
 
-static struct Matrix3 of_quaternion(const double q[4]) {
+struct Matrix3 rotation_of_quaternion(const double q[4]) {
   double axis[3] = {q[1], q[2], q[3]};
   double length = make_unit(axis);
   return length > 0 ? rotation_about(axis, 2 * atan2(length, q[0])) : no_displacement.rotation;
@@ -224,7 +224,7 @@ struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
   bool is_right = true;
   if (kind == QUATERNION) {
     is_right = v[0] != 0 || v[1] != 0 || v[2] != 0 || v[3] != 0;
-    place.rotation = of_quaternion(v);
+    place.rotation = rotation_of_quaternion(v);
   } else if (kind == AXIS_AND_ANGLE) {
     is_right = make_unit(v) > 0;
     place.rotation = rotation_about(v, v[3] * mjcf->angle);
@@ -253,6 +253,11 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
                  "%s of <%s> is from %g to %g; expected the lower one first", range, (const char *)node->name, read[0],
                  read[1]);
+}
+
+void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy) {
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "<%s> is not read, and would change the motion; expected %s",
+               (const char *)node->name, remedy);
 }
 
 void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "read/robots/rigid_body.h"
+#include "read/robots/description/rigid_body.h"
 
 enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
 
@@ -36,6 +36,11 @@ struct Link {
   bool moves_inertia;       /* of a carrier: it or what hangs on it has some */
 };
 
+/* Of its coordinates: one number, or of a FLOATING joint x, y, z and the quaternion, of which a BALL has the last four; these are 0 where the file says nothing. */
+struct JointStart {
+  double position[7], velocity[7];
+};
+
 struct Joint {
   char *name, *symbol;
   long line;
@@ -47,7 +52,7 @@ struct Joint {
   double damping, friction;
   double armature;        /* inertia of the motor, along the coordinate */
   double stiffness, rest; /* of a spring, and where it is relaxed */
-  double start[7];     /* of the coordinate; of a FLOATING joint x, y, z and the quaternion; all 0: the usual start */
+  struct JointStart start;
   bool has_motor;      /* an input for its force or torque; what a file's actuators do comes beside this */
   double effort;       /* the largest force or torque of its motor; NAN: no limit */
   char *mimicked_name; /* NULL unless the joint's position is multiplier*(that of the mimicked one) + offset */
@@ -66,7 +71,16 @@ struct Actuator {
   struct Joint *joint; /* set by robot_connect() */
   long line;
   double gear, gain, bias[3];
+  double start;                /* of the control */
   double control[2], force[2]; /* limits of the control, and of the force before the gear; NAN: none */
+};
+
+/* Holds two links together, beside the tree of joints: their origins, and if it is fixed their axes too. */
+struct RobotLoop {
+  char *name, *link_names[2];
+  struct Link *links[2]; /* set by robot_connect() */
+  long line;
+  bool is_fixed;
 };
 
 /* What an <include> says of a robot beyond its file. */
@@ -75,7 +89,9 @@ struct RobotOptions {
   bool has_stops;         /* limits stop the joints; else outputs tell how far these are beyond them */
   bool sticks;            /* the joints' friction is dry; else it lets them creep */
   bool has_ground;        /* the links' shapes stand on a plane */
+  const char *standing;   /* names of the links that do, between blanks; NULL for all that move */
   bool is_effort_limited; /* motors push and turn with no more than their effort */
+  const char *keyframe;   /* of MJCF, where the robot starts; NULL for its usual start */
   const char *
       tool; /* the link whose position and velocity are outputs; NULL: the only one without children, if there is one */
 };
@@ -86,7 +102,8 @@ struct Robot {
   struct Link **links;
   struct Joint **joints;
   struct Actuator *actuators;
-  size_t link_count, joint_count, actuator_count;
+  struct RobotLoop *loops;
+  size_t link_count, joint_count, actuator_count, loop_count;
   double gravity[3]; /* m/s2 */
   struct Link *root;
 };

@@ -1,20 +1,15 @@
-#include "read/robots/mjcf.h"
+#include "read/robots/mjcf/mjcf.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/robots/mjcf_geoms.h"
-#include "read/robots/mjcf_values.h"
+#include "read/robots/mjcf/mjcf_equality.h"
+#include "read/robots/mjcf/mjcf_geoms.h"
+#include "read/robots/mjcf/mjcf_keyframe.h"
+#include "read/robots/mjcf/mjcf_tree.h"
+#include "read/robots/mjcf/mjcf_values.h"
 #include "read/xml/nodes.h"
-
-static const char world[] = "world";
-
-/* Each with what to do about it. */
-static void report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy) {
-  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "<%s> is not read, and would change the motion; expected %s",
-               (const char *)node->name, remedy);
-}
 
 /* Reports elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
@@ -30,7 +25,7 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (child->type != XML_ELEMENT_NODE || is_element(child, "sensor") || is_element(child, "asset")) continue;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-      if (is_element(child, refused[i][0])) report_unknown(mjcf, child, refused[i][1]);
+      if (is_element(child, refused[i][0])) mjcf_report_unknown(mjcf, child, refused[i][1]);
     check_elements(mjcf, child);
   }
 }
@@ -47,6 +42,8 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "coordinate=\"%s\" of <compiler>; expected local",
                  attribute(node, "coordinate"));
+  if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
+  if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
   const char *sequence = attribute(node, "eulerseq");
   if (sequence == NULL) return;
   if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
@@ -70,34 +67,6 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
                    "%s=\"disable\" of <flag> is not read; expected a file without what it disables", flags[i]);
 }
 
-static struct Link *new_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
-  struct Link *link = allocate(1, sizeof *link);
-  link->name = name;
-  link->line = xmlGetLineNo(node);
-  add_link(&mjcf->file, link);
-  return link;
-}
-
-static struct Joint *new_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
-                               char *child) {
-  struct Joint *joint = allocate(1, sizeof *joint);
-  joint->name = name;
-  joint->line = xmlGetLineNo(node);
-  joint->type = type;
-  joint->parent_name = parent;
-  joint->child_name = child;
-  joint->origin = no_displacement;
-  joint->axis[2] = 1;
-  joint->lower = joint->upper = joint->effort = NAN;
-  joint->multiplier = 1;
-  add_joint(&mjcf->file, joint);
-  return joint;
-}
-
-static void add_fixed(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place) {
-  new_joint(mjcf, node, FIXED, format_text("%s_fixed", child), parent, child)->origin = *place;
-}
-
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
   if (make_unit(joint->axis) == 0)
@@ -109,7 +78,7 @@ static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
 static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
   read_axis(mjcf, node, joint);
-  joint->start[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
+  joint->start.position[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
   joint->rest = mjcf_number(mjcf, node, "springref", 0) * scale;
   joint->stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
@@ -121,9 +90,9 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->lower = limits[0] * scale;
   joint->upper = limits[1] * scale;
   struct Placement back = no_displacement;
-  if (joint->type == REVOLUTE) back.rotation = rotation_about(joint->axis, -joint->start[0]);
+  if (joint->type == REVOLUTE) back.rotation = rotation_about(joint->axis, -joint->start.position[0]);
   else
-    for (int i = 0; i < 3; i++) back.translation[i] = -joint->axis[i] * joint->start[0];
+    for (int i = 0; i < 3; i++) back.translation[i] = -joint->axis[i] * joint->start.position[0];
   joint->origin = placement_within(&joint->origin, &back);
 }
 
@@ -137,20 +106,20 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint
 /* The body of a free joint starts where it is placed. */
 static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *place) {
   double angles[3], s[3], c[3];
-  if (strcmp(joint->parent_name, world) != 0)
+  if (strcmp(joint->parent_name, mjcf_world) != 0)
     report_error(mjcf->file.diagnostics, joint->line,
                  "the free joint '%s' is in the body '%s'; expected it in a <body> of the <worldbody>", joint->name,
                  joint->child_name);
   placement_angles(place, angles);
   for (int i = 0; i < 3; i++) {
-    joint->start[i] = place->translation[i];
+    joint->start.position[i] = place->translation[i];
     s[i] = sin(angles[i] / 2);
     c[i] = cos(angles[i] / 2);
   }
-  joint->start[3] = c[0] * c[1] * c[2] + s[0] * s[1] * s[2];
-  joint->start[4] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
-  joint->start[5] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];
-  joint->start[6] = c[0] * c[1] * s[2] - s[0] * s[1] * c[2];
+  joint->start.position[3] = c[0] * c[1] * c[2] + s[0] * s[1] * s[2];
+  joint->start.position[4] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
+  joint->start.position[5] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];
+  joint->start.position[6] = c[0] * c[1] * s[2] - s[0] * s[1] * c[2];
 }
 
 /* The joints of a body one after the other, each of which but the last moves a link without mass. */
@@ -177,13 +146,13 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   if (name == NULL)
     name = type == FLOATING ? copy_text(chain->body) : format_text("%s_joint%zu", chain->body, chain->count + 1);
   char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
-  struct Joint *joint = new_joint(mjcf, node, type, name, chain->parent, child);
+  struct Joint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
   chain->is_free |= type == FLOATING;
   if (type == FLOATING) read_free(mjcf, joint, &chain->place);
   else joint->origin = placement_within(&chain->place, &anchor);
   if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
   else read_several(mjcf, node, joint);
-  if (child != chain->body) new_link(mjcf, node, child);
+  if (child != chain->body) mjcf_add_link(mjcf, node, child);
   chain->has_body = child == chain->body;
   chain->parent = child;
   chain->place = back;
@@ -199,7 +168,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain)
   if (chain->is_free && chain->count > 1)
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
                  "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
-  if (!chain->has_body) add_fixed(mjcf, node, chain->parent, chain->body, &chain->place);
+  if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->place);
 }
 
 static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer);
@@ -209,9 +178,10 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   if (name == NULL) name = format_text("body%zu", ++mjcf->unnamed_count);
   struct Placement place = mjcf_placement(mjcf, node);
   struct Chain chain = {.body = name, .parent = parent, .place = placement_within(outer, &place)};
-  struct Link *link = new_link(mjcf, node, name);
+  struct Link *link = mjcf_add_link(mjcf, node, name);
   mjcf_refuse(mjcf, node, "gravcomp");
   mjcf_refuse(mjcf, node, "mocap");
+  mjcf_note_place(mjcf, name, parent, &chain.place);
   read_joints(mjcf, node, &chain);
   mjcf_read_body(mjcf, node, link);
   read_children(mjcf, node, name, &no_displacement);
@@ -222,8 +192,9 @@ static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   if (name == NULL) return;
   struct Placement place = mjcf_placement(mjcf, node);
   place = placement_within(outer, &place);
-  new_link(mjcf, node, name);
-  add_fixed(mjcf, node, parent, name, &place);
+  mjcf_add_link(mjcf, node, name);
+  mjcf_fix(mjcf, node, parent, name, &place);
+  mjcf_note_place(mjcf, name, parent, &place);
 }
 
 /* Bodies and sites, also in <frame>s, which place them. */
@@ -283,7 +254,7 @@ static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
       !is_element(node, "general")) {
-    report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint");
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint");
     return;
   }
   struct Actuator actuator = {.joint_name = required_attribute(&mjcf->file, node, "joint"), .line = xmlGetLineNo(node)};
@@ -299,40 +270,6 @@ static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
   robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
   robot->actuators[robot->actuator_count++] = actuator;
-}
-
-static struct Joint *find_joint(const struct Robot *robot, const char *name) {
-  for (size_t i = 0; i < robot->joint_count; i++)
-    if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];
-  return NULL;
-}
-
-/* A joint whose distance from its ref is a linear function of another's mimics that. */
-static void read_equality(struct Mjcf *mjcf, xmlNodePtr node) {
-  if (attribute_is(node, "active", "false")) return;
-  if (!is_element(node, "joint")) {
-    report_unknown(mjcf, node, "a <joint> that closes the loop, in a <system> that includes the robot");
-    return;
-  }
-  double c[5] = {0, 1};
-  char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
-  struct Joint *joints[2] = {find_joint(mjcf->file.robot, names[0]), find_joint(mjcf->file.robot, names[1])};
-  mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
-  for (int i = 0; i < 2; i++)
-    if (joints[i] == NULL && *names[i] != '\0')
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                   "there is no joint '%s' for an <equality>; expected one of the file", names[i]);
-  if (c[2] != 0 || c[3] != 0 || c[4] != 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                 "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
-  if (joints[0] == NULL || joints[1] == NULL) return;
-  if (joints[0]->mimicked_name != NULL)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", names[0],
-                 joints[0]->mimicked_name);
-  joints[0]->mimicked_name = names[1];
-  joints[0]->multiplier = c[1];
-  joints[0]->offset = joints[0]->start[0] + c[0] - c[1] * joints[1]->start[0];
 }
 
 typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
@@ -353,10 +290,13 @@ static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
 }
 
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
-  static const char *const known[] = {"compiler", "option", "default", "worldbody", "actuator", "equality", NULL};
+  static const char *const known[] = {"compiler", "option",   "default", "worldbody", "actuator",
+                                      "equality", "keyframe", "asset",   NULL};
   struct Robot *robot = allocate(1, sizeof *robot);
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
+                      .meshes = names_create(),
+                      .places = names_create(),
                       .angle = M_PI / 180,
                       .euler_sequence = "xyz",
                       .has_automatic_limits = true};
@@ -374,10 +314,12 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   if (diagnostics->errors > errors) return robot;
   for_each(&mjcf, "compiler", false, read_compiler);
   for_each(&mjcf, "option", false, read_option);
-  new_link(&mjcf, root, copy_text(world));
+  mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
+  mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "worldbody", false, read_world);
   for_each(&mjcf, "actuator", true, read_actuator);
-  for_each(&mjcf, "equality", true, read_equality);
+  for_each(&mjcf, "equality", true, mjcf_read_equality);
+  if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
   leave_out_others(&mjcf.file, root, known);
   tell_left_out(&mjcf.file);
   return robot;

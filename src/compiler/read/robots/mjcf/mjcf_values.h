@@ -4,7 +4,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "read/robots/robot_file.h"
+#include "read/names/names.h"
+#include "read/robots/description/robot_file.h"
 
 enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
 
@@ -16,6 +17,9 @@ struct Mjcf {
   bool has_automatic_limits;
   enum InertiaFromGeoms inertia_from_geoms;
   size_t unnamed_count; /* bodies without a name so far */
+  char *mesh_folder;    /* of the meshes' files, relative to the robot's; NULL for that itself */
+  struct Names *meshes; /* that geoms have -> struct MjcfMesh */
+  struct Names *places; /* of bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
 /* An attribute of the element, or of its class or what this inherits; NULL where none of them has it. */
@@ -47,11 +51,17 @@ struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node);
 /* The turn that brings z along this direction, which is not 0. */
 struct Matrix3 rotation_of_z(const double direction[3]);
 
+/* By a quaternion of any length but 0, the real part first. */
+struct Matrix3 rotation_of_quaternion(const double q[4]);
+
 /* Divides a vector by its length, and returns this; leaves a 0. */
 double make_unit(double vector[3]);
 
 /* Limits by the range and the attribute that says whether it holds; NAN for none. */
 void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]);
+
+/* Reports an element that is not read, with what to do about it. */
+void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
 
 /* Reports an attribute that is not 0, false, none or missing, since it would change the motion. */
 void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name);

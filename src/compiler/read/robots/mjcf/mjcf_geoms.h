@@ -1,7 +1,7 @@
 /* The <inertial> and the <geom>s of a body of MJCF: what it weighs, and what it touches with. */
 #pragma once
 
-#include "read/robots/mjcf_values.h"
+#include "read/robots/mjcf/mjcf_values.h"
 
 /*
  * Gives the link the inertia of its body and the shapes that collide, in its frame.

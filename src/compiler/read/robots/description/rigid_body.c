@@ -1,4 +1,4 @@
-#include "read/robots/rigid_body.h"
+#include "read/robots/description/rigid_body.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -89,6 +89,13 @@ struct Placement placement_within(const struct Placement *outer, const struct Pl
   return both;
 }
 
+struct Placement placement_between(const struct Placement *first, const struct Placement *second) {
+  struct Placement back = {.rotation = transposed(&first->rotation)};
+  turn(&back.rotation, first->translation, back.translation);
+  for (int i = 0; i < 3; i++) back.translation[i] = -back.translation[i];
+  return placement_within(&back, second);
+}
+
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body) {
   struct RigidBody seen = {.mass = body->mass};
   turn(&placement->rotation, body->center, seen.center);
@@ -96,6 +103,14 @@ struct RigidBody body_seen_from(const struct Placement *placement, const struct 
   struct Matrix3 back = transposed(&placement->rotation), half = product(&placement->rotation, &body->tensor);
   seen.tensor = product(&half, &back);
   return seen;
+}
+
+struct RigidBody body_scaled(const struct RigidBody *body, double factor) {
+  struct RigidBody scaled = *body;
+  scaled.mass *= factor;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) scaled.tensor.at[i][j] *= factor;
+  return scaled;
 }
 
 /* The tensor about another point, by the theorem of Huygens and Steiner. */

@@ -36,8 +36,14 @@ void placement_angles(const struct Placement *placement, double angles[3]);
 /* Where a frame is that is placed in another one, which is itself placed in a third. */
 struct Placement placement_within(const struct Placement *outer, const struct Placement *inner);
 
+/* Where the second frame is in the first, both of which are placed in a third. */
+struct Placement placement_between(const struct Placement *first, const struct Placement *second);
+
 /* The same body as seen from the frame in which its own is placed. */
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body);
+
+/* The same with its mass, and all that goes with it, multiplied. */
+struct RigidBody body_scaled(const struct RigidBody *body, double factor);
 
 /* Both as one. */
 struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBody *second);

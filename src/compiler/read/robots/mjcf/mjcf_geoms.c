@@ -1,9 +1,10 @@
-#include "read/robots/mjcf_geoms.h"
+#include "read/robots/mjcf/mjcf_geoms.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/robots/mjcf/mjcf_meshes.h"
 #include "read/xml/nodes.h"
 
 static const double usual_density = 1000; /* kg/m3 */
@@ -17,6 +18,7 @@ struct Geom {
   enum GeomType type;
   struct Placement place;
   double size[3];
+  const struct MjcfMesh *mesh; /* NULL of other types, and of a shape that MuJoCo would fit to a mesh */
 };
 
 /* Between two points, along z; boxes and ellipsoids are as wide in both directions. */
@@ -43,7 +45,9 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
 static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   static const int needed[GEOM_TYPES] = {[SPHERE] = 1, [CAPSULE] = 2, [CYLINDER] = 2, [BOX] = 3, [ELLIPSOID] = 3};
   struct Geom geom = {.type = (enum GeomType)mjcf_word(mjcf, node, "type", geom_types)};
-  if (mjcf_text(mjcf, node, "mesh") != NULL) geom.type = MESH;
+  const char *mesh = mjcf_text(mjcf, node, "mesh");
+  if (mesh != NULL && geom.type == MESH) geom.mesh = mjcf_mesh(mjcf, node, mesh);
+  if (mesh != NULL) geom.type = MESH;
   geom.place = mjcf_placement(mjcf, node);
   int errors = mjcf->file.diagnostics->errors;
   if (needed[geom.type] > 0) mjcf_numbers(mjcf, node, "size", 1, 3, geom.size);
@@ -97,37 +101,73 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   bool has_mass = mjcf_text(mjcf, node, "mass") != NULL;
   double density = mjcf_number_not_negative(mjcf, node, "density", usual_density);
   double mass = has_mass ? mjcf_number_not_negative(mjcf, node, "mass", 0) : density * volume(geom);
-  bool is_solid = geom->type <= ELLIPSOID;
+  bool is_solid = geom->type <= ELLIPSOID, has_problem = geom->mesh != NULL && geom->mesh->problem != NULL;
   mjcf_refuse(mjcf, node, "shellinertia");
+  if (geom->mesh != NULL && geom->mesh->is_weighed) {
+    struct RigidBody body = body_scaled(&geom->mesh->body, has_mass ? mass / geom->mesh->body.mass : density);
+    return body_seen_from(&geom->place, &body);
+  }
   if (!is_solid && geom->type != PLANE && (has_mass ? mass : density) > 0)
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                 "the inertia of a <geom> of type %s is not known; expected an <inertial> in its body, as MuJoCo's "
+                 "the inertia of a <geom> of type %s is not known%s%s; expected an <inertial> in its body, as MuJoCo's "
                  "mj_saveLastXML writes it, or mass=\"0\"",
-                 geom_types[geom->type]);
+                 geom_types[geom->type], has_problem ? ": " : "", has_problem ? geom->mesh->problem : "");
   return is_solid ? solid(geom, mass) : (struct RigidBody){.mass = 0};
 }
 
-/* As a shape, unless nothing can touch it. */
-static void add_collision(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct Link *link) {
+/* Of the geom itself, or of its material; NULL where neither says it. */
+static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *name = mjcf_text(mjcf, node, "material");
+  double rgba[4];
+  if (mjcf_numbers(mjcf, node, "rgba", 4, 4, rgba) > 0) return color_text(rgba);
+  for (xmlNodePtr section = mjcf->root->children; section != NULL && name != NULL; section = section->next)
+    for (xmlNodePtr asset = is_element(section, "asset") ? section->children : NULL; asset != NULL; asset = asset->next)
+      if (is_element(asset, "material") && attribute_is(asset, "name", name) &&
+          mjcf_numbers(mjcf, asset, "rgba", 4, 4, rgba) > 0)
+        return color_text(rgba);
+  return NULL;
+}
+
+/* Why the geom is no shape here; NULL where it is one. */
+static const char *problem_of(const struct Geom *geom, bool touches) {
+  if (geom->type <= BOX) return NULL;
+  if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box or mesh";
+  if (touches && geom->mesh->problem == NULL && geom->mesh->is_flat) return "its mesh is flat; expected a volume";
+  return geom->mesh->problem;
+}
+
+static struct Collision shape_of(const struct Geom *geom, long line) {
+  struct Collision shape = {.type = geom_types[geom->type], .place = geom->place, .line = line};
+  if (geom->type == MESH) {
+    shape.file = geom->mesh->path;
+    memcpy(shape.scale, geom->mesh->scale, sizeof shape.scale);
+  } else if (geom->type == BOX)
+    for (int i = 0; i < 3; i++) shape.size[i] = 2 * geom->size[i];
+  else shape.radius = geom->size[0];
+  if (geom->type == CAPSULE || geom->type == CYLINDER) shape.length = 2 * geom->size[1];
+  return shape;
+}
+
+/* What can touch is a shape that does, and what cannot one that is drawn in place of the body's others. */
+static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct Link *link) {
   bool touches = mjcf_number(mjcf, node, "contype", 1) != 0 || mjcf_number(mjcf, node, "conaffinity", 1) != 0;
-  if (!touches || geom->type == PLANE) return;
-  struct Collision collision = {
-      .type = geom_types[geom->type], .place = geom->place, .line = xmlGetLineNo(node), .radius = geom->size[0]};
-  if (geom->type > BOX) {
-    if (!mjcf->file.options->has_ground) leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder and box");
-    else
-      report_warning(
-          mjcf->file.diagnostics, collision.line,
-          "a <geom> of type %s of the body '%s' touches nothing; expected a sphere, capsule, cylinder or box",
-          geom_types[geom->type], link->name);
-    return;
-  }
-  if (geom->type == BOX) {
-    collision.radius = 0;
-    for (int i = 0; i < 3; i++) collision.size[i] = 2 * geom->size[i];
-  } else if (geom->type != SPHERE) collision.length = 2 * geom->size[1];
-  link->collisions = make_room(link->collisions, link->collision_count, sizeof *link->collisions);
-  link->collisions[link->collision_count++] = collision;
+  bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
+  const char *problem = problem_of(geom, meets_ground);
+  if (geom->type == PLANE) return;
+  if (problem != NULL && meets_ground)
+    report_warning(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "a <geom> of type %s of the body '%s' touches nothing: %s", geom_types[geom->type], link->name,
+                   problem);
+  else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
+    note_mesh_problem(&mjcf->file, geom->mesh->problem);
+  else if (problem != NULL) leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder, box and mesh");
+  if (problem != NULL) return;
+  struct Collision shape = shape_of(geom, xmlGetLineNo(node));
+  shape.color = read_color(mjcf, node);
+  struct Collision **shapes = touches ? &link->collisions : &link->visuals;
+  size_t *count = touches ? &link->collision_count : &link->visual_count;
+  *shapes = make_room(*shapes, *count, sizeof **shapes);
+  (*shapes)[(*count)++] = shape;
 }
 
 static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link) {
@@ -161,7 +201,7 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
       struct RigidBody part = weigh(mjcf, child, &geom);
       link->body = body_joined(&link->body, &part);
     }
-    add_collision(mjcf, child, &geom, link);
+    add_shape(mjcf, child, &geom, link);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
-#include "read/robots/robot.h"
+#include "read/robots/description/robot.h"
 
 /*
  * Bodies as links, and joints, of a <mujoco>, not yet connected; "world" is the root. Every mistake, and what would change the motion

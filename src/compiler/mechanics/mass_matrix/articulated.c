@@ -1,0 +1,187 @@
+#include "mechanics/mass_matrix/articulated.h"
+
+#include "algebra/simplify.h"
+#include "base/memory.h"
+
+static struct FactorPattern full_pattern(size_t count) {
+  size_t *start = allocate(count + 1, sizeof *start), *column = allocate(count * (count + 1) / 2, sizeof *column);
+  for (size_t i = 0; i < count; i++) {
+    start[i + 1] = start[i] + i + 1;
+    for (size_t j = 0; j <= i; j++) column[start[i] + j] = j;
+  }
+  return (struct FactorPattern){count, start, column};
+}
+
+/* The place of the only component that is not ZERO, from 0 to 5; -1 where there are several. */
+static int only_component(struct SpatialVector axis) {
+  int only = -1;
+  for (int i = 0; i < 6; i++) {
+    if ((i < 3 ? axis.linear.along[i] : axis.angular.along[i - 3]) == ZERO) continue;
+    if (only >= 0) return -1;
+    only = i;
+  }
+  return only;
+}
+
+/* Nothing is left along a component that a coordinate moves freely. */
+static void clear_component(struct SpatialInertia *inertia, int component) {
+  int i = component % 3;
+  for (int j = 0; j < 3; j++) {
+    if (component < 3) {
+      inertia->mass.row[i].along[j] = inertia->mass.row[j].along[i] = ZERO;
+      inertia->coupling.row[i].along[j] = ZERO;
+    } else {
+      inertia->moment.row[i].along[j] = inertia->moment.row[j].along[i] = ZERO;
+      inertia->coupling.row[j].along[i] = ZERO;
+    }
+  }
+}
+
+/* U = inertia S, and the masses S^T U along the coordinates. Returns U. */
+static struct SpatialVector *set_masses(struct Graph *graph, struct ArticulatedLink *item,
+                                        const struct SpatialInertia *inertia) {
+  const struct Link *link = item->link;
+  struct SpatialVector *force = allocate(link->count, sizeof *force);
+  item->pattern = full_pattern(link->count);
+  item->mass = allocate(item->pattern.start[link->count], sizeof *item->mass);
+  for (size_t i = 0; i < link->count; i++) {
+    force[i] = spatial_inertia_apply(graph, inertia, link->axes[i]);
+    for (size_t j = 0; j <= i; j++) {
+      Node mass = spatial_dot(graph, force[i], link->axes[j]);
+      item->mass[item->pattern.start[i] + j] = add(graph, mass, link->inertia[i * link->count + j]);
+    }
+  }
+  return force;
+}
+
+/* The gains U D^-1. */
+static void set_gains(struct Graph *graph, struct ArticulatedLink *item, const struct SpatialVector *force) {
+  size_t count = item->link->count;
+  Node *x = allocate(count, sizeof *x);
+  item->gain = allocate(count, sizeof *item->gain);
+  for (int component = 0; component < 6; component++) {
+    int k = component % 3;
+    for (size_t i = 0; i < count; i++) x[i] = component < 3 ? force[i].linear.along[k] : force[i].angular.along[k];
+    factors_solve(graph, &item->pattern, item->factor, x);
+    for (size_t i = 0; i < count; i++)
+      (component < 3 ? &item->gain[i].linear : &item->gain[i].angular)->along[k] = x[i];
+  }
+}
+
+/* What the coordinates of a link leave of the inertia. */
+static struct SpatialInertia eliminate_link(struct Graph *graph, struct ArticulatedLink *item,
+                                            struct SpatialInertia inertia) {
+  const struct Link *link = item->link;
+  if (link->count == 0) return inertia;
+  const struct SpatialVector *force = set_masses(graph, item, &inertia);
+  item->factor = factors_create(graph, &item->pattern, item->mass);
+  set_gains(graph, item, force);
+  for (size_t i = 0; i < link->count; i++) inertia = spatial_inertia_less(graph, &inertia, item->gain[i], force[i]);
+  for (size_t i = 0; i < link->count && !link->has_inertia; i++) {
+    int component = only_component(link->axes[i]);
+    if (component >= 0) clear_component(&inertia, component);
+  }
+  return inertia;
+}
+
+static void eliminate_all(struct Graph *graph, struct ArticulatedTree *tree) {
+  struct SpatialInertia *behind = allocate(tree->count, sizeof *behind);
+  for (size_t i = tree->count; i-- > 0;) {
+    struct ArticulatedLink *item = &tree->items[i];
+    struct SpatialInertia whole = spatial_inertia_add(graph, &item->link->bodies, &behind[i]);
+    struct SpatialInertia left = eliminate_link(graph, item, whole);
+    if (item->parent == NO_LINK) continue;
+    left = spatial_inertia_to_parent(graph, &item->link->pose, &left);
+    behind[item->parent] = spatial_inertia_add(graph, &behind[item->parent], &left);
+  }
+}
+
+static struct ArticulatedTree *collect_links(const struct Links *links, size_t tree, const size_t *coordinates,
+                                             size_t row_count) {
+  struct ArticulatedTree *result = allocate(1, sizeof *result);
+  size_t *place = allocate(links->count, sizeof *place);
+  *result = (struct ArticulatedTree){.items = allocate(links->count, sizeof *result->items), .row_count = row_count};
+  for (size_t i = 0; i < links->count; i++) {
+    const struct Link *link = &links->items[i];
+    if (link->tree != tree) continue;
+    bool is_inside = link->parent != NO_LINK && links->items[link->parent].tree == tree;
+    place[i] = result->count;
+    struct ArticulatedLink *item = &result->items[result->count++];
+    *item = (struct ArticulatedLink){.link = link, .parent = is_inside ? place[link->parent] : NO_LINK};
+    item->rows = allocate(link->count, sizeof *item->rows);
+    for (size_t k = 0; k < link->count; k++)
+      while (coordinates[item->rows[k]] != link->coordinates[k]) item->rows[k]++;
+  }
+  return result;
+}
+
+struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Links *links, size_t tree,
+                                           const size_t *coordinates, size_t row_count) {
+  struct ArticulatedTree *result = collect_links(links, tree, coordinates, row_count);
+  bool was_not_finite = graph->not_finite;
+  graph->not_finite = false;
+  eliminate_all(graph, result);
+  if (graph->not_finite) result = NULL;
+  graph->not_finite = was_not_finite;
+  return result;
+}
+
+Node articulated_pivot(const struct ArticulatedTree *tree, size_t row) {
+  for (size_t i = 0; i < tree->count; i++)
+    for (size_t k = 0; k < tree->items[i].link->count; k++)
+      if (tree->items[i].rows[k] == row) return tree->items[i].factor[tree->items[i].pattern.start[k + 1] - 1];
+  return ZERO;
+}
+
+void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, Node *x) {
+  struct SpatialVector *force = allocate(tree->count, sizeof *force), *motion = allocate(tree->count, sizeof *motion);
+  Node *pushed = allocate(tree->row_count, sizeof *pushed);
+  for (size_t i = tree->count; i-- > 0;) {
+    const struct ArticulatedLink *item = &tree->items[i];
+    const struct Link *link = item->link;
+    for (size_t k = 0; k < link->count; k++)
+      pushed[k] = subtract(graph, x[item->rows[k]], spatial_dot(graph, force[i], link->axes[k]));
+    for (size_t k = 0; k < link->count; k++)
+      force[i] = spatial_add(graph, force[i], spatial_scale(graph, pushed[k], item->gain[k]));
+    if (link->count > 0) factors_solve(graph, &item->pattern, item->factor, pushed);
+    for (size_t k = 0; k < link->count; k++) x[item->rows[k]] = pushed[k];
+    if (item->parent == NO_LINK) continue;
+    struct SpatialVector handed_on = spatial_force_to_parent(graph, &link->pose, force[i]);
+    force[item->parent] = spatial_add(graph, force[item->parent], handed_on);
+  }
+  for (size_t i = 0; i < tree->count; i++) {
+    const struct ArticulatedLink *item = &tree->items[i];
+    const struct Link *link = item->link;
+    if (item->parent != NO_LINK) motion[i] = spatial_motion_from_parent(graph, &link->pose, motion[item->parent]);
+    const struct SpatialVector carried = motion[i];
+    for (size_t k = 0; k < link->count; k++) {
+      Node *acceleration = &x[item->rows[k]];
+      *acceleration = subtract(graph, *acceleration, spatial_dot(graph, item->gain[k], carried));
+      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, *acceleration, link->axes[k]));
+    }
+  }
+}
+
+void articulated_add_product(struct Graph *graph, const struct ArticulatedTree *tree, const Node *x, Node *sum) {
+  struct SpatialVector *force = allocate(tree->count, sizeof *force), *motion = allocate(tree->count, sizeof *motion);
+  for (size_t i = 0; i < tree->count; i++) {
+    const struct ArticulatedLink *item = &tree->items[i];
+    if (item->parent != NO_LINK) motion[i] = spatial_motion_from_parent(graph, &item->link->pose, motion[item->parent]);
+    for (size_t k = 0; k < item->link->count; k++)
+      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, x[item->rows[k]], item->link->axes[k]));
+  }
+  for (size_t i = tree->count; i-- > 0;) {
+    const struct ArticulatedLink *item = &tree->items[i];
+    const struct Link *link = item->link;
+    force[i] = spatial_add(graph, force[i], spatial_inertia_apply(graph, &link->bodies, motion[i]));
+    for (size_t k = 0; k < link->count; k++) {
+      Node *along = &sum[item->rows[k]];
+      *along = add(graph, *along, spatial_dot(graph, force[i], link->axes[k]));
+      for (size_t l = 0; l < link->count; l++)
+        *along = add(graph, *along, multiply(graph, link->inertia[k * link->count + l], x[item->rows[l]]));
+    }
+    if (item->parent == NO_LINK) continue;
+    struct SpatialVector handed_on = spatial_force_to_parent(graph, &link->pose, force[i]);
+    force[item->parent] = spatial_add(graph, force[item->parent], handed_on);
+  }
+}

@@ -1,0 +1,327 @@
+#include "mechanics/mass_matrix/links.h"
+
+#include "algebra/cone.h"
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "model/time_derivative.h"
+
+/* The average number of coordinates that move a coordinate of a tree, from which on articulated inertias take fewer operations. */
+static const double least_depth = 4.5;
+
+struct Builder {
+  const struct Model *model;
+  struct Links *links;
+  size_t row_count;     /* coordinates and constraints */
+  size_t *last_link;    /* of each frame; NO_LINK where it is fixed to the base */
+  size_t *link_of_body; /* of each body in a frame, likewise */
+  size_t *link_of;      /* of each row; NO_LINK for none */
+  bool *is_elsewhere;   /* of each row: something beside its link has inertia by it, or holds it */
+  Node *at_rest;        /* replacements of symbols: no displacements */
+};
+
+static struct Vector without_displacements(const struct Builder *builder, struct Vector vector) {
+  if (builder->model->displacements.count > 0)
+    substitute(builder->model->graph, vector.along, 3, builder->at_rest, vector.along);
+  return vector;
+}
+
+static bool is_symbol(const struct Graph *graph, Node node, enum SymbolKind kind) {
+  return graph->vertices[node].operation == SYMBOL && graph->vertices[node].kinds == 1u << kind;
+}
+
+static size_t place_in_link(const struct Link *link, size_t coordinate) {
+  size_t place = 0;
+  while (place < link->count && link->coordinates[place] != coordinate) place++;
+  return place;
+}
+
+static void append_row(struct Link *link, size_t row) {
+  link->coordinates = make_room(link->coordinates, link->count, sizeof *link->coordinates);
+  link->coordinates[link->count++] = row;
+}
+
+/* Adds the coordinates whose velocities make a vector. */
+static void find_coordinates(const struct Builder *builder, struct Link *link, struct Vector velocity) {
+  const struct Graph *graph = builder->model->graph;
+  const struct Cone *cone = graph->cone;
+  cone_collect(graph->cone, graph, velocity.along, 3, NULL);
+  for (size_t i = 0; i < cone->count; i++) {
+    if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
+    size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
+    if (builder->model->given.drives[coordinate].given || place_in_link(link, coordinate) < link->count) continue;
+    append_row(link, coordinate);
+  }
+}
+
+/* How much of a vector that is linear in the velocities each of them makes. */
+static void set_axes(const struct Builder *builder, struct Link *link, struct Vector velocity, bool is_angular) {
+  struct Graph *graph = builder->model->graph;
+  for (int component = 0; component < 3; component++) {
+    struct Gradient gradient = gradient_by_kinds(graph, velocity.along[component], 1u << VELOCITY);
+    for (size_t i = 0; i < gradient.count; i++) {
+      size_t place = place_in_link(link, (size_t)graph_symbol_of(graph, gradient.symbols[i])->index);
+      if (place == link->count) continue; /* it is driven */
+      struct SpatialVector *axis = &link->axes[place];
+      (is_angular ? &axis->angular : &axis->linear)->along[component] = gradient.values[i];
+    }
+  }
+}
+
+/* What the geometry of a link is in its parent, and how its coordinates move it. */
+static void set_motion(const struct Builder *builder, struct Link *link) {
+  for (int i = 0; i < 3; i++) link->pose.rotation.row[i] = without_displacements(builder, link->pose.rotation.row[i]);
+  link->pose.origin = without_displacements(builder, link->pose.origin);
+  link->axes = allocate(link->count, sizeof *link->axes);
+  link->inertia = allocate(link->count * link->count, sizeof *link->inertia);
+  set_axes(builder, link, without_displacements(builder, link->pose.velocity), false);
+  set_axes(builder, link, without_displacements(builder, link->pose.angular_velocity), true);
+}
+
+/* Appends a link for a step from the parent. Returns its number. */
+static size_t append_link(struct Builder *builder, size_t parent, const struct Pose *step) {
+  struct Links *links = builder->links;
+  struct Link link = {.parent = parent, .pose = *step};
+  find_coordinates(builder, &link, step->velocity);
+  find_coordinates(builder, &link, step->angular_velocity);
+  for (size_t i = 0; i < link.count; i++) {
+    size_t coordinate = link.coordinates[i];
+    /* What moves two links is no tree. */
+    if (builder->link_of[coordinate] != NO_LINK) builder->is_elsewhere[coordinate] = true;
+    builder->link_of[coordinate] = links->count;
+  }
+  links->items = make_room(links->items, links->count, sizeof *links->items);
+  links->items[links->count] = link;
+  return links->count++;
+}
+
+static void create_links_of_frames(struct Builder *builder) {
+  const struct Mechanism *mechanism = &builder->model->mechanism;
+  builder->last_link = allocate(mechanism->frame_count, sizeof *builder->last_link);
+  builder->last_link[0] = NO_LINK;
+  for (size_t i = 1; i < mechanism->frame_count; i++) {
+    const struct ReferenceFrame *frame = &mechanism->frames[i];
+    size_t last = builder->last_link[frame->parent];
+    for (size_t k = 0; k < frame->step_count; k++) last = append_link(builder, last, &frame->steps[k]);
+    builder->last_link[i] = last;
+  }
+}
+
+/* A body that moves in its frame has a link of its own. */
+static void append_link_of_body(struct Builder *builder, size_t number) {
+  struct Graph *graph = builder->model->graph;
+  const struct Body *body = &builder->model->mechanism.bodies[number];
+  bool moves = false;
+  builder->link_of_body[number] = builder->last_link[body->frame];
+  for (int i = 0; i < 3; i++) moves |= graph_depends_on(graph, body->offset.along[i], COORDINATE);
+  if (!moves) return;
+  struct Pose step = pose_of_base();
+  step.origin = body->offset;
+  derivative_along(graph, body->offset.along, 3, time_seeds(builder->model, false), step.velocity.along);
+  builder->link_of_body[number] = append_link(builder, builder->last_link[body->frame], &step);
+}
+
+static void set_inertia_of_body(struct Builder *builder, size_t number) {
+  struct Graph *graph = builder->model->graph;
+  const struct Body *body = &builder->model->mechanism.bodies[number];
+  size_t number_of_link = builder->link_of_body[number];
+  if (number_of_link == NO_LINK) return;
+  struct Link *link = &builder->links->items[number_of_link];
+  struct Vector offset = body->offset;
+  if (number_of_link != builder->last_link[body->frame]) offset = (struct Vector){{ZERO, ZERO, ZERO}};
+  struct SpatialInertia inertia = spatial_inertia_of_body(graph, body->mass.node, offset, &body->tensor);
+  link->bodies = spatial_inertia_add(graph, &link->bodies, &inertia);
+}
+
+static void mark_coordinates_of(struct Builder *builder, Node node) {
+  const struct Graph *graph = builder->model->graph;
+  const struct Cone *cone = graph->cone;
+  cone_collect(graph->cone, graph, &node, 1, NULL);
+  for (size_t i = 0; i < cone->count; i++)
+    if (is_symbol(graph, cone->nodes[i], COORDINATE))
+      builder->is_elsewhere[graph_symbol_of(graph, cone->nodes[i])->index] = true;
+}
+
+static void append_links_of_bodies(struct Builder *builder) {
+  const struct Mechanism *mechanism = &builder->model->mechanism;
+  builder->link_of_body = allocate(mechanism->body_count, sizeof *builder->link_of_body);
+  for (size_t i = 0; i < mechanism->body_count; i++) {
+    const struct Body *body = &mechanism->bodies[i];
+    if (body->is_in_frame) append_link_of_body(builder, i);
+    for (int k = 0; k < 3 && !body->is_in_frame && body->mass.node != ZERO; k++)
+      mark_coordinates_of(builder, body->position[k].node);
+    if (!body->is_in_frame && body->inertia.node != ZERO) mark_coordinates_of(builder, body->angle.node);
+  }
+}
+
+static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
+  link->inertia[place_in_link(link, i) * link->count + place_in_link(link, j)] = value;
+  link->has_inertia = true;
+}
+
+/* The inertia beside that of bodies must stay within a link each. */
+static void add_further_inertia(struct Builder *builder, Node stillness) {
+  const struct Model *model = builder->model;
+  struct Graph *graph = model->graph;
+  size_t n = model->coordinates.count;
+  Node *momentum = allocate(n, sizeof *momentum);
+  Node kinetic = add(graph, model->energies.explicit_kinetic.node, stillness);
+  gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
+  for (size_t i = 0; i < n && graph_limit(graph) == NULL; i++) {
+    struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
+    for (size_t k = 0; k < row.count; k++) {
+      size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
+      if (model->given.drives[i].given || model->given.drives[j].given) continue;
+      if (builder->link_of[i] == builder->link_of[j] && builder->link_of[i] != NO_LINK)
+        add_inertia(&builder->links->items[builder->link_of[i]], i, j, row.values[k]);
+      else builder->is_elsewhere[i] = builder->is_elsewhere[j] = true;
+    }
+  }
+}
+
+/* The nearest link towards the base, itself among them, that has coordinates. */
+static size_t moved_link(const struct Links *links, size_t link) {
+  while (link != NO_LINK && links->items[link].count == 0) link = links->items[link].parent;
+  return link;
+}
+
+/* Coordinates of links on one way to the base move the same bodies. */
+static struct Components couple(const struct Builder *builder) {
+  const struct Links *links = builder->links;
+  struct Elements couplings = {0};
+  for (size_t i = 0; i < links->count; i++) {
+    const struct Link *link = &links->items[i];
+    size_t before = link->count > 0 ? moved_link(links, link->parent) : NO_LINK;
+    for (size_t k = 1; k < link->count; k++)
+      elements_append(&couplings, link->coordinates[k], link->coordinates[0], ZERO);
+    if (before != NO_LINK) elements_append(&couplings, link->coordinates[0], links->items[before].coordinates[0], ZERO);
+  }
+  return find_components(builder->row_count, &couplings);
+}
+
+static void mark_columns(struct Builder *builder, const struct Elements *elements, const bool *is_local) {
+  for (size_t k = 0; k < elements->count; k++)
+    if (is_local == NULL || !is_local[elements->positions[k].row])
+      builder->is_elsewhere[elements->positions[k].column] = true;
+}
+
+/* Whether each constraint holds always, and the coordinates of one link alone, as the norm of a quaternion does. */
+static bool *find_local_constraints(const struct Builder *builder, const struct Border *border) {
+  const struct Model *model = builder->model;
+  const struct Elements *jacobian = border->jacobian;
+  bool *is_local = allocate(border->count, sizeof *is_local);
+  size_t *link = allocate(border->count, sizeof *link);
+  bool *is_met = allocate(border->count, sizeof *is_met);
+  for (size_t j = 0; j < border->count; j++)
+    is_local[j] =
+        !graph_depends_on(model->graph, model->constraints.items[j].node, MODE) && !has_fixed_coordinates(model);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = jacobian->positions[k].row, of = builder->link_of[jacobian->positions[k].column];
+    if (of == NO_LINK || (is_met[row] && link[row] != of)) is_local[row] = false;
+    link[row] = of;
+    is_met[row] = true;
+  }
+  for (size_t j = 0; j < border->count; j++) is_local[j] &= is_met[j];
+  return is_local;
+}
+
+/* A constraint within a link is one more row of it, which moves nothing; others are for saddle.h. */
+static void add_constraints(struct Builder *builder, const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
+  size_t n = builder->model->coordinates.count;
+  const bool *is_local = find_local_constraints(builder, border);
+  mark_columns(builder, jacobian, is_local);
+  mark_columns(builder, border->oblique, NULL);
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = n + jacobian->positions[k].row;
+    if (!is_local[row - n] || builder->link_of[row] != NO_LINK) continue;
+    builder->link_of[row] = builder->link_of[jacobian->positions[k].column];
+    append_row(&builder->links->items[builder->link_of[row]], row);
+  }
+}
+
+/* The elements of J in the rows that were added. */
+static void set_constraints(struct Builder *builder, const struct Border *border) {
+  const struct Elements *jacobian = border->jacobian;
+  size_t n = builder->model->coordinates.count;
+  for (size_t k = 0; k < jacobian->count; k++) {
+    size_t row = n + jacobian->positions[k].row, column = jacobian->positions[k].column;
+    if (builder->link_of[row] == NO_LINK) continue;
+    struct Link *link = &builder->links->items[builder->link_of[row]];
+    add_inertia(link, row, column, jacobian->nodes[k]);
+    add_inertia(link, column, row, jacobian->nodes[k]);
+  }
+}
+
+/* For each component, how many coordinates move what one of it moves, itself among them, on the average. */
+static double *depths_of(const struct Links *links, const struct Components *components) {
+  double *depth = allocate(links->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
+         *count = allocate(components->count, sizeof *count);
+  for (size_t i = 0; i < links->count; i++) {
+    const struct Link *link = &links->items[i];
+    depth[i] = (double)link->count + (link->parent != NO_LINK ? depth[link->parent] : 0.0);
+    if (link->count == 0) continue;
+    size_t component = components->of[link->coordinates[0]];
+    sum[component] += (double)link->count * depth[i];
+    count[component] += (double)link->count;
+  }
+  for (size_t c = 0; c < components->count; c++) sum[c] = count[c] > 0.0 ? sum[c] / count[c] : 0.0;
+  return sum;
+}
+
+/* Takes the components as trees that are so as a whole, and deep. Whether there are any. */
+static bool choose_trees(struct Builder *builder, const struct Components *components) {
+  struct Links *links = builder->links;
+  size_t n = builder->row_count;
+  const double *depth = depths_of(links, components);
+  bool *is_tree = allocate(components->count, sizeof *is_tree), any = false;
+  for (size_t c = 0; c < components->count; c++) is_tree[c] = depth[c] >= least_depth;
+  for (size_t i = 0; i < n; i++)
+    if (builder->is_elsewhere[i] || builder->link_of[i] == NO_LINK) is_tree[components->of[i]] = false;
+  for (size_t i = 0; i < n; i++) {
+    links->tree_of[i] = is_tree[components->of[i]] ? components->of[i] : NO_TREE;
+    any |= is_tree[components->of[i]];
+  }
+  for (size_t i = 0; i < links->count; i++) {
+    size_t moved = moved_link(links, i);
+    links->items[i].tree = moved != NO_LINK ? links->tree_of[links->items[moved].coordinates[0]] : NO_TREE;
+  }
+  return any;
+}
+
+/* What the articulated inertias take; before, no node was made, so that systems without trees have the nodes as before. */
+static void set_links(struct Builder *builder, const struct Border *border, Node stillness) {
+  for (size_t i = 0; i < builder->links->count; i++) set_motion(builder, &builder->links->items[i]);
+  for (size_t i = 0; i < builder->model->mechanism.body_count; i++)
+    if (builder->model->mechanism.bodies[i].is_in_frame) set_inertia_of_body(builder, i);
+  add_further_inertia(builder, stillness);
+  set_constraints(builder, border);
+}
+
+struct Links *links_without_trees(size_t row_count) {
+  struct Links *links = allocate(1, sizeof *links);
+  links->tree_of = allocate(row_count, sizeof *links->tree_of);
+  for (size_t i = 0; i < row_count; i++) links->tree_of[i] = NO_TREE;
+  return links;
+}
+
+struct Links *links_create(const struct Model *model, const struct Border *border, Node stillness) {
+  size_t rows = model->coordinates.count + border->count;
+  struct Builder builder = {.model = model,
+                            .links = links_without_trees(rows),
+                            .row_count = rows,
+                            .link_of = allocate(rows, sizeof *builder.link_of),
+                            .is_elsewhere = allocate(rows, sizeof *builder.is_elsewhere),
+                            .at_rest = own_symbols(model->graph)};
+  for (size_t i = 0; i < model->graph->symbol_count; i++)
+    if (model->graph->symbols[i].kind == DISPLACEMENT) builder.at_rest[i] = ZERO;
+  for (size_t i = 0; i < rows; i++) builder.link_of[i] = NO_LINK;
+  create_links_of_frames(&builder);
+  append_links_of_bodies(&builder);
+  add_constraints(&builder, border);
+  struct Components components = couple(&builder);
+  if (!choose_trees(&builder, &components)) return builder.links;
+  set_links(&builder, border, stillness);
+  choose_trees(&builder, &components);
+  return builder.links;
+}

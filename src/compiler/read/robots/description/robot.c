@@ -1,0 +1,1 @@
+#include "read/robots/description/robot.h"

@@ -1,0 +1,110 @@
+#include "read/robots/mjcf/mjcf_equality.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/robots/mjcf/mjcf_tree.h"
+#include "read/xml/nodes.h"
+
+static struct Joint *find_joint(const struct Robot *robot, const char *name) {
+  for (size_t i = 0; i < robot->joint_count; i++)
+    if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];
+  return NULL;
+}
+
+/* A joint whose distance from its ref is a linear function of another's mimics that. */
+static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
+  double c[5] = {0, 1};
+  char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
+  struct Joint *joints[2] = {find_joint(mjcf->file.robot, names[0]), find_joint(mjcf->file.robot, names[1])};
+  mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
+  for (int i = 0; i < 2; i++)
+    if (joints[i] == NULL && *names[i] != '\0')
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "there is no joint '%s' for an <equality>; expected one of the file", names[i]);
+  if (c[2] != 0 || c[3] != 0 || c[4] != 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
+  if (joints[0] == NULL || joints[1] == NULL) return;
+  if (joints[0]->mimicked_name != NULL)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", names[0],
+                 joints[0]->mimicked_name);
+  joints[0]->mimicked_name = names[1];
+  joints[0]->multiplier = c[1];
+  joints[0]->offset = joints[0]->start.position[0] + c[0] - c[1] * joints[1]->start.position[0];
+}
+
+/* What a loop is closed between: sites, or else bodies, of which the second is the world where it is not named. */
+struct Ends {
+  char *names[2];
+  const struct Placement *places[2]; /* in the world, while all joints are at their ref */
+};
+
+/* False after reporting an end that is not there. */
+static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
+  static const char *const of_bodies[] = {"body1", "body2"}, *const of_sites[] = {"site1", "site2"};
+  const char *const *names = has_attribute(node, "site1") ? of_sites : of_bodies;
+  for (int i = 0; i < 2; i++) {
+    bool is_world = names == of_bodies && i == 1 && !has_attribute(node, names[i]);
+    ends->names[i] = is_world ? copy_text(mjcf_world) : required_attribute(&mjcf->file, node, names[i]);
+    ends->places[i] = mjcf_place_of(mjcf, ends->names[i]);
+    if (ends->places[i] == NULL && *ends->names[i] != '\0')
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "there is no %s '%s' for a <%s>; expected one of the file", names == of_sites ? "site" : "body",
+                   ends->names[i], (const char *)node->name);
+  }
+  return ends->places[0] != NULL && ends->places[1] != NULL;
+}
+
+/* A link that is fixed to a body; returns its name. */
+static char *add_end(struct Mjcf *mjcf, xmlNodePtr node, char *body, char *name, const struct Placement *place) {
+  mjcf_add_link(mjcf, node, name);
+  mjcf_fix(mjcf, node, body, name, place);
+  return name;
+}
+
+/* The second body is fixed to the first as relpose says, or else as it is while all joints are at their ref. */
+static void weld_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
+  struct Placement place = placement_between(ends->places[0], ends->places[1]);
+  double pose[7] = {0};
+  mjcf_numbers(mjcf, node, "relpose", 7, 7, pose);
+  if (pose[3] != 0 || pose[4] != 0 || pose[5] != 0 || pose[6] != 0) {
+    place.rotation = rotation_of_quaternion(&pose[3]);
+    memcpy(place.translation, pose, sizeof place.translation);
+  }
+  ends->names[0] = add_end(mjcf, node, ends->names[0], format_text("%s_1", loop), &place);
+}
+
+/* The anchor, in the first body, is where the second one is held too. */
+static void connect_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
+  struct Placement anchor = no_displacement, between = placement_between(ends->places[1], ends->places[0]);
+  if (mjcf_numbers(mjcf, node, "anchor", 3, 3, anchor.translation) == 0)
+    required_attribute(&mjcf->file, node, "anchor");
+  struct Placement other = placement_within(&between, &anchor);
+  other.rotation = no_displacement.rotation;
+  ends->names[0] = add_end(mjcf, node, ends->names[0], format_text("%s_1", loop), &anchor);
+  ends->names[1] = add_end(mjcf, node, ends->names[1], format_text("%s_2", loop), &other);
+}
+
+static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
+  struct Robot *robot = mjcf->file.robot;
+  struct Ends ends;
+  char *name = attribute(node, "name");
+  name = name != NULL ? format_text("%s_loop", name) : format_text("loop%zu", robot->loop_count + 1);
+  if (!read_ends(mjcf, node, &ends)) return;
+  bool is_fixed = is_element(node, "weld");
+  if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
+  else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
+  robot->loops = make_room(robot->loops, robot->loop_count, sizeof *robot->loops);
+  robot->loops[robot->loop_count++] = (struct RobotLoop){
+      .name = name, .line = xmlGetLineNo(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
+}
+
+void mjcf_read_equality(struct Mjcf *mjcf, xmlNodePtr node) {
+  if (mjcf_is(mjcf, node, "active", "false")) return;
+  if (is_element(node, "joint")) read_joints(mjcf, node);
+  else if (is_element(node, "connect") || is_element(node, "weld")) read_loop(mjcf, node);
+  else mjcf_report_unknown(mjcf, node, "a <joint>, <connect> or <weld>");
+}

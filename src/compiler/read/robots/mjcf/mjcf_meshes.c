@@ -1,0 +1,157 @@
+#include "read/robots/mjcf/mjcf_meshes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/paths.h"
+#include "read/meshes/hull.h"
+#include "read/meshes/mesh_file.h"
+#include "read/meshes/package_path.h"
+#include "read/xml/nodes.h"
+
+/* A pyramid on a triangle: its corners from the apex, and its volume, which is below 0 where the apex is outside of the triangle. */
+struct Pyramid {
+  double corners[3][3], volume;
+};
+
+static struct Pyramid pyramid_on(const struct Mesh *mesh, size_t triangle, const double apex[3]) {
+  struct Pyramid pyramid;
+  double(*c)[3] = pyramid.corners;
+  for (int i = 0; i < 3; i++)
+    for (int axis = 0; axis < 3; axis++) c[i][axis] = mesh->points[mesh->triangles[triangle][i]][axis] - apex[axis];
+  pyramid.volume = 0;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    pyramid.volume += c[0][i] * (c[1][j] * c[2][k] - c[1][k] * c[2][j]) / 6;
+  }
+  return pyramid;
+}
+
+/* The middle of the surface. */
+static void find_surface_center(const struct Mesh *mesh, double center[3]) {
+  static const double origin[3];
+  double area = 0, sum[3] = {0};
+  for (size_t i = 0; i < mesh->triangle_count; i++) {
+    struct Pyramid pyramid = pyramid_on(mesh, i, origin);
+    double(*c)[3] = pyramid.corners, square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+      int j = (axis + 1) % 3, k = (axis + 2) % 3;
+      double along = (c[1][j] - c[0][j]) * (c[2][k] - c[0][k]) - (c[1][k] - c[0][k]) * (c[2][j] - c[0][j]);
+      square += along * along;
+    }
+    area += sqrt(square) / 2;
+    for (int axis = 0; axis < 3; axis++) sum[axis] += sqrt(square) / 2 * (c[0][axis] + c[1][axis] + c[2][axis]) / 3;
+  }
+  for (int axis = 0; axis < 3; axis++) center[axis] = area > 0 ? sum[axis] / area : 0;
+}
+
+/* What a pyramid has, with the density 1. */
+static double mass_of(const struct Pyramid *pyramid, bool is_exact) {
+  return is_exact ? pyramid->volume : fabs(pyramid->volume);
+}
+
+/* Moves the apex of all pyramids to the centre of mass; returns their volume before. */
+static double find_center(const struct Mesh *mesh, bool is_exact, double center[3]) {
+  double mass = 0, sum[3] = {0};
+  for (size_t i = 0; i < mesh->triangle_count; i++) {
+    struct Pyramid pyramid = pyramid_on(mesh, i, center);
+    double(*c)[3] = pyramid.corners, share = mass_of(&pyramid, is_exact);
+    mass += share;
+    for (int axis = 0; axis < 3; axis++) sum[axis] += share * (c[0][axis] + c[1][axis] + c[2][axis]) / 4;
+  }
+  for (int axis = 0; axis < 3 && mass != 0; axis++) center[axis] += sum[axis] / mass;
+  return mass;
+}
+
+/*
+ * The second moments of the mass about its centre are those of pyramids with their apex there. As MuJoCo takes them: exactly, or of pyramids that are all
+ * added, which is as much where all of the surface is seen from the centre.
+ */
+static bool weigh_mesh(const struct Mesh *mesh, bool is_exact, struct RigidBody *body) {
+  double moments[3][3] = {{0}}, mass = 0;
+  find_surface_center(mesh, body->center);
+  if (find_center(mesh, is_exact, body->center) == 0) return false;
+  for (size_t i = 0; i < mesh->triangle_count; i++) {
+    struct Pyramid pyramid = pyramid_on(mesh, i, body->center);
+    double(*c)[3] = pyramid.corners, share = mass_of(&pyramid, is_exact);
+    mass += share;
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) {
+        double product = (c[0][j] + c[1][j] + c[2][j]) * (c[0][k] + c[1][k] + c[2][k]);
+        for (int corner = 0; corner < 3; corner++) product += c[corner][j] * c[corner][k];
+        moments[j][k] += share * product / 20;
+      }
+  }
+  double sign = mass < 0 ? -1 : 1, sum = moments[0][0] + moments[1][1] + moments[2][2];
+  body->mass = sign * mass;
+  for (int j = 0; j < 3; j++)
+    for (int k = 0; k < 3; k++) body->tensor.at[j][k] = sign * ((j == k ? sum : 0) - moments[j][k]);
+  return body->mass > 0 && body_is_finite(body);
+}
+
+/* The path of the file that the asset names; NULL for none, with the problem. */
+static char *find_file(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh) {
+  const char *robot = mjcf->file.diagnostics->file, *file = mjcf_text(mjcf, asset, "file");
+  if (file == NULL) {
+    mesh->problem = copy_text("a <mesh> without a file; expected an STL or OBJ file");
+    return NULL;
+  }
+  char *named =
+      mjcf->mesh_folder != NULL && file[0] != '/' ? format_text("%s/%s", mjcf->mesh_folder, file) : copy_text(file);
+  char *path = path_in_package(robot, named);
+  if (path == NULL)
+    mesh->problem =
+        format_text("the mesh '%s' is not there; expected a path relative to this file, or to its meshdir", named);
+  return path;
+}
+
+static void read_mesh(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh) {
+  static const char *const kinds[] = {"legacy", "exact", "convex", "shell", NULL};
+  for (int i = 0; i < 3; i++) mesh->scale[i] = 1;
+  mjcf_numbers(mjcf, asset, "scale", 3, 3, mesh->scale);
+  mjcf_refuse(mjcf, asset, "refpos");
+  mjcf_refuse(mjcf, asset, "refquat");
+  size_t kind = mjcf_word(mjcf, asset, "inertia", kinds);
+  mesh->path = find_file(mjcf, asset, mesh);
+  if (mesh->path == NULL) return;
+  struct Mesh *read =
+      mesh_read(path_beside_file(mjcf->file.diagnostics->file, mesh->path), mesh->scale, &mesh->problem);
+  if (read == NULL) return;
+  mesh->is_weighed = kind <= 1 && weigh_mesh(read, kind == 1, &mesh->body);
+  mesh->is_flat = mjcf->file.options->has_ground && !mesh_find_corners(read);
+  release(read->points);
+  release(read->triangles);
+}
+
+/* Its file's name without folders and ending, unless it has one of its own. */
+static bool is_named(const struct Mjcf *mjcf, xmlNodePtr asset, const char *name) {
+  if (has_attribute(asset, "name")) return attribute_is(asset, "name", name);
+  const char *file = mjcf_text(mjcf, asset, "file"), *slash = file != NULL ? strrchr(file, '/') : NULL;
+  if (file == NULL) return false;
+  const char *begin = slash != NULL ? slash + 1 : file, *end = strrchr(begin, '.');
+  size_t length = end != NULL ? (size_t)(end - begin) : strlen(begin);
+  return strlen(name) == length && strncmp(begin, name, length) == 0;
+}
+
+static xmlNodePtr find_asset(const struct Mjcf *mjcf, const char *name) {
+  for (xmlNodePtr section = mjcf->root->children; section != NULL; section = section->next)
+    for (xmlNodePtr asset = is_element(section, "asset") ? section->children : NULL; asset != NULL; asset = asset->next)
+      if (is_element(asset, "mesh") && is_named(mjcf, asset, name)) return asset;
+  return NULL;
+}
+
+const struct MjcfMesh *mjcf_mesh(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+  struct MjcfMesh *mesh = names_find(mjcf->meshes, name);
+  if (mesh != NULL) return mesh;
+  xmlNodePtr asset = find_asset(mjcf, name);
+  if (asset == NULL) {
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "there is no <mesh> '%s' in an <asset>; expected one of the file", name);
+    return NULL;
+  }
+  mesh = allocate(1, sizeof *mesh);
+  read_mesh(mjcf, asset, mesh);
+  names_set(mjcf->meshes, name, mesh);
+  return mesh;
+}

@@ -1,0 +1,46 @@
+#include "read/robots/mjcf/mjcf_tree.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+
+const char mjcf_world[] = "world";
+
+struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
+  struct Link *link = allocate(1, sizeof *link);
+  link->name = name;
+  link->line = xmlGetLineNo(node);
+  add_link(&mjcf->file, link);
+  return link;
+}
+
+struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
+                             char *child) {
+  struct Joint *joint = allocate(1, sizeof *joint);
+  joint->name = name;
+  joint->line = xmlGetLineNo(node);
+  joint->type = type;
+  joint->parent_name = parent;
+  joint->child_name = child;
+  joint->origin = no_displacement;
+  joint->axis[2] = 1;
+  joint->lower = joint->upper = joint->effort = NAN;
+  joint->multiplier = 1;
+  add_joint(&mjcf->file, joint);
+  return joint;
+}
+
+void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place) {
+  mjcf_add_joint(mjcf, node, FIXED, format_text("%s_fixed", child), parent, child)->origin = *place;
+}
+
+void mjcf_note_place(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *place) {
+  const struct Placement *outer = parent != NULL ? mjcf_place_of(mjcf, parent) : NULL;
+  struct Placement *known = allocate(1, sizeof *known);
+  *known = placement_within(outer != NULL ? outer : &no_displacement, place);
+  names_set(mjcf->places, name, known);
+}
+
+const struct Placement *mjcf_place_of(const struct Mjcf *mjcf, const char *name) {
+  return names_find(mjcf->places, name);
+}

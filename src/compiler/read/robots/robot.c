@@ -1,1 +1,0 @@
-#include "read/robots/robot.h"

@@ -1,0 +1,107 @@
+"""Deep trees of joints, whose accelerations articulated inertias give: against energies by mpmath, a closed form, and the balance of energy."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from robots_by_energies import Robot
+
+import fmu
+from fmu import build_systems
+
+LINKS = 10  # of the pendulum
+
+
+def joint(number, parent, kind, random):
+    """A joint and the link that it carries."""
+    numbers = lambda low, high, count=3: " ".join(f"{x:.6f}" for x in random.uniform(low, high, count))
+    a, b, c = random.uniform(0.02, 0.05, 3)
+    return f"""
+      <joint name="joint{number}" type="{kind}"><parent link="link{parent}"/><child link="link{number}"/>
+        <origin xyz="{numbers(-0.3, 0.3)}" rpy="{numbers(-2, 2)}"/><axis xyz="{numbers(-1, 1)}"/></joint>
+      <link name="link{number}"><inertial><origin xyz="{numbers(-0.1, 0.1)}" rpy="{numbers(-1, 1)}"/><mass value="{random.uniform(0.5, 2):.6f}"/>
+        <inertia ixx="{b + c:.6f}" iyy="{a + c:.6f}" izz="{a + b:.6f}" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
+
+
+def robot_of_many_joints():
+    random = np.random.default_rng(5)
+    parents = [0, 1, 2, 3, 4, 5, 6, 7, 5, 9, 10]  # a chain of eight, and a branch of three
+    kinds = ["continuous", "prismatic", "continuous", "fixed", "continuous", "continuous", "continuous", "prismatic", "continuous", "continuous", "continuous"]
+    parts = [joint(i + 1, parent, kind, random) for i, (parent, kind) in enumerate(zip(parents, kinds))]
+    return f'<robot name="DeepRobot"><link name="link0"/>{"".join(parts)}</robot>', [i + 1 for i, kind in enumerate(kinds) if kind != "fixed"]
+
+
+def pendulum():
+    """Particles on a chain of frames that turn against each other."""
+    lines = ['<parameter name="l" start="0.7" unit="m"/>', '<parameter name="m" start="0.4" unit="kg" min="0"/>']
+    for i in range(1, LINKS + 1):
+        inside, shift = ("", "") if i == 1 else (f' in="rod{i - 1}"', '<translate y="-l"/>')
+        lines.append(f'<coordinate name="q{i}" velocity="w{i}" unit="rad"/>')
+        lines.append(f'<frame name="rod{i}"{inside}>{shift}<rotate axis="z" angle="q{i}"/></frame><particle name="bob{i}" in="rod{i}" y="-l" mass="m"/>')
+    return f'<system name="FoldingPendulum">{"".join(lines)}<gravity y="-9.81"/><experiment stopTime="1"/></system>'
+
+
+ROBOT, NUMBERS = robot_of_many_joints()
+# A hinge in the middle of the chain is driven.
+DRIVEN = pendulum().replace('name="q5" velocity="w5" unit="rad"', 'name="q5" velocity="w5" unit="rad" acceleration="push"')
+DRIVEN = DRIVEN.replace("FoldingPendulum", "DrivenPendulum").replace("<coordinate", '<constant name="push" value="2" unit="rad/s2"/><coordinate', 1)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def systems():
+    build_systems("trees", {"DeepRobot": ROBOT, "FoldingPendulum": pendulum(), "DrivenPendulum": DRIVEN})
+
+
+@pytest.mark.parametrize("name", ["DeepRobot", "FoldingPendulum", "DrivenPendulum"])
+def test_mass_matrix_is_not_formed(name):
+    source = (fmu.archive(name).parent.parent / "systems" / name / "system.c").read_text()
+    assert "ldlt_factor" not in source
+
+
+def test_robot(open_fmu):
+    robot, instance, random = Robot(ROBOT), open_fmu("DeepRobot"), np.random.default_rng(1)
+    names = [f"joint{i}" for i in NUMBERS]
+    position, velocity, forces = random.uniform(-2, 2, (3, len(names)))
+    inputs = fmu.names_of("DeepRobot", "input")
+    instance.initialize(dict(zip([*names, *[f"{name}_velocity" for name in names], *inputs], [*position, *velocity, *forces])))
+    with mp.workdps(45):
+        expected = robot.accelerations(position, velocity, forces)
+    np.testing.assert_allclose(instance.get(*[f"der({name}_velocity)" for name in names]), expected, rtol=1e-9)
+
+
+def absolute_accelerations(angles, rates, held=None):
+    """Of the angles from the vertical; held: the joint that is driven, and its acceleration."""
+    n = LINKS
+    share = n - np.maximum.outer(np.arange(n), np.arange(n))  # how many bobs two rods carry both
+    apart = np.subtract.outer(angles, angles)
+    mass, right = share * np.cos(apart), -(share * np.sin(apart)) @ rates**2 - 9.81 / 0.7 * np.diag(share) * np.sin(angles)
+    if held is None:
+        return np.linalg.solve(mass, right)
+    joint, acceleration = held
+    row = np.zeros(n)
+    row[joint], row[joint - 1] = 1, -1
+    bordered = np.block([[mass, row[:, None]], [row[None], np.zeros((1, 1))]])
+    return np.linalg.solve(bordered, [*right, acceleration])[:n]
+
+
+@pytest.mark.parametrize("name", ["FoldingPendulum", "DrivenPendulum"])
+def test_pendulum(name, open_fmu):
+    instance, random = open_fmu(name), np.random.default_rng(2)
+    q, w = random.uniform(-2, 2, (2, LINKS))
+    instance.initialize({f"q{i + 1}": q[i] for i in range(LINKS)} | {f"w{i + 1}": w[i] for i in range(LINKS)})
+    expected = absolute_accelerations(np.cumsum(q), np.cumsum(w), None if name == "FoldingPendulum" else (4, 2.0))
+    ours = instance.get(*[f"der(w{i + 1})" for i in range(LINKS)])
+    np.testing.assert_allclose(np.cumsum(ours), expected, rtol=1e-10, atol=1e-10)
+
+
+@pytest.mark.parametrize("solver", ["taylor", "radau"])
+def test_energy(solver, open_fmu):
+    """Of a gantry that moves along three axes at once, motors, a slider in its frame, and damping; radau has the Jacobian from directions."""
+    name = {"taylor": "BranchedArm", "radau": "BranchedArmRadau"}[solver]
+    if solver == "radau":
+        text = (fmu.ROOT / "tests" / "systems" / "BranchedArm" / "system.xml").read_text()
+        build_systems("trees-radau", {name: text.replace("BranchedArm", name).replace("<work/>", '<work/><solver method="radau"/>')})
+    instance = open_fmu(name).initialize(tolerance=1e-11)
+    start = instance.get("totalEnergy")
+    instance.step(1.5)
+    assert instance.get("nonConservativeWork") < -0.1
+    assert instance.get("totalEnergy") - instance.get("nonConservativeWork") == pytest.approx(start, abs=1e-8)
