@@ -259,7 +259,7 @@ def test_a_block_that_falls_flat():
     [
         ('<contact between="skin" and="flor" stiffness="k"/>', "there is no shape 'flor' above this <contact>; did you mean 'floor'?"),
         ('<contact name="q" between="skin"/>', "between one shape; expected and"),
-        ('<contact name="q" between="skin" and="floor" friction="mu"/>', "the friction of a <contact> between shapes without a stiffness"),
+        ('<contact name="q" between="skin" and="floor" creep="1"/>', "the creep of a <contact> between shapes without a stiffness"),
         ('<contact between="floor" and="floor2" stiffness="k"/>', "there is no <contact> between such shapes as 'floor' and 'floor2'"),
         ('<shape name="s" type="sphere"/>', "the sphere 's' has no radius"),
         ('<shape name="s" type="sphere" radius="r" sizeX="r"/>', "is a sphere, which has no sizeX"),

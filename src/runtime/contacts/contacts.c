@@ -141,17 +141,34 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
   }
 }
 
-/* Closes contacts that come to rest, all at once. */
-static bool close_contacts(struct Settlement *settlement) {
+/*
+ * Whether one that touches would stay with others that come to rest: those of a body that comes to lie flat differ by rounding, and
+ * the last of them has no acceleration of its own, but shares the load.
+ */
+static bool rests_with_others(const struct Settlement *settlement, size_t contact) {
+  size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
+  if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
+  if (settlement->value[acceleration] > settlement->noise[acceleration]) return false;
+  return bounce_is_lost(settlement, contact, 0.5 * contact_value(settlement, contact, CONTACT_RATE));
+}
+
+static bool close_those(struct Settlement *settlement, bool (*rests)(const struct Settlement *, size_t)) {
   bool closes = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    if (contact_is_closed(settlement, i) || !comes_to_rest(settlement, i)) continue;
+    if (contact_is_closed(settlement, i) || !rests(settlement, i)) continue;
     set_contact(settlement, i, true);
     let_stick(settlement, i);
     closes = true;
   }
-  if (closes) let_moving_slide(settlement);
   return closes;
+}
+
+/* Closes contacts that come to rest, all at once. */
+static bool close_contacts(struct Settlement *settlement) {
+  if (!close_those(settlement, comes_to_rest)) return false;
+  close_those(settlement, rests_with_others);
+  let_moving_slide(settlement);
+  return true;
 }
 
 /* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */

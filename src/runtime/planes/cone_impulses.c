@@ -1,42 +1,37 @@
 /*
  * The law of impacts with Coulomb's cone: of each friction in a plane the impulse has at most the size mu p, has it where it
- * slides behind the impact, opposite to its velocity there, and is what it takes to stick where it does not. One push after the
- * other takes its part at the impulses of the others, until none changes.
+ * slides behind the impact, opposite to its velocity there, and is what it takes to stick where it does not. Sweeps, in which one
+ * push after the other takes its part at the impulses of the others, come near to such impulses, and Newton's method to them.
  */
 #include "planes/cone_impulses.h"
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "contacts/planes.h"
+#include "evaluation/services.h"
+#include "planes/cone_newton.h"
 
-enum { PUSH_LIMIT = 50000 };
+enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, LAW_SWEEPS = 10 }; /* sweeps: in each trial so many more */
 
 /* What of its part each push takes: where friction presses a contact together, all of it would go to and fro without end. */
-static const double parts[] = {1.0, 0.3, 0.1, 0.03};
+static const double parts[] = {1.0, 0.3};
 
-/* In units of the largest impulse: changes that are rounding, and what is left of the law's equations where they hold. */
-static const double rounded_change = 4.0 * DBL_EPSILON, law_holds = 1e-12;
+/*
+ * In units of the largest impulse: what is left of the law's equations where they hold. Where what sticks is at its limit, or where
+ * impulses are small beside velocities, rounding leaves more.
+ */
+static const double law_holds = 1e-12, law_nearly_holds = 1e-9;
 
-struct Cones {
-  const struct Settlement *settlement;
-  const struct Pushes *pushes;
-  const double *rate;
-  double *impulse;
-  double part;            /* that each push takes */
-  double largest, change; /* of the impulses in a sweep, as changes of rates */
-};
-
-/* The rate of a push behind the impact. */
-static double rate_behind(const struct Cones *cones, size_t row) {
+double cones_rate_behind(const struct Cones *cones, size_t row) {
   const double *mobility = &cones->pushes->mobility[row * cones->pushes->count];
   double rate = cones->rate[row];
   for (size_t j = 0; j < cones->pushes->count; j++) rate += mobility[j] * cones->impulse[j];
   return rate;
 }
 
-/* What the contacts let a friction push. */
-static double limit_of(const struct Cones *cones, size_t row) {
+double cones_limit(const struct Cones *cones, size_t row) {
   size_t contacts = cones->pushes->contact_count;
   double limit = 0.0;
   for (size_t i = 0; i < contacts; i++)
@@ -44,74 +39,97 @@ static double limit_of(const struct Cones *cones, size_t row) {
   return limit;
 }
 
-/* Takes over an impulse, of which 1 changes its rate by so much. */
-static void take(struct Cones *cones, size_t row, double mobility, double whole) {
-  double next = cones->impulse[row] + cones->part * (whole - cones->impulse[row]);
-  cones->change = fmax(cones->change, mobility * fabs(whole - cones->impulse[row]));
-  cones->largest = fmax(cones->largest, mobility * fabs(next));
-  cones->impulse[row] = next;
-}
-
-static void push_contact(struct Cones *cones, size_t row) {
-  double mobility = cones->pushes->mobility[row * cones->pushes->count + row];
-  take(cones, row, mobility, fmax(cones->impulse[row] - rate_behind(cones, row) / mobility, 0.0));
-}
-
-static void push_along_line(struct Cones *cones, size_t row) {
-  double mobility = cones->pushes->mobility[row * cones->pushes->count + row], limit = limit_of(cones, row);
-  if (!(mobility > DBL_MIN)) return;
-  double next = cones->impulse[row] - rate_behind(cones, row) / mobility;
-  take(cones, row, mobility, fmax(-limit, fmin(next, limit)));
-}
-
-/* The larger eigenvalue of the mobility along and across. */
-static double mobility_in_plane(const struct Pushes *pushes, size_t row) {
-  const double *m = &pushes->mobility[row * pushes->count + row];
-  double along = m[0], across = m[pushes->count + 1], both = 0.5 * (m[1] + m[pushes->count]);
-  return 0.5 * (along + across) + hypot(0.5 * (along - across), both);
-}
-
-static void push_in_plane(struct Cones *cones, size_t row) {
-  double mobility = mobility_in_plane(cones->pushes, row), limit = limit_of(cones, row);
-  if (!(mobility > DBL_MIN)) return;
-  double along = cones->impulse[row] - rate_behind(cones, row) / mobility;
-  double across = cones->impulse[row + 1] - rate_behind(cones, row + 1) / mobility;
-  double size = hypot(along, across), share = size > limit ? limit / size : 1.0;
-  take(cones, row, mobility, share * along);
-  take(cones, row + 1, mobility, share * across);
-}
-
-static void push_all(struct Cones *cones) {
+size_t cones_row_count(const struct Cones *cones, size_t row) {
   const struct Pushes *pushes = cones->pushes;
-  const struct SwitchTable *switches = cones->settlement->switches;
-  cones->change = cones->largest = 0.0;
-  for (size_t row = 0; row < pushes->count; row++) {
-    if (row < pushes->contact_count) push_contact(cones, row);
-    else if (!is_in_plane(switches, pushes->member[row])) push_along_line(cones, row);
-    else push_in_plane(cones, row++);
+  return row >= pushes->contact_count && is_in_plane(cones->settlement->switches, pushes->member[row]) ? 2 : 1;
+}
+
+double cones_largest(const struct Cones *cones) {
+  double largest = 0.0;
+  for (size_t i = 0; i < cones->pushes->count; i++) largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
+  return largest;
+}
+
+/* What is left of the law's equations, as a share of the largest impulse, without what rounding makes of the rates. */
+static double share_of_miss(const struct Cones *cones, double miss) {
+  double fastest = 0.0;
+  for (size_t i = 0; i < cones->pushes->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
+  return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
+}
+
+static void push_contact(struct Cones *cones, size_t row, double part) {
+  double whole = fmax(cones->impulse[row] - cones_rate_behind(cones, row) / cones->scale[row], 0.0);
+  cones->impulse[row] += part * (whole - cones->impulse[row]);
+}
+
+static void push_friction(struct Cones *cones, size_t row, size_t rows, double part) {
+  double whole[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
+  if (!(cones->scale[row] > 0.0)) return;
+  for (size_t i = 0; i < rows; i++)
+    whole[i] = cones->impulse[row + i] - cones_rate_behind(cones, row + i) / cones->scale[row];
+  double size = hypot(whole[0], whole[1]), share = size > limit ? limit / size : 1.0;
+  for (size_t i = 0; i < rows; i++) cones->impulse[row + i] += part * (share * whole[i] - cones->impulse[row + i]);
+}
+
+static void sweep(struct Cones *cones, double part) {
+  for (size_t row = 0; row < cones->pushes->count;) {
+    size_t rows = cones_row_count(cones, row);
+    if (row < cones->pushes->contact_count) push_contact(cones, row, part);
+    else push_friction(cones, row, rows, part);
+    row += rows;
   }
 }
 
-/* False where the sweeps come to no end. */
-static bool sweep_until_none_changes(struct Cones *cones) {
-  for (size_t i = 0; i < cones->pushes->count; i++) cones->impulse[i] = 0.0;
-  for (int count = 0; count < PUSH_LIMIT; count++) {
-    push_all(cones);
-    if (cones->change <= rounded_change * cones->largest) return true;
-    if (!isfinite(cones->change)) return false;
+/* Of a push by itself; in a plane the larger eigenvalue of the mobility along and across. */
+static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) {
+  size_t n = cones->pushes->count;
+  const double *m = &cones->pushes->mobility[row * n + row];
+  double scale = m[0];
+  if (rows == 2) scale = 0.5 * (m[0] + m[n + 1]) + hypot(0.5 * (m[0] - m[n + 1]), 0.5 * (m[1] + m[n]));
+  return scale > DBL_MIN ? scale : 0.0;
+}
+
+/* False where a contact cannot be moved. */
+static bool fill_scales(struct Cones *cones) {
+  bool moves = true;
+  for (size_t row = 0; row < cones->pushes->count;) {
+    size_t rows = cones_row_count(cones, row);
+    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of_push(cones, row, rows);
+    moves &= row >= cones->pushes->contact_count || cones->scale[row] > 0.0;
+    row += rows;
   }
-  return cones->change <= law_holds * cones->largest;
+  return moves;
+}
+
+/* Sweeps on from where the ones before came to; what Newton's method makes of that is tried. */
+static bool come_to_law(struct Cones *cones, double *best, double *swept, double *work) {
+  size_t bytes = cones->pushes->count * sizeof(double);
+  double least = INFINITY, enough = law_holds;
+  memset(swept, 0, bytes);
+  for (int trial = 0; trial < LAW_TRIALS && !(least <= enough); trial++) {
+    memcpy(cones->impulse, swept, bytes);
+    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep(cones, parts[2 * trial / LAW_TRIALS]);
+    memcpy(swept, cones->impulse, bytes);
+    double miss = share_of_miss(cones, cone_newton(cones, work));
+    if (miss < least) memcpy(best, cones->impulse, bytes);
+    least = fmin(least, miss);
+    if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
+  }
+  memcpy(cones->impulse, best, bytes);
+  return least <= enough;
 }
 
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                         double *impulse) {
-  struct Cones cones = {.settlement = settlement, .pushes = pushes, .rate = rate, .impulse = impulse};
-  bool is_done = false;
-  for (size_t i = 0; i < pushes->contact_count; i++)
-    if (!(pushes->mobility[i * pushes->count + i] > DBL_MIN)) return false;
-  for (size_t i = 0; i < sizeof parts / sizeof *parts && !is_done; i++) {
-    cones.part = parts[i];
-    is_done = sweep_until_none_changes(&cones);
+  struct Instance *instance = settlement->instance;
+  size_t n = pushes->count;
+  double *block = instance->memory.allocate(3 * n + cone_newton_work_count(n), sizeof *block);
+  struct Cones cones = {.settlement = settlement, .pushes = pushes, .rate = rate, .impulse = impulse, .scale = block};
+  if (block == NULL) {
+    solver_lacks_memory(instance);
+    return false;
   }
+  bool is_done = fill_scales(&cones) && come_to_law(&cones, block + n, block + 2 * n, block + 3 * n);
+  instance->memory.free(block);
   return is_done;
 }

@@ -65,6 +65,20 @@ static void solve_small(size_t r, const double *a, const double *pivot, double *
   }
 }
 
+/* With the forces of least norm, of which the others are to follow: of all they are those of contacts that are equally stiff. */
+static void solve_symmetric(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                            double *x) {
+  saddle_solve(n, start, column, m, x);
+  saddle_least_forces(n, start, column, coordinate, m, x);
+}
+
+/* Forces that nothing follows from at present have no part. */
+static bool has_part(size_t n, const double *column_of_c) {
+  bool has = false;
+  for (size_t i = 0; i < n; i++) has |= column_of_c[i] != 0.0;
+  return has;
+}
+
 size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
   size_t singular = saddle_factor(n, start, column, coordinate, m);
   if (singular != 0) return singular;
@@ -72,7 +86,7 @@ size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const
   double *side = m + oblique.side, *factor = m + oblique.factor;
   for (size_t k = 0; k < oblique.count; k++) {
     memcpy(side, m + oblique.c + k * n, n * sizeof *side);
-    saddle_solve(n, start, column, m, side);
+    if (has_part(n, side)) solve_symmetric(n, start, column, coordinate, m, side);
     memcpy(m + oblique.response + k * n, side, n * sizeof *side);
     for (size_t i = 0; i < oblique.count; i++)
       factor[i * oblique.count + k] = (i == k ? 1.0 : 0.0) + side[oblique.force[i]];
@@ -85,7 +99,7 @@ void oblique_solve(size_t n, const size_t *start, const size_t *column, const in
                    double *x) {
   struct Oblique oblique = oblique_of(n, start, coordinate);
   double *push = x + n; /* is free, as r < n */
-  saddle_solve(n, start, column, m, x);
+  solve_symmetric(n, start, column, coordinate, m, x);
   for (size_t i = 0; i < oblique.count; i++) push[i] = x[oblique.force[i]];
   solve_small(oblique.count, m + oblique.factor, m + oblique.pivot, push);
   for (size_t k = 0; k < oblique.count; k++)

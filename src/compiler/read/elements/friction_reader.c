@@ -89,7 +89,7 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
   constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
   Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
   constraint->node = function(graph, GATE, sticks, friction->velocity);
-  check_constraint(reader, constraint);
+  if (friction->velocity != ZERO) check_constraint(reader, constraint);
 }
 
 /* Sliding, it pushes against the velocity. */
@@ -98,6 +98,16 @@ static void add_push(struct Reader *reader, const struct Friction *friction) {
   Node push = negate(graph, sliding_push(graph, friction));
   const struct Gradient levers = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
   add_virtual_work(reader->model, push, &levers);
+}
+
+void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit) {
+  size_t parts = friction->plane.axis == NO_PLANE ? 1 : 2;
+  for (size_t i = 0; i < parts; i++) {
+    friction[i].sliding = friction->sliding;
+    friction[i].stiction = friction->stiction;
+    hold_velocity(reader, &friction[i], unit);
+  }
+  for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);
 }
 
 void read_friction(struct Reader *reader, xmlNodePtr node) {
@@ -109,13 +119,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
   if (parts > 1 && !read_across(reader, node, velocity.dimension, &across)) return;
   if (parts > 1) set_velocity(reader, node, friction + 1, across.node);
   struct Dimension unit = dimension_multiply(unit_of("W"), velocity.dimension, -1.0);
-  if (!read_friction_forces(reader, node, unit, friction)) return;
-  for (size_t i = 0; i < parts; i++) {
-    friction[i].sliding = friction->sliding;
-    friction[i].stiction = friction->stiction;
-    hold_velocity(reader, &friction[i], unit);
-  }
-  for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);
+  if (read_friction_forces(reader, node, unit, friction)) complete_friction(reader, friction, unit);
 }
 
 void complete_friction_forces(struct Reader *reader) {

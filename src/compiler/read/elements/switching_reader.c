@@ -57,35 +57,6 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
-/* As many contacts as there are places where the shapes may touch: NAME, or NAME[1], NAME[2], ... */
-static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
-  size_t count = count_shape_contacts(reader, node);
-  if (is_compliant(node)) return;
-  if (!has_attribute(node, "name")) {
-    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\", by which its force is known");
-    return;
-  }
-  struct Variable contact = common_attributes(reader, node);
-  for (size_t i = 1; i <= count; i++) {
-    struct Variable one = contact;
-    if (count > 1) one.name = format_text("%s[%zu]", contact.name, i);
-    one.unit = copy_text("m");
-    one.dimension = unit_of("m");
-    append_contact(reader, one);
-  }
-}
-
-static bool is_of_gap(xmlNodePtr node) {
-  return !is_of_shapes(node) && has_attribute(node, "gap") && has_attribute(node, "name");
-}
-
-void declare_contact(struct Reader *reader, xmlNodePtr node) {
-  reader->present->number = reader->model->switches.contact_count;
-  if (is_of_shapes(node)) declare_shape_contact(reader, node);
-  else if (is_of_gap(node)) append_contact(reader, common_attributes(reader, node));
-  else report_at(reader, node, "a <contact> needs a name and a gap, or shapes: between=\"...\" and=\"...\"");
-}
-
 /* The constraint of one end of a stop: x.min or x.max. */
 static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, const char *end) {
   return variable_create(format_text("%s.%s", coordinate, end),
@@ -125,14 +96,54 @@ static void declare_plane(struct Reader *reader, struct Friction *along, struct 
   append_friction(reader, across);
 }
 
-void declare_friction(struct Reader *reader, xmlNodePtr node) {
-  struct Variable constraint = common_attributes(reader, node);
-  reader->present->number = reader->model->switches.friction_count;
+static void declare_friction_of(struct Reader *reader, struct Variable constraint, bool is_in_plane) {
   Node mode = new_mode(reader, constraint.name, "sliding"), told = new_told_mode(reader, &constraint, "sliding");
   struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .told = told});
   friction->constraint = declare_held(reader, constraint);
-  if (has_attribute(node, "across")) declare_plane(reader, friction, constraint);
+  if (is_in_plane) declare_plane(reader, friction, constraint);
   reader->model->forces.any = true;
+}
+
+void declare_friction(struct Reader *reader, xmlNodePtr node) {
+  reader->present->number = reader->model->switches.friction_count;
+  declare_friction_of(reader, common_attributes(reader, node), has_attribute(node, "across"));
+}
+
+/* Its constraints follow that of the contact. */
+static void declare_friction_of_contact(struct Reader *reader, const struct Variable *contact) {
+  struct Variable constraint = variable_create(format_text("%s.friction", contact->name),
+                                               format_text("friction of %s", contact->name), contact->line);
+  declare_friction_of(reader, constraint, true);
+}
+
+/* As many contacts as there are places where the shapes may touch: NAME, or NAME[1], NAME[2], ... */
+static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
+  size_t count = count_shape_contacts(reader, node);
+  if (is_compliant(node)) return;
+  if (!has_attribute(node, "name")) {
+    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\", by which its force is known");
+    return;
+  }
+  struct Variable contact = common_attributes(reader, node);
+  for (size_t i = 1; i <= count; i++) {
+    struct Variable one = contact;
+    if (count > 1) one.name = format_text("%s[%zu]", contact.name, i);
+    one.unit = copy_text("m");
+    one.dimension = unit_of("m");
+    append_contact(reader, one);
+    if (has_shape_friction(node)) declare_friction_of_contact(reader, &one);
+  }
+}
+
+static bool is_of_gap(xmlNodePtr node) {
+  return !is_of_shapes(node) && has_attribute(node, "gap") && has_attribute(node, "name");
+}
+
+void declare_contact(struct Reader *reader, xmlNodePtr node) {
+  reader->present->number = reader->model->switches.contact_count;
+  if (is_of_shapes(node)) declare_shape_contact(reader, node);
+  else if (is_of_gap(node)) append_contact(reader, common_attributes(reader, node));
+  else report_at(reader, node, "a <contact> needs a name and a gap, or shapes: between=\"...\" and=\"...\"");
 }
 
 void number_modes(struct Reader *reader) {
@@ -168,10 +179,37 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }
 
+static struct Friction *friction_of_contact(struct Reader *reader, const struct Contact *contact) {
+  struct Friction *friction = reader->model->switches.frictions;
+  while (friction->constraint != contact->constraint + 1) friction++;
+  return friction;
+}
+
+/* Coulomb's friction in the plane at right angles to the normal; in a mechanism that is in a plane itself, one velocity is 0. */
+static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, const struct Contact *contact,
+                                    const struct Grip *grip, const struct Slip *slip) {
+  struct Friction *friction = friction_of_contact(reader, contact);
+  Node pressing = reader->model->unknowns.forces[contact->constraint];
+  if (slip->along == ZERO && slip->across == ZERO)
+    report_at(reader, node, "the shapes '%s' and '%s' cannot slide on each other; expected no friction",
+              attribute(node, "between"), attribute(node, "and"));
+  friction[0].velocity = slip->along;
+  friction[1].velocity = slip->across;
+  friction->sliding = multiply(reader->model->graph, grip->friction, pressing);
+  friction->stiction = multiply(reader->model->graph, grip->stiction, pressing);
+  complete_friction(reader, friction, unit_of("N"));
+}
+
 static void read_rigid_contact(struct Reader *reader, xmlNodePtr node) {
-  const Node *gaps = shape_gaps(reader, node);
-  size_t count = gaps != NULL ? count_shape_contacts(reader, node) : 0;
-  for (size_t i = 0; i < count; i++) set_contact(reader, node, reader->present->number + i, gaps[i]);
+  const struct RigidTouch *touches = rigid_touches(reader, node);
+  size_t count = touches != NULL ? count_shape_contacts(reader, node) : 0;
+  struct Grip grip = read_grip(reader, node);
+  for (size_t i = 0; i < count; i++) {
+    size_t number = reader->present->number + i;
+    set_contact(reader, node, number, touches[i].gap);
+    if (!has_shape_friction(node)) continue;
+    set_friction_of_contact(reader, node, &reader->model->switches.contacts[number], &grip, &touches[i].slip);
+  }
 }
 
 static void read_contact_of_gap(struct Reader *reader, xmlNodePtr node) {

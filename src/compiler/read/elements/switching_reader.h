@@ -22,6 +22,10 @@ void number_modes(struct Reader *reader);
 void read_contact(struct Reader *reader, xmlNodePtr node);
 void read_stop(struct Reader *reader, xmlNodePtr node);
 void read_friction(struct Reader *reader, xmlNodePtr node);
+
+/* Lets a friction act whose velocities are set, and its force and stiction; unit: of these. */
+void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit);
+
 void read_event(struct Reader *reader, xmlNodePtr node);
 
 /* After all expressions: what decides on branches has the displacements at 0; reports what turns just there. */

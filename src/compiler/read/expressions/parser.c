@@ -396,6 +396,7 @@ struct Quantity parse_sum(struct Parser *parser) {
 }
 
 static struct Parser parser_of(struct Scope *scope, const char *text, struct Place place) {
+  scope->graph->not_finite = false;
   return (struct Parser){
       .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
 }
@@ -405,7 +406,6 @@ static bool read_text(struct Scope *scope, const char *text, struct Place place,
                       struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
   struct Parser parser = parser_of(scope, text, place);
   char buffer[32];
-  scope->graph->not_finite = false;
   *value = read(&parser);
   skip_space(&parser);
   if (!parser.failed && *parser.next == ')')

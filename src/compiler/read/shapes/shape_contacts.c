@@ -6,7 +6,7 @@
 #include "read/names/pieces_of_functions.h"
 #include "read/shapes/shape_meshes.h"
 #include "read/shapes/shapes.h"
-#include "read/shapes/touches.h"
+#include "read/shapes/tangents.h"
 #include "read/space/forces.h"
 
 /* m/s: below, friction is a damper. */
@@ -29,8 +29,12 @@ bool is_compliant(xmlNodePtr node) {
   return has_attribute(node, "stiffness");
 }
 
+bool has_shape_friction(xmlNodePtr node) {
+  return has_attribute(node, "friction");
+}
+
 static void check_attributes(struct Reader *reader, xmlNodePtr node) {
-  static const char *const of_compliance[] = {"damping", "friction", "creep"};
+  static const char *const of_compliance[] = {"damping", "creep"}, *const of_rigidity[] = {"restitution", "stiction"};
   if (has_attribute(node, "gap"))
     report_at(reader, node, "a <contact> with a gap and between=\"...\"; expected one of them");
   if (!has_attribute(node, "and")) report_at(reader, node, "a <contact> between one shape; expected and=\"...\" too");
@@ -39,9 +43,12 @@ static void check_attributes(struct Reader *reader, xmlNodePtr node) {
       report_at(reader, node,
                 "the %s of a <contact> between shapes without a stiffness; expected stiffness=\"...\" in N/m beside it",
                 of_compliance[i]);
-  if (is_compliant(node) && has_attribute(node, "restitution"))
-    report_at(reader, node,
-              "a <contact> with a stiffness and a restitution; expected damping=\"...\" in s/m in place of the latter");
+  for (size_t i = 0; i < sizeof of_rigidity / sizeof *of_rigidity; i++)
+    if (is_compliant(node) && has_attribute(node, of_rigidity[i]))
+      report_at(reader, node, "a <contact> with a stiffness and a %s; expected %s=\"...\" in place of the latter",
+                of_rigidity[i], i == 0 ? "damping" : "creep");
+  if (has_attribute(node, "stiction") && !has_shape_friction(node))
+    report_at(reader, node, "a <contact> with stiction and without friction; expected friction=\"...\" beside it");
 }
 
 /* Whether both shapes are there, and have touches. */
@@ -91,12 +98,16 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   return true;
 }
 
-const Node *shape_gaps(struct Reader *reader, xmlNodePtr node) {
+const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node) {
   struct ShapeContact contact;
   if (!read_contact_of_shapes(reader, node, &contact)) return NULL;
-  Node *gaps = allocate(contact.touches.count, sizeof *gaps);
-  for (size_t i = 0; i < contact.touches.count; i++) gaps[i] = contact.touches.items[i].gap;
-  return gaps;
+  struct RigidTouch *touches = allocate(contact.touches.count, sizeof *touches);
+  for (size_t i = 0; i < contact.touches.count; i++) {
+    const struct Touch *touch = &contact.touches.items[i];
+    touches[i].gap = touch->gap;
+    if (has_shape_friction(node)) touches[i].slip = slip_of_touch(reader, &contact.first, &contact.second, touch);
+  }
+  return touches;
 }
 
 static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit, Node usual) {
@@ -105,6 +116,12 @@ static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const cha
   require_unit(reader, xmlGetLineNo(node), name, value, unit_of(unit));
   expect_not_negative(reader, node, format_text("the %s of <contact>", name), value.node, false);
   return value.node;
+}
+
+struct Grip read_grip(struct Reader *reader, xmlNodePtr node) {
+  struct Grip grip = {.friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
+  grip.stiction = read_law_attribute(reader, node, "stiction", "1", grip.friction);
+  return grip;
 }
 
 /* stiffness depth (1 + damping d depth/dt) while they overlap, and 0 where that would pull. */

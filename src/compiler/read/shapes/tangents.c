@@ -1,0 +1,66 @@
+#include "read/shapes/tangents.h"
+
+#include "algebra/simplify.h"
+
+/* At right angles; no shape that is placed along the axes of the base touches another opposite to the third. */
+static const double oblique[3][3] = {
+    {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
+
+/* Of the material of a side at a point, along the base's axes. */
+static struct Vector velocity_of_material(struct Reader *reader, const struct Side *side, struct Vector point) {
+  struct Graph *graph = reader->model->graph;
+  struct Vector spin = matrix_apply(graph, &side->pose.rotation, side->pose.angular_velocity), velocity;
+  for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->pose.origin.along[i]);
+  struct Vector lever = vector_subtract(graph, point, side->pose.origin);
+  return vector_add(graph, velocity, vector_cross(graph, spin, lever));
+}
+
+static struct Vector oblique_axis(struct Graph *graph, int which) {
+  struct Vector axis;
+  for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, oblique[which][i]);
+  return axis;
+}
+
+/* Two axes of a plane's own. */
+static void tangents_of_plane(struct Graph *graph, const struct Side *plane, struct Vector tangents[2]) {
+  for (int i = 0; i < 2; i++) {
+    struct Vector axis = {{ZERO, ZERO, ZERO}};
+    axis.along[(plane->shape->axis + 1 + i) % 3] = ONE;
+    axis = matrix_apply(graph, &plane->shape->turn, axis);
+    tangents[i] = matrix_apply(graph, &plane->pose.rotation, axis);
+  }
+}
+
+/* Of a normal that stays at right angles to an axis of the base: this axis, and what is at right angles to both. */
+static bool tangents_in_plane(struct Graph *graph, struct Vector normal, struct Vector tangents[2]) {
+  for (int i = 0; i < 3; i++) {
+    if (normal.along[i] != ZERO) continue;
+    tangents[1] = (struct Vector){{ZERO, ZERO, ZERO}};
+    tangents[1].along[i] = ONE;
+    tangents[0] = vector_cross(graph, tangents[1], normal);
+    return true;
+  }
+  return false;
+}
+
+static void tangents_of_normal(struct Graph *graph, struct Vector normal, struct Vector tangents[2]) {
+  struct Vector third = oblique_axis(graph, 2), both = vector_add(graph, normal, third);
+  Node whole = add(graph, ONE, vector_dot(graph, normal, third));
+  for (int i = 0; i < 2; i++) {
+    struct Vector axis = oblique_axis(graph, i);
+    Node share = divide(graph, vector_dot(graph, normal, axis), whole);
+    tangents[i] = vector_subtract(graph, axis, vector_scale(graph, share, both));
+  }
+}
+
+struct Slip slip_of_touch(struct Reader *reader, const struct Side *first, const struct Side *second,
+                          const struct Touch *touch) {
+  struct Graph *graph = reader->model->graph;
+  struct Vector tangents[2];
+  struct Vector velocity = vector_subtract(graph, velocity_of_material(reader, first, touch->point),
+                                           velocity_of_material(reader, second, touch->point));
+  if (second->shape->type == SHAPE_PLANE) tangents_of_plane(graph, second, tangents);
+  else if (first->shape->type == SHAPE_PLANE) tangents_of_plane(graph, first, tangents);
+  else if (!tangents_in_plane(graph, touch->normal, tangents)) tangents_of_normal(graph, touch->normal, tangents);
+  return (struct Slip){vector_dot(graph, velocity, tangents[0]), vector_dot(graph, velocity, tangents[1])};
+}

@@ -1,0 +1,173 @@
+/*
+ * The law as equations (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991): each push is what its own part of a sweep
+ * would make of it, at impulses that stay. Their pieces are linear but for the directions of what slides. Where impulses are not
+ * determined, some of them stay as they are.
+ */
+#include "planes/cone_newton.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { NEWTON_LIMIT = 60 };
+
+/* A step that leaves more of what is missing is none; less of a pivot is rounding; so is what is missing, of the largest impulse. */
+static const double least_gain_of_step = 0.9, least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
+
+struct ConeNewton {
+  struct Cones *cones;
+  size_t n;
+  double *miss,
+      *slope; /* what is missing at the impulses, in units of rates, and its derivatives by scaled impulses, by rows */
+  double *step, *before, *column;
+};
+
+size_t cone_newton_work_count(size_t n) {
+  return n * n + 4 * n;
+}
+
+static double *slope_row(const struct ConeNewton *newton, size_t row) {
+  return newton->slope + row * newton->n;
+}
+
+/* The derivatives of the rate of a push. */
+static void fill_rate(const struct ConeNewton *newton, size_t row) {
+  const struct Cones *cones = newton->cones;
+  double *slope = slope_row(newton, row);
+  newton->miss[row] = cones_rate_behind(cones, row);
+  for (size_t j = 0; j < newton->n; j++)
+    slope[j] = cones->scale[j] > 0.0 ? cones->pushes->mobility[row * newton->n + j] / cones->scale[j] : 0.0;
+}
+
+/* An impulse that is to be 0, or cannot be told. */
+static void fill_nothing(const struct ConeNewton *newton, size_t row) {
+  memset(slope_row(newton, row), 0, newton->n * sizeof(double));
+  slope_row(newton, row)[row] = 1.0;
+  newton->miss[row] = newton->cones->scale[row] * newton->cones->impulse[row];
+}
+
+static void fill_law_of_contact(const struct ConeNewton *newton, size_t row) {
+  const struct Cones *cones = newton->cones;
+  fill_rate(newton, row);
+  if (!(cones->scale[row] * cones->impulse[row] - newton->miss[row] > 0.0)) fill_nothing(newton, row);
+}
+
+/*
+ * A friction that slides with the wish w, of which it gets as much as the limit: its rows, which hold the rates, become those of
+ * impulse - limit w/|w|.
+ */
+static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t rows, const double *wish, double size,
+                         double limit) {
+  const struct Cones *cones = newton->cones;
+  size_t contacts = cones->pushes->contact_count;
+  const double *coefficient = &cones->pushes->coefficient[(row - contacts) * contacts];
+  double scale = cones->scale[row], share = limit * scale / size;
+  for (size_t j = 0; j < newton->n; j++) {
+    double turn[2], along = 0.0;
+    for (size_t i = 0; i < rows; i++) {
+      turn[i] = (j == row + i ? 1.0 : 0.0) - slope_row(newton, row + i)[j];
+      along += turn[i] * wish[i] / size;
+    }
+    double grows = j < contacts && limit > 0.0 ? coefficient[j] * scale / cones->scale[j] : 0.0;
+    for (size_t i = 0; i < rows; i++) {
+      double across = turn[i] - along * wish[i] / size;
+      slope_row(newton, row + i)[j] = (j == row + i ? 1.0 : 0.0) - grows * wish[i] / size - share * across;
+    }
+  }
+  for (size_t i = 0; i < rows; i++) newton->miss[row + i] = scale * cones->impulse[row + i] - share * wish[i];
+}
+
+static void fill_law_of_friction(const struct ConeNewton *newton, size_t row, size_t rows) {
+  const struct Cones *cones = newton->cones;
+  double wish[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
+  for (size_t i = 0; i < rows; i++) {
+    if (cones->scale[row] > 0.0) fill_rate(newton, row + i);
+    else fill_nothing(newton, row + i);
+    wish[i] = cones->scale[row] * cones->impulse[row + i] - newton->miss[row + i];
+  }
+  double size = hypot(wish[0], wish[1]);
+  if (size > cones->scale[row] * limit) fill_sliding(newton, row, rows, wish, size, limit);
+}
+
+/* Returns the largest of what is missing, INFINITY where any is no number. */
+static double fill_equations(const struct ConeNewton *newton) {
+  double most = 0.0;
+  for (size_t row = 0; row < newton->n;) {
+    size_t rows = cones_row_count(newton->cones, row);
+    if (row < newton->cones->pushes->contact_count) fill_law_of_contact(newton, row);
+    else fill_law_of_friction(newton, row, rows);
+    row += rows;
+  }
+  for (size_t row = 0; row < newton->n; row++) most = fmax(most, fabs(newton->miss[row]));
+  for (size_t row = 0; row < newton->n; row++) most = isfinite(newton->miss[row]) ? most : INFINITY;
+  return most;
+}
+
+static void swap_numbers(double *a, double *b) {
+  double other = *a;
+  *a = *b;
+  *b = other;
+}
+
+/* The largest element from row and column k on comes to their crossing; returns its size. */
+static double take_pivot(const struct ConeNewton *newton, size_t k) {
+  size_t n = newton->n, row = k, column = k;
+  for (size_t i = k; i < n; i++)
+    for (size_t j = k; j < n; j++)
+      if (fabs(slope_row(newton, i)[j]) > fabs(slope_row(newton, row)[column])) {
+        row = i;
+        column = j;
+      }
+  for (size_t j = 0; j < n && row != k; j++) swap_numbers(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
+  for (size_t i = 0; i < n && column != k; i++) swap_numbers(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
+  swap_numbers(&newton->miss[row], &newton->miss[k]);
+  swap_numbers(&newton->column[column], &newton->column[k]);
+  return fabs(slope_row(newton, k)[k]);
+}
+
+/* The step that leaves nothing missing, by Gauss elimination with full pivoting; 0 where it is not determined. */
+static void find_step(const struct ConeNewton *newton) {
+  size_t n = newton->n, rank = 0;
+  double largest = 0.0;
+  for (size_t j = 0; j < n; j++) newton->column[j] = (double)j;
+  for (; rank < n; rank++) {
+    double pivot = take_pivot(newton, rank);
+    largest = fmax(largest, pivot);
+    if (!(pivot > least_law_pivot * largest)) break;
+    const double *first = slope_row(newton, rank);
+    for (size_t i = rank + 1; i < n; i++) {
+      double *row = slope_row(newton, i), share = row[rank] / first[rank];
+      for (size_t j = rank + 1; j < n && share != 0.0; j++) row[j] -= share * first[j];
+      newton->miss[i] -= share * newton->miss[rank];
+    }
+  }
+  memset(newton->step, 0, n * sizeof *newton->step);
+  for (size_t k = rank; k-- > 0;) {
+    double sum = newton->miss[k];
+    for (size_t j = k + 1; j < rank; j++) sum -= slope_row(newton, k)[j] * newton->step[(size_t)newton->column[j]];
+    newton->step[(size_t)newton->column[k]] = sum / slope_row(newton, k)[k];
+  }
+}
+
+double cone_newton(struct Cones *cones, double *work) {
+  size_t n = cones->pushes->count, bytes = n * sizeof(double);
+  struct ConeNewton newton = {.cones = cones, .n = n, .slope = work};
+  newton.miss = work + n * n;
+  newton.step = newton.miss + n;
+  newton.before = newton.step + n;
+  newton.column = newton.before + n;
+  double miss = fill_equations(&newton);
+  for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * cones_largest(cones); count++) {
+    memcpy(newton.before, cones->impulse, bytes);
+    find_step(&newton);
+    for (size_t i = 0; i < n; i++)
+      if (cones->scale[i] > 0.0) cones->impulse[i] -= newton.step[i] / cones->scale[i];
+    double next = fill_equations(&newton);
+    if (!(next < least_gain_of_step * miss)) {
+      memcpy(cones->impulse, newton.before, bytes);
+      break;
+    }
+    miss = next;
+  }
+  return miss;
+}

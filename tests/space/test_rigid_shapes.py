@@ -1,0 +1,377 @@
+"""Rigid contacts of shapes with friction: closed forms of what rolls, slides, stops, sticks and tips over, and conserved quantities."""
+
+import math
+import subprocess
+
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from scipy.spatial.transform import Rotation
+
+import fmu
+from building import LAGC, build_systems
+
+G = 9.81
+HEAD = """<parameter name="m" start="2" unit="kg"/><parameter name="r" start="0.1" unit="m"/><parameter name="mu" start="0.3" unit="1"/>
+  <parameter name="stick" start="1" unit="1"/><parameter name="e" start="0" unit="1"/><parameter name="slope" start="0" unit="rad"/>"""
+BALL = 'Ixx="0.4*m*r^2" Iyy="0.4*m*r^2" Izz="0.4*m*r^2"'
+BOX = 'Ixx="m*(B^2+C^2)/12" Iyy="m*(A^2+C^2)/12" Izz="m*(A^2+B^2)/12"'
+CONTACT = '<contact name="touch" between="{}" and="{}" restitution="e" friction="mu" stiction="stick*mu"/>'
+
+
+def free(name, inertia, height):
+    """A frame that moves and turns freely, with a body."""
+    quaternion = " ".join(f'<coordinate name="{name}q{i}" velocity="{name}r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4))
+    places = " ".join(f'<coordinate name="{name}{x}" velocity="{name}v{x}" unit="m" start="{height if x == "z" else 0}"/>' for x in "xyz")
+    return f"""{places}{quaternion}
+  <frame name="{name}"><translate x="{name}x" y="{name}y" z="{name}z"/><rotate quaternion="{name}q0 {name}q1 {name}q2 {name}q3"/></frame>
+  <body name="{name}Body" in="{name}" mass="m" {inertia}/>"""
+
+
+WEIGHT = '<gravity x="9.81*sin(slope)" z="-9.81*cos(slope)"/>'
+# The plane stands before the ball, its axis is x, turned up, and its tangents are turned by an angle.
+ON_PLANE = f"""<system name="OnPlane">{HEAD}<parameter name="turned" start="0" unit="rad"/>{free("a", BALL, "r")}{WEIGHT}
+  <shape name="floor" type="plane" axis="x" roll="turned" pitch="-pi/2"/><shape name="ball" in="a" type="sphere" radius="r"/>
+  {CONTACT.format("floor", "ball")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+SIDES = "".join(f'<parameter name="{side}" start="{size}" unit="m"/>' for side, size in zip("ABC", (0.4, 0.6, 0.2)))
+CRATE = f"""<system name="RigidCrate">{HEAD}{SIDES}{free("a", BOX, "C/2")}{WEIGHT}
+  <shape name="box" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" type="plane"/>
+  {CONTACT.format("box", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+BALLS = f"""<system name="TwoBalls">{HEAD}{free("a", BALL, "r")}{free("b", BALL, "0")}
+  <shape name="one" in="a" type="sphere" radius="r"/><shape name="other" in="b" type="sphere" radius="r"/>
+  {CONTACT.format("one", "other")}<solver tolerance="1e-10"/><experiment stopTime="2" stepSize="0.01"/></system>"""
+ON_BALL = f"""<system name="OnBall">{HEAD}{free("a", BALL, "0.6")}{WEIGHT}
+  <shape name="ball" in="a" type="sphere" radius="r"/><shape name="hill" type="sphere" radius="0.5"/>
+  {CONTACT.format("hill", "ball")}<solver tolerance="1e-10"/><experiment stopTime="2" stepSize="0.01"/></system>"""
+
+# One component of its friction is 0.
+IN_PLANE = f"""<system name="InPlane">{HEAD}<coordinate name="x" velocity="vx" unit="m"/><coordinate name="z" velocity="vz" unit="m" start="r"/>
+  <coordinate name="phi" velocity="w" unit="rad"/><frame name="f"><translate x="x" z="z"/><rotate axis="y" angle="phi"/></frame>
+  <body name="solid" in="f" mass="m" {BALL}/>{WEIGHT}
+  <shape name="ball" in="f" type="sphere" radius="r"/><shape name="floor" type="plane"/>
+  {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+# A ball whose centre of mass is below its middle.
+TOP = f"""<system name="TippeTop">{HEAD}{free("a", BALL, "r").replace("<body", '<body z="-0.15*r"')}{WEIGHT}
+  <shape name="ball" in="a" type="sphere" radius="r"/><shape name="floor" type="plane"/>
+  {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+CRADLE = f"""<system name="Cradle3D">{HEAD}<for index="i" from="1" to="4"><coordinate name="x[i]" velocity="vx[i]" unit="m" start="0.2*i"/>
+  <coordinate name="y[i]" velocity="vy[i]" unit="m"/><coordinate name="z[i]" velocity="vz[i]" unit="m"/>
+  <particle name="p[i]" mass="m" x="x[i]" y="y[i]" z="z[i]"/><shape name="s[i]" in="p[i]" type="sphere" radius="r"/></for>
+  <for index="i" from="2" to="4"><contact name="c[i]" between="s[i]" and="s[i-1]" restitution="e" friction="mu"/></for>
+  <experiment stopTime="2" stepSize="0.01"/></system>"""
+
+
+def column(boxes):
+    """Boxes, each with a sole that stands on the plane which is the top of the one below."""
+    every = "".join(
+        free(f"b{k}", BOX, f"{k - 0.5}*C")
+        + f'''<shape name="sole{k}" in="b{k}" type="box" sizeX="A" sizeY="B" z="-C/2"/><shape name="top{k}" in="b{k}" type="plane" z="C/2"/>
+  {CONTACT.format(f"sole{k}", f"top{k - 1}").replace("touch", f"c{k}")}'''
+        for k in range(1, boxes + 1)
+    )
+    return f"""<system name="Column{boxes}">{HEAD}{SIDES}{WEIGHT}<shape name="top0" type="plane"/>{every}<experiment stopTime="2"/></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts = {"OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
+    build_systems("rigid-shapes", texts | {"Column2": column(2)})
+
+
+@pytest.fixture(scope="module")
+def column_of_five():
+    build_systems("rigid-column", {"Column5": column(5)})
+
+
+class Running:
+    """An FMU that is freed at the end."""
+
+    def __init__(self, name, values):
+        self.instance = fmu.Instance(name)
+        self.values = values
+
+    def __enter__(self):
+        return self.instance.initialize(self.values)
+
+    def __exit__(self, *_):
+        self.instance.free()
+
+
+def whole(instance, *names):
+    return instance.fmu.getInteger(instance.vr(*names))
+
+
+def pose(name, turn, spin=(0, 0, 0)):
+    """The quaternion of a turn, and its rate by an angular velocity along the axes of the base."""
+    q = turn.as_quat()[[3, 0, 1, 2]]
+    w = np.array(spin)
+    rate = 0.5 * np.r_[-w @ q[1:], q[0] * w + np.cross(w, q[1:])]
+    return {f"{name}q{i}": q[i] for i in range(4)} | {f"{name}r{i}": rate[i] for i in range(4)}
+
+
+def rotation(instance, name):
+    return np.array([[instance.get(f"{name}.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.7])
+def test_thrown_ball(turned):
+    """Its path is a parabola until it rolls, with 5/7 of its velocity and 2/7 of that of rolling with its spin (CueBall of the reference)."""
+    r, mu, speed, spin = 0.1, 0.3, np.array([1.0, 0.4]), np.array([3.0, -8.0])
+    with Running("OnPlane", {"avx": speed[0], "avy": speed[1], "turned": turned} | pose("a", Rotation.identity(), [*spin, 5.0])) as instance:
+        rolling = r * np.array([spin[1], -spin[0]])
+        slip = speed - rolling
+        end = 2 * np.linalg.norm(slip) / (7 * mu * G)
+        direction = slip / np.linalg.norm(slip)
+        instance.run(end / 2, 0.01)
+        assert math.hypot(instance.get("touch.friction.force"), instance.get("touch.friction.across.force")) == pytest.approx(mu * 2 * G)
+        assert whole(instance, "touch.friction.sliding", "touch.closed") == [1, 1]
+        instance.run(1.5, 0.01)
+        final = 5 / 7 * speed + 2 / 7 * rolling
+        place = speed * end - mu * G * direction * end**2 / 2 + final * (1.5 - end)
+        assert [instance.get("avx"), instance.get("avy")] == pytest.approx(final, abs=1e-9)
+        assert [instance.get("ax"), instance.get("ay")] == pytest.approx(place, abs=1e-9)
+        assert whole(instance, "touch.friction.sliding") == [0]
+
+
+@pytest.mark.parametrize("name, velocity", [("OnPlane", "avx"), ("InPlane", "vx")])
+def test_ball_on_a_slope(name, velocity):
+    """It rolls exactly where mu >= 2/7 tan(slope), and does not creep."""
+    slope = 0.3
+    for mu, rolls in ((2 / 7 * math.tan(slope) * 1.001, True), (2 / 7 * math.tan(slope) * 0.999, False)):
+        with Running(name, {"mu": mu, "slope": slope}) as instance:
+            instance.run(1.0, 0.1)
+            expected = 5 / 7 * G * math.sin(slope) if rolls else G * (math.sin(slope) - mu * math.cos(slope))
+            assert instance.get(velocity) == pytest.approx(expected, rel=1e-10)
+            assert whole(instance, "touch.friction.sliding") == [0 if rolls else 1]
+
+
+def test_box_that_slides_and_stops():
+    """Flat, after v^2/(2 mu g), under the forces of corners that the moment of the friction presses down; at rest these share the weight."""
+    m, mu, speed, sizes = 2.0, 0.3, np.array([1.0, 0.5]), np.array([0.4, 0.6, 0.2])
+    corners = np.array([[x, y] for y in (-1, 1) for x in (-1, 1)]) * sizes[:2] / 2
+    with Running("RigidCrate", {"avx": speed[0], "avy": speed[1]}) as instance:
+        # Of least norm: n = a + b x + c y, whose moments are those of the friction at the height of the centre.
+        slowing = mu * G * speed / np.linalg.norm(speed)
+        slopes = [m * slowing[i] * sizes[2] / 2 / (corners[:, i] @ corners[:, i]) for i in (0, 1)]
+        forces = m * G / 4 + corners @ np.array(slopes)
+        assert [instance.get(f"touch[{i}].force") for i in (1, 2, 3, 4)] == pytest.approx(forces, rel=1e-9)
+        instance.run(2.0, 0.1)
+        assert [instance.get("ax"), instance.get("ay"), instance.get("az")] == pytest.approx([*(speed * 0.5 * np.linalg.norm(speed) / (mu * G)), 0.1], abs=1e-9)
+        assert [instance.get(f"touch[{i}].force") for i in range(1, 9)] == pytest.approx([m * G / 4] * 4 + [0] * 4, rel=1e-9, abs=1e-12)
+        before = [instance.get(name) for name in ("ax", "ay", "az", "aq1", "aq2", "aq3")]
+        instance.run(100.0, 1.0)
+        assert [instance.get(name) for name in ("ax", "ay", "az", "aq1", "aq2", "aq3")] == pytest.approx(before, abs=1e-10)
+
+
+@pytest.mark.parametrize("stick, height", [(1.0, 0.2), (1.2, 1e-4)])
+def test_box_on_a_slope(stick, height):
+    """It sticks up to tan(slope) = the coefficient of stiction, and slides beyond."""
+    for factor, slides in ((0.999, False), (1.001, True)):
+        slope = math.atan(0.3 * stick * factor)
+        with Running("RigidCrate", {"slope": slope, "stick": stick, "C": height, "az": height / 2}) as instance:
+            instance.run(1.0, 0.1)
+            expected = G * (math.sin(slope) - 0.3 * math.cos(slope)) if slides else 0.0
+            assert instance.get("avx") == pytest.approx(expected, rel=1e-9, abs=1e-12)
+            assert instance.get("az") == pytest.approx(height / 2, abs=1e-12)
+
+
+def test_box_that_tips_over():
+    """Where its weight passes beyond its edge: tan(slope) = width/height; as a pendulum does, about the edge."""
+    width, height = 0.4, 0.8
+    sizes = {"A": width, "C": height, "az": height / 2, "mu": 2.0}
+    with Running("RigidCrate", sizes | {"slope": math.atan(0.5) - 1e-3}) as instance:
+        instance.run(1.0, 0.1)
+        assert abs(instance.get("aq2")) < 1e-12
+    slope = math.atan(0.5) + 1e-3
+    with Running("RigidCrate", sizes | {"slope": slope}) as instance:
+        energy = instance.get("totalEnergy")
+        instance.run(1.0, 0.01)
+        arm, diagonal = math.hypot(width, height) / 2, math.atan2(width, height)
+        turned = 2 * math.asin(instance.get("aq2"))
+        inertia = 2 * (width**2 + height**2) / 3
+        fall = 2 * G * arm * (math.cos(diagonal - slope) - math.cos(turned - diagonal + slope))
+        speed = 2 * instance.get("ar2") / instance.get("aq0")
+        assert 0.01 < turned and speed == pytest.approx(math.sqrt(2 * fall / inertia), rel=1e-6)
+        assert instance.get("totalEnergy") == pytest.approx(energy, rel=1e-9)
+        assert whole(instance, *[f"touch[{i}].closed" for i in (1, 2, 3, 4)]) == [0, 1, 0, 1]
+
+
+def test_rocking_block():
+    """
+    Housner's block, in space: as the edge on which it stands changes, its angular velocity falls to 1 - 1.5 sin(a)^2 of itself, where
+    tan(a) = width/height.
+    """
+    width, height = 0.2, 0.8
+    a, start = math.atan2(width, height), 0.1
+    arm = math.hypot(width, height) / 2
+    turn = Rotation.from_euler("y", start)
+    place = turn.apply([-width / 2, 0, height / 2]) + np.array([width / 2, 0, 0])
+    with Running("RigidCrate", {"A": width, "C": height, "mu": 10.0, "ax": place[0], "az": place[2]} | pose("a", turn)) as instance:
+        speeds = []
+        while len(speeds) < 3 and instance.time < 5:
+            before, energy = instance.get("aq2"), instance.get("totalEnergy")
+            instance.run(instance.time + 0.005, 0.005)
+            if before * instance.get("aq2") < 0:
+                lost = instance.get("totalEnergy") - 2 * G * height / 2
+                speeds.append((energy - 2 * G * height / 2, lost))
+        top = 2 * G * arm * (math.cos(a - start) - math.cos(a))
+        factor = 1 - 1.5 * math.sin(a) ** 2
+        for k, (before, after) in enumerate(speeds):
+            assert [before, after] == pytest.approx([top * factor ** (2 * k), top * factor ** (2 * k + 2)], rel=1e-6)
+        assert len(speeds) == 3
+
+
+def test_ball_rolls_off_a_ball():
+    """Without slipping it leaves a fixed one at cos = 10/17 of that at the start, in any direction: axes of the friction have no part."""
+    start = 0.1
+    for way in (0.0, 2.0):
+        place = 0.6 * np.array([math.sin(start) * math.cos(way), math.sin(start) * math.sin(way), math.cos(start)])
+        with Running("OnBall", {"mu": 1e4} | dict(zip(("ax", "ay", "az"), place))) as instance:
+            energy = instance.get("totalEnergy")
+            while whole(instance, "touch.closed") == [1]:
+                instance.run(instance.time + 1e-3, 1e-3)
+            # It has flown for less than 1 ms.
+            assert 0.0 < 10 / 17 * math.cos(start) - instance.get("az") / 0.6 < 3e-3
+            assert instance.get("ay") / instance.get("ax") == pytest.approx(math.tan(way), abs=1e-9)
+            assert instance.get("totalEnergy") == pytest.approx(energy, abs=1e-6)
+
+
+def test_balls_that_meet():
+    """Obliquely, with spins: momentum and angular momentum stay, and energy is lost; where they stick they part rolling on each other."""
+    values = {"ax": -1.0, "az": 0.0, "by": 0.1, "bz": 0.05, "avx": 2.0, "e": 0.5} | pose("a", Rotation.from_euler("x", 1.0), [6, 3, 5])
+    values |= pose("b", Rotation.from_euler("y", 0.5), [0, 4, -2])
+    for mu, sticks in ((0.1, False), (2.0, True)):
+        with Running("TwoBalls", values | {"mu": mu}) as instance:
+            momenta = []
+            for time in (0.01, 1.0):
+                instance.run(time, 0.01)
+                linear, angular, energy, rims = np.zeros(3), np.zeros(3), 0.0, []
+                for name in "ab":
+                    place, speed = (np.array([instance.get(f"{name}{part}{axis}") for axis in "xyz"]) for part in ("", "v"))
+                    spin = rotation(instance, name) @ np.array([instance.get(f"{name}Body.omega{axis}") for axis in "XYZ"])
+                    linear += 2 * speed
+                    angular += np.cross(place, 2 * speed) + 0.008 * spin
+                    energy += speed @ speed + 0.004 * spin @ spin
+                    rims.append((place, speed, spin))
+                momenta.append((*linear, *angular, energy))
+            assert momenta[1][:6] == pytest.approx(momenta[0][:6], abs=1e-12) and momenta[1][6] < 0.95 * momenta[0][6]
+            # As they were when they parted, 1 - t ago, t found by going back to where they touched.
+            (a, va, wa), (b, vb, wb) = rims
+            away, speed = a - b, va - vb
+            back = np.roots([speed @ speed, -2 * speed @ away, away @ away - 0.04]).real.min()
+            normal = (away - speed * back) / np.linalg.norm(away - speed * back)
+            slip = speed - np.cross(wa + wb, 0.1 * normal)
+            slip -= (slip @ normal) * normal
+            assert (np.linalg.norm(slip) < 1e-9) == sticks
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_dice(seed):
+    """Thrown with spin it tumbles, loses energy at each impact and gains none, and comes to rest on a face."""
+    chance = np.random.default_rng(seed)
+    mu, e = [(0.3, 0.0), (1.0, 0.3), (0.1, 0.5), (0.6, 0.4)][seed]
+    turn = Rotation.from_quat(chance.normal(size=4))
+    values = {"A": 0.2, "B": 0.2, "C": 0.2, "az": 0.5, "mu": mu, "e": e, "avx": chance.uniform(-2, 2)} | pose("a", turn, chance.normal(0, 8, 3))
+    with Running("RigidCrate", values) as instance:
+        energy = instance.get("totalEnergy")
+        while instance.time < 4:
+            instance.run(instance.time + 0.02, 0.02)
+            assert instance.get("totalEnergy") < energy + 1e-9
+            energy = instance.get("totalEnergy")
+        assert energy == pytest.approx(2 * G * 0.1, abs=1e-9)
+        assert sorted(abs(rotation(instance, "a")[2])) == pytest.approx([0, 0, 1], abs=1e-9)
+        assert sum(whole(instance, *[f"touch[{i}].closed" for i in range(1, 9)])) == 4
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_hostile_starts(seed):
+    """Boxes that start on a corner, an edge or a face, with no friction or far too much: energy never grows, or they are refused with a reason."""
+    chance = np.random.default_rng(seed)
+    turn = [Rotation.from_euler("zyx", [chance.uniform(0, 6), *angles]) for angles in (chance.uniform(0.1, 1.4, 2), (chance.uniform(0.1, 1.4), 0), (0, 0))][seed % 3]
+    corners = np.array([[x, y, z] for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (-0.1, 0.1)])
+    values = {"A": 0.2, "B": 0.2, "C": 0.2, "az": -turn.apply(corners)[:, 2].min(), "mu": [0.0, 10.0][seed // 3 % 2], "e": [0.0, 1.0][seed // 6]}
+    instance = fmu.Instance("RigidCrate")
+    try:
+        instance.initialize(values | pose("a", turn, chance.normal(0, 2, 3)) | {"avx": chance.normal()})
+        energy = instance.get("totalEnergy")
+        while instance.time < 1:
+            instance.run(instance.time + 0.05, 0.05)
+            assert instance.get("totalEnergy") < energy + 1e-9
+            energy = instance.get("totalEnergy")
+    except FMICallException:
+        reasons = " ".join(message[2] for message in instance.messages)
+        assert values["mu"] > 1 and any(words in reasons for words in ("solution there", "without end", "no accelerations")), reasons
+    instance.free()
+
+
+def test_tippe_top():
+    """Its spin turns it over, losing energy, while Jellett's integral stays: the angular momentum times the way from the centre of mass to the pole."""
+    m, r, moment = 1.0, 0.02, 0.4 * 0.02**2
+    values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": 0.02} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])
+    with Running("TippeTop", values) as instance:
+        jellett, energies, ups = [], [], []
+        for time in np.arange(1, 31) * 0.1:
+            instance.run(time, 0.1)
+            matrix = rotation(instance, "a")
+            angular = moment * matrix @ np.array([instance.get(f"aBody.omega{axis}") for axis in "XYZ"])
+            jellett.append(angular @ (matrix @ [0, 0, 0.15 * r] - [0, 0, r]))
+            energies.append(instance.get("totalEnergy"))
+            ups.append(matrix[2, 2])
+        assert jellett == pytest.approx([jellett[0]] * len(jellett), rel=1e-9)
+        assert np.all(np.diff(energies) < 1e-9) and energies[-1] < 0.8 * energies[0]
+        assert ups[0] > 0.9 and ups[-1] < -0.9
+
+
+def test_row_of_balls():
+    """One that hits a row of equal ones that touch hands its velocity on to the last, and stands still, in any direction of the row."""
+    way = np.array([2.0, -1.0, 2.0]) / 3
+    values = {f"{x}[{i}]": 0.2 * i * way[k] for i in (2, 3, 4) for k, x in enumerate("xyz")}
+    values |= {f"{x}[1]": -0.3 * way[k] for k, x in enumerate("xyz")} | {f"v{x}[1]": way[k] for k, x in enumerate("xyz")}
+    with Running("Cradle3D", values | {"e": 1.0}) as instance:
+        instance.run(2.0, 0.1)
+        for i in (1, 2, 3, 4):
+            assert [instance.get(f"v{x}[{i}]") for x in "xyz"] == pytest.approx(way * (i == 4), abs=1e-12)
+
+
+def check_column(boxes, time):
+    """At rest each corner bears a quarter of what is above it, and nothing creeps."""
+    places = [f"b{k}{x}" for k in range(1, boxes + 1) for x in ("x", "y", "z", "q1", "q2", "q3")]
+    with Running(f"Column{boxes}", {"mu": 0.5}) as instance:
+        before = [instance.get(name) for name in places]
+        instance.run(time, time / 10)
+        assert [instance.get(name) for name in places] == pytest.approx(before, abs=1e-9)
+        for k in range(1, boxes + 1):
+            assert [instance.get(f"c{k}[{i}].force") for i in (1, 2, 3, 4)] == pytest.approx([(boxes - k + 1) * 2 * G / 4] * 4, rel=1e-9)
+
+
+def test_column():
+    """Also on a slope, and where the upper one is thrown along the lower, which it drags as far as friction does: momentum says how far."""
+    check_column(2, 10.0)
+    with Running("Column2", {"mu": 0.5, "slope": 0.4}) as instance:
+        instance.run(1.0, 0.1)
+        assert [instance.get(f"b{k}v{x}") for k in (1, 2) for x in "xyz"] == pytest.approx([0] * 6, abs=1e-12)
+    with Running("Column2", {"mu": 0.1, "b2vx": 0.2}) as instance:
+        # The upper one slows down by mu g and moves the lower one by nothing: below it are two weights.
+        instance.run(1.0, 0.1)
+        assert [instance.get("b1x"), instance.get("b2x")] == pytest.approx([0, 0.2**2 / (2 * 0.1 * G)], abs=1e-9)
+
+
+@pytest.mark.release
+def test_column_of_five(column_of_five):
+    """For 100 s."""
+    check_column(5, 100.0)
+
+
+@pytest.mark.parametrize(
+    "attributes, message",
+    [
+        ('name="q" stiction="1"', "a <contact> with stiction and without friction; expected friction"),
+        ('name="q" friction="mu" stiffness="1e5" stiction="1"', "a <contact> with a stiffness and a stiction; expected creep"),
+        ('name="q" friction="mu" creep="1e-3"', "the creep of a <contact> between shapes without a stiffness"),
+        ('friction="mu"', "a rigid <contact> without a name"),
+    ],
+)
+def test_messages(tmp_path, attributes, message):
+    (tmp_path / "system.xml").write_text(ON_BALL.replace("<solver", f'<contact between="ball" and="hill" {attributes}/><solver'))
+    found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert found.returncode == 1 and message in found.stderr
