@@ -61,7 +61,8 @@ def test_each_run_is_that_of_the_fmu_alone(name):
         alone = fmpy.simulate_fmu(str(archive(name)), start_values=dict(zip(ranges, row)), stop_time=stop, output_interval=0.1 * stop, output=asked, relative_tolerance=1e-10)
         for k, result in zip((0, 3, 10), value):
             expected = np.array(list(alone[k])[1:])
-            np.testing.assert_allclose(result, expected, rtol=2e-9, atol=2e-9)
+            # A planet near its sun changes its velocity by its own size in 0.04 s: 2e-10 s are 5e-9 of it.
+            np.testing.assert_allclose(result, expected, rtol=8e-9 if name == "ParticlePolar" else 2e-9, atol=2e-9)
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])

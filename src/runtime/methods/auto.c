@@ -223,7 +223,7 @@ static bool judge_series(struct Instance *instance, struct Choice *choice, doubl
 
 /* A trial goes on as long as steps grow or want to; one in vain is not soon made again. */
 static bool judge_trial(const struct Instance *instance, struct Choice *choice, double speed, double other) {
-  double window_of_series = window[AUTO_TAYLOR] * work_of_series((double)taylor_order(instance));
+  double window_of_series = window[AUTO_TAYLOR] * work_of_series((double)taylor_rule(instance).order);
   choice->trial_work += choice->work;
   double next = radau_next_step(instance) * window[AUTO_RADAU] / choice->work;
   bool grows = choice->windows < TRIAL_LIMIT && (speed > GROWTH * choice->last_speed || next > other);

@@ -92,13 +92,12 @@ static double move_origin(struct Taylor *taylor) {
   return largest;
 }
 
-int64_t taylor_order(const struct Instance *instance) {
-  return rule_for(local_tolerance(instance->situation->tolerance)).order;
+struct SeriesRule taylor_rule(const struct Instance *instance) {
+  return rule_for(local_tolerance(instance->situation->tolerance));
 }
 
 static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
-  double local = local_tolerance(instance->situation->tolerance);
-  if (taylor->rule.tolerance != local) taylor->rule = rule_for(local);
+  if (taylor->rule.tolerance != local_tolerance(instance->situation->tolerance)) taylor->rule = taylor_rule(instance);
 }
 
 /* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */

@@ -55,7 +55,7 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   return j == 1 ? (change + x[1]) * s : change;
 }
 
-/* The order that the tolerance asks for. */
-int64_t taylor_order(const struct Instance *instance);
+/* What the tolerance asks for. */
+struct SeriesRule taylor_rule(const struct Instance *instance);
 
 #endif

@@ -56,8 +56,9 @@ struct SeriesRule {
  * of 2 (A. Jorba, M. Zou, 2005, section 3.1); where it hardly grows with the order, longer steps of a higher order are less.
  */
 static inline struct SeriesRule rule_for(double local) {
-  const double highest_fall = 2.0, lowest_fall = 1.4;
-  const double reserve = 4.0; /* of the first term that is left out, below the tolerance */
+  const double highest_fall = 2.0, near_rounding = 1e-15; /* where longer steps would round more than they err */
+  double lowest_fall = local < near_rounding ? highest_fall : 1.5;
+  const double reserve = 5.0; /* of the first term that is left out, below the tolerance */
   double digits = -log(local), least = INFINITY;
   struct SeriesRule rule = {.tolerance = local};
   int64_t lowest = (int64_t)fmin(fmax(ceil(1.0 + digits / highest_fall), LOWEST_ORDER), HIGHEST_ORDER);
