@@ -27,6 +27,7 @@ enum Space {
   SPACE_SEED_INPUT,
   SPACE_SEED_TIME,
   SPACE_SEED_ACCELERATION,
+  SPACE_SEED_RESULT,
   SPACE_LOCAL,
   SPACE_MASS,   /* elements of the blocks of M that are factored at run time, later their factors */
   SPACE_SIDE,   /* right sides for these blocks, later their solutions */

@@ -28,12 +28,13 @@ struct Point {
   Real *work;           /* workspace of the generated functions, whose values do not last from call to call */
 };
 
-/* A direction of a directional derivative. */
+/* A direction of a directional derivative; or what derivatives of the state, and results, count by in a weighted sum. */
 struct Seed {
   Real time;
   const Real *state;
   const Real *input;
   const Real *parameter;
+  const Real *result; /* of a weighted sum alone */
 };
 
 enum VariableKind {
@@ -373,6 +374,8 @@ struct ConstraintTable {
   int (*respond)(const struct Point *point, const Real *impulse, Real *response);
 };
 
+struct ReverseSweep;
+
 struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
@@ -389,8 +392,9 @@ struct Lagrangian {
   struct TaylorTable taylor;
   struct ImplicitTable implicit;
   struct ConstraintTable constraints;
-  const struct SwitchTable *switches; /* NULL where nothing switches */
-  const struct EventLaws *event_laws; /* event_laws.h; likewise */
+  const struct SwitchTable *switches;       /* NULL where nothing switches */
+  const struct EventLaws *event_laws;       /* event_laws.h; likewise */
+  const struct ReverseSweep *reverse_sweep; /* reverse_sweep.h; NULL unless lagc was asked for --adjoint */
 
   /* prepared[prepared_count] from parameter[parameter_count]: whatever depends on parameters alone. */
   int (*prepare)(const Real *parameter, Real *prepared);
@@ -404,6 +408,11 @@ struct Lagrangian {
   int (*derivatives)(const struct Point *point, Real *derivative);
   /* The derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, Real *derivative);
+  /*
+   * The gradient of the sum of the derivatives of the state times seed->state and of the outputs times seed->result, with
+   * elements by each state, input and parameter, and by time. NULL unless lagc was asked for --adjoint.
+   */
+  int (*weighted_gradient)(const struct Point *point, const struct Seed *seed, Real *gradient);
   /* Of linear systems: d state / dt = A state + B input + c; matrix[i * (states + inputs + 1)] holds row i of A, B and c. */
   void (*linear)(const Real *parameter, const Real *prepared, Real *matrix);
 };

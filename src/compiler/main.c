@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/platform.h"
+#include "interface/arrays.h"
 #include "interface/listing.h"
 #include "mechanics/linearize.h"
 #include "mechanics/motion.h"
@@ -15,10 +16,12 @@
 #include "program/program.h"
 #include "read/names/words.h"
 #include "read/reader.h"
+#include "read/variations.h"
 #include "read/xml/schema.h"
 
 static const char usage[] =
-    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [-D NAME=VALUE ...]\n"
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--scalars]\n"
+    "            [--along NAME ...] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --words | --version\n"
     "\n"
@@ -35,6 +38,11 @@ static const char usage[] =
     "                   the body, pull.u, pull.v, pull.w along its axes, to the place pull.x, pull.y, pull.z, which "
     "is\n"
     "                   damped as if the point were behind by its velocity times pull.time\n"
+    "  --adjoint        adds a reverse sweep: an adjoint derivative costs the same for any number of knowns\n"
+    "  --scalars        what <for> makes are scalars in FMI 3.0 too, not arrays\n"
+    "  --along NAME     adds the derivatives of coordinates and outputs by a parameter, an input or a start value, "
+    "X.by.NAME,\n"
+    "                   by the variational equations, to a smooth system\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
@@ -42,10 +50,13 @@ struct Arguments {
   const char *system, *directory, *solver;
   const char **definitions;
   size_t definition_count;
+  const char **along;
+  size_t along_count;
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, pull, words, help, version;
+  bool linearize, pull, scalars, words, help, version;
+  struct Extras extras;
 };
 
 /* Up to the next comma that does not stand between the arguments of a function. */
@@ -70,14 +81,17 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   for (int i = 1; i < count; i++) {
     const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
     bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
-                       strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0;
+                       strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0 || strcmp(word, "--along") == 0;
     if (takes_value && i + 1 == count) return false;
     if (takes_value) i++;
     if (strcmp(word, "-o") == 0) arguments->directory = next;
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
+    else if (strcmp(word, "--along") == 0) arguments->along[arguments->along_count++] = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
     else if (strcmp(word, "--pull") == 0) arguments->pull = true;
+    else if (strcmp(word, "--scalars") == 0) arguments->scalars = true;
+    else if (strcmp(word, "--adjoint") == 0) arguments->extras.adjoint = true;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
     else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) arguments->help = true;
@@ -96,8 +110,9 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
 static void compile(struct Model *model, const struct Equations *equations, const struct Arguments *arguments,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
+  if (!arguments->scalars) arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
+  struct Expressions *expressions = expressions_create(model, equations, interface, arguments->extras, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, arguments->form) : NULL;
   if (program != NULL) output_write(program, summary, arguments->directory, diagnostics);
 }
@@ -106,6 +121,16 @@ static void print_linearization(const struct Model *model, const struct Equation
                                 struct Diagnostics *diagnostics) {
   struct LinearSystem *system = linear_system_of(model, equations, diagnostics);
   if (system != NULL) linear_system_print(model, system);
+}
+
+/* The equations of motion, with the variational ones where these are asked for. */
+static struct Equations *motion_with_variations(struct Model *model, const struct Arguments *arguments,
+                                                struct Diagnostics *diagnostics) {
+  model->unrolled = arguments->along_count > 0;
+  struct Equations *equations = motion_of(model, diagnostics);
+  if (equations == NULL || arguments->along_count == 0) return equations;
+  add_variations(model, equations, arguments->along, arguments->along_count, diagnostics);
+  return diagnostics->errors == 0 ? motion_of(model, diagnostics) : NULL;
 }
 
 static int run(const struct Arguments *arguments) {
@@ -118,7 +143,7 @@ static int run(const struct Arguments *arguments) {
                                   .pull = arguments->pull,
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
-  struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
+  struct Equations *equations = model != NULL ? motion_with_variations(model, arguments, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
   else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);
@@ -149,7 +174,8 @@ int main(int count, char **words) {
 #ifdef SIGXFSZ
   signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */
 #endif
-  struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *))};
+  struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *)),
+                                .along = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();
   if (!parse_arguments(count, words, &arguments)) fprintf(stderr, usage, methods);

@@ -6,6 +6,7 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "drawing/system_drawing.h"
+#include "interface/arrays.h"
 #include "interface/listing.h"
 #include "mechanics/motion.h"
 #include "model_description.h"
@@ -53,8 +54,9 @@ int derive(const char *path, int pull) {
   struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors > 0) return 1;
   struct Interface *interface = interface_create(model, equations);
+  arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, &diagnostics);
+  struct Expressions *expressions = expressions_create(model, equations, interface, (struct Extras){0}, &diagnostics);
   if (expressions != NULL) make(program_create(expressions, ALL_TABLES), summary, &diagnostics);
   return diagnostics.errors > 0 ? 1 : 0;
 }

@@ -16,6 +16,7 @@
 #include "page/documentation.h"
 #include "mechanics/motion.h"
 #include "base/memory.h"
+#include "interface/arrays.h"
 #include "interface/listing.h"
 #include "model_description.h"
 #include "program/program.h"
@@ -42,8 +43,9 @@ static void write_texts(const struct Program *program, const struct Summary *sum
 
 static void compile(const struct Model *model, const struct Equations *equations, struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
+  arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, diagnostics);
+  struct Expressions *expressions = expressions_create(model, equations, interface, (struct Extras){0}, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, (enum CodeForm){0}) : NULL;
   if (program != NULL) write_texts(program, summary);
 }

@@ -3,7 +3,6 @@
 import math
 import re
 import subprocess
-import sys
 from xml.etree import ElementTree
 
 import mpmath
@@ -14,21 +13,9 @@ from scipy.integrate import solve_ivp
 import fmu
 import package
 from building import build_systems
+from motions import BALL, BELT, OSCILLATOR, belt, bounce, lagrange_fmu, measured, oscillation  # noqa: F401
 
 TOLERATED = dict(rel=1e-8, abs=1e-9)
-OSCILLATOR = """<system name="Oscillator"><!-- kept -->
-  <parameter name="m" start="2" unit="kg" min="0"/><parameter name="k" start="50" unit="N/m" min="0"/><parameter name="d" start="1" unit="N.s/m" min="0"/>
-  <input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m" start="0.3"/>
-  <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
-  <experiment stopTime="4"/></system>"""
-BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
-  <parameter name="e" start="0.5" unit="1"/>
-  <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
-# A block on a belt, which sticks and slides.
-BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>
-  <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
-  <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
-
 TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
   <particle name="p[i]" mass="1" y="h[i]"/><contact name="floor[i]" gap="h[i]" unit="m" restitution="0.5"/></for><gravity y="-9.81"/></system>"""
 
@@ -36,27 +23,6 @@ TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i
 @pytest.fixture(scope="module", autouse=True)
 def built():
     build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT})
-
-
-@pytest.fixture(scope="module")
-def lagrange_fmu(tmp_path_factory):
-    folder = package.assemble(tmp_path_factory.mktemp("package"))
-    sys.path.insert(0, str(folder))
-    try:
-        import lagrange_fmu
-
-        yield lagrange_fmu
-    finally:
-        sys.path.remove(str(folder))
-        for name in [name for name in sys.modules if name.split(".")[0] == "lagrange_fmu"]:
-            del sys.modules[name]
-
-
-def oscillation(t, m, k, d, x0, F=0.0):
-    """Weakly damped, from rest at x0, with a constant force."""
-    a, shift = d / (2 * m), F / k
-    w = mpmath.sqrt(k / m - a * a)
-    return shift + (x0 - shift) * mpmath.exp(-a * t) * (mpmath.cos(w * t) + a / w * mpmath.sin(w * t))
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -92,15 +58,6 @@ def test_derivative_of_a_pendulum(lagrange_fmu, name):
     assert found.derivatives[of, "l"][1] == pytest.approx(expected, rel=1e-7)
 
 
-def bounce(t, h0, g, e, bounces):
-    """The height of a ball that fell from h0, behind so many bounces."""
-    fall = mpmath.sqrt(2 * h0 / g)
-    time, speed = fall, e * g * fall
-    for _ in range(bounces - 1):
-        time, speed = time + 2 * speed / g, e * speed
-    return speed * (t - time) - g / 2 * (t - time) ** 2 if bounces else h0 - g / 2 * t**2
-
-
 def test_derivatives_through_impacts(lagrange_fmu):
     """A ball that bounces, by its start, by g and by e: closed forms, between all bounces and behind them."""
     at = {"h": 1.3, "g": 9.81, "e": 0.7}
@@ -122,21 +79,6 @@ def test_events_at_once(lagrange_fmu):
     assert apart.derivatives["h[2]", "h[1]"][1] == pytest.approx(0, abs=1e-9)
 
 
-def belt(times, k, F, u):
-    """Where the block is: a linear oscillator while it slides, carried along while it sticks; all in closed form."""
-    w = mpmath.sqrt(k)
-    slide_at = 1.5 * F / k
-    # From rest at 0 it is pulled along at first: x'' = F - k x until v = u, or until it turns.
-    catch = mpmath.asin(u * w / F) / w
-    x_catch = F / k * (1 - mpmath.cos(w * catch))
-    leave = catch + (slide_at - x_catch) / u
-    def sliding(t):  # x'' = F - k x with x = slide_at, v = u at first
-        return F / k + (slide_at - F / k) * mpmath.cos(w * t) + u / w * mpmath.sin(w * t)
-    def place(t):
-        return F / k * (1 - mpmath.cos(w * t)) if t <= catch else x_catch + u * (t - catch) if t <= leave else sliding(t - leave)
-    return [place(t) for t in times]
-
-
 def test_derivatives_through_friction(lagrange_fmu):
     """A block that is carried along by a belt, sticks and slides again."""
     at, times = {"k": 20.0, "F": 3.0, "u": 0.4}, [0.0, 0.1, 0.3, 0.6, 0.9]
@@ -147,12 +89,6 @@ def test_derivatives_through_friction(lagrange_fmu):
             for place, name in enumerate(at):
                 along = lambda value: belt([mpmath.mpf(t)], *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())])[0]
                 assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), rel=1e-6, abs=1e-8), (t, name)
-
-
-def measured(generator, truth, F=0.0, noise=1e-3):
-    times = np.linspace(0, 4, 101)
-    values = np.array([float(oscillation(t, *(truth[name] for name in ("m", "k", "d", "x")), F)) for t in times])
-    return np.rec.fromarrays([times, values + noise * generator.standard_normal(len(times)), np.full(len(times), F)], names="time,x,F").view(np.ndarray)
 
 
 def test_fit(lagrange_fmu):
@@ -169,6 +105,36 @@ def test_fit(lagrange_fmu):
         assert found.rms["x"] == pytest.approx(1e-3, rel=0.2) and found.untold == []
     off = np.array(off)
     assert (abs(off) < 4).all() and 0.7 < off.std() < 1.3
+
+
+def test_experiments_with_starts_of_their_own(lagrange_fmu):
+    """Which are found, as what they share is; the search begins where each was measured first."""
+    starts = (0.25, -0.4, 0.1)
+    data = [measured(np.random.default_rng(4), {"m": 2.0, "k": 61.0, "d": 0.8, "x": x}, noise=1e-4) for x in starts]
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], each=["x"])
+    expected = {"k": 61.0, "d": 0.8} | {f"x of experiment {i}": x for i, x in enumerate(starts, 1)}
+    assert found.values.keys() == expected.keys() and found.shared == ["k", "d"]
+    for name, value in expected.items():
+        assert abs(found.values[name] - value) < 4 * found.deviations[name] < 1e-3 * 4 * max(1, abs(value))
+    with pytest.raises(lagrange_fmu.Problem, match="'k' varies for all experiments and for each"):
+        lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k"], each=["k"])
+
+
+def test_bounds(lagrange_fmu):
+    """A value that the data would have beyond its bound stays at it."""
+    data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], bounds={"k": (40, 60)})
+    assert found.values["k"] == pytest.approx(60, abs=1e-6)
+    with pytest.raises(lagrange_fmu.Problem, match="'k' begins at 50, and its bounds are 55 and 60"):
+        lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], bounds={"k": (55, 60)})
+
+
+def test_a_value_at_its_limit(lagrange_fmu):
+    """A damping of 0, which is the least that there is, has a derivative all the same."""
+    found = lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["d"], [0, 2], {"d": 0.0})
+    with mpmath.workdps(40):
+        expected = float(mpmath.diff(lambda d: oscillation(2, 2, 50, d, mpmath.mpf(0.3)), 0))
+    assert found.derivatives["x", "d"][1] == pytest.approx(expected, **TOLERATED)
 
 
 def test_inputs_with_kinks(lagrange_fmu):
@@ -198,7 +164,7 @@ def test_command(tmp_path):
     truth = {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3}
     data = measured(np.random.default_rng(2), truth)
     np.savetxt(tmp_path / "data.csv", np.stack([data["time"], data["x"]], axis=1), delimiter=",", header="time,x", comments="")
-    result = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "k", "d", "-o", "out", cwd=tmp_path)
+    result = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "k", "d", "--bounds", "k=20:100", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert re.search(r"^k  (61\.0|60\.9)\d+ \+- 0\.0\d+$", result.stdout, re.M)
     page = (tmp_path / "out" / "Oscillator-fit.html").read_text()
@@ -211,7 +177,7 @@ def test_the_fitted_system(lagrange_fmu, tmp_path):
     from lagrange_fmu.fitting import Fit
 
     (tmp_path / "system.xml").write_text(OSCILLATOR)
-    fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml")
+    fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml", ["k", "v", "x"])
     fit.write_system(tmp_path / "fitted.xml")
     text = (tmp_path / "fitted.xml").read_text()
     assert "<!-- kept -->" in text

@@ -5,9 +5,9 @@ import re
 import fmu
 
 
-def linked_members(name):
+def linked_members(name, map="link.map"):
     """Bytes that each object file contributes after garbage collection, from the linker's map."""
-    text = (fmu.archive(name).parent.parent / "systems" / name / "link.map").read_text()
+    text = (fmu.archive(name).parent.parent / "systems" / name / map).read_text()
     text = text[text.index("Linker script and memory map") :]
     sizes = {}
     for size, member in re.findall(r"^ \.\S+\s+0x0*[1-9a-f][0-9a-f]*\s+0x([0-9a-f]+) (\S+)$", text, re.M):

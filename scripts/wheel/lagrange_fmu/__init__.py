@@ -22,13 +22,14 @@ from .problem import Problem
 if TYPE_CHECKING:
     import numpy as np
 
+    from .adjoint import Gradient
     from .fitting import Fit
     from .linearization import Linearization
     from .results import Result
-    from .sensitivity import Sensitivities
+    from .variational import Sensitivities
 
 __version__ = version("lagrange-fmu")
-__all__ = ["Problem", "build", "check", "fit", "from_sympy", "linearize", "new", "run", "sensitivities", "simulate"]
+__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "new", "run", "sensitivities", "simulate"]
 
 
 def simulate(
@@ -88,12 +89,35 @@ def sensitivities(
 ) -> Sensitivities:
     """
     The derivatives of outputs and states `of`, at times in s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
-    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, with SciPy; events change
+    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for smooth systems in XML, else with SciPy; events change
     them by what they make of neighbouring motions. Several events at once, and one that is only touched, are refused.
     """
-    from .sensitivity import sensitivities
+    from .variational import sensitivities
 
     return sensitivities(system, list(of), list(by), times, dict(start_values or {}), tolerance)
+
+
+def gradient(
+    system: str | PathLike[str],
+    of: str | None = None,
+    by: Sequence[str] = (),
+    stop_time: float | None = None,
+    *,
+    data: str | PathLike[str] | np.ndarray | None = None,
+    integral: bool = False,
+    noise: Mapping[str, float] | None = None,
+    start_values: Mapping[str, float] | None = None,
+    tolerance: float = 1e-10,
+) -> Gradient:
+    """
+    The derivatives of one number by parameters, start values and inputs `by`, which are constant: `.derivatives[by]`, beside the `.value`. The number is
+    the output or state `of` at the stop time, in s, or its integral over the motion until then; or, of `data`, the sum of the squares of the differences
+    between measurements and the motion, in units of the `noise`: data and noise are as for fit(). By the adjoint equation backwards along the motion to the
+    relative tolerance, with SciPy: many parameters take no longer than one. Events are treated, and refused, as by sensitivities().
+    """
+    from .adjoint import gradient
+
+    return gradient(system, of, list(by), stop_time, data, integral, dict(noise or {}), dict(start_values or {}), tolerance)
 
 
 def fit(
@@ -103,17 +127,19 @@ def fit(
     start_values: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     noise: Mapping[str, float] | None = None,
+    each: Sequence[str] = (),
 ) -> Fit:
     """
     Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
     inputs in its first line; or a structured array of these; or several experiments. Least squares from the start values on, with the exact
     derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
-    is not given all columns count the same. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can
+    is not given all columns count the same. `each` has start values, parameters or inputs which are found for each experiment by itself, beginning where
+    these were measured first. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can
     write_page() and write_system().
     """
     from .fitting import fit
 
-    return fit(system, data, vary, dict(start_values or {}), dict(bounds or {}), dict(noise or {}))
+    return fit(system, data, vary, dict(start_values or {}), dict(bounds or {}), dict(noise or {}), list(each))
 
 
 def run(

@@ -43,9 +43,9 @@ def origin_of(system):
     return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name))
 
 
-def derive(system, folder, solver):
-    """Lets lagc write into the folder; returns modelDescription.xml as a tree."""
-    words = [LAGC, system_file(system), "-o", folder]
+def derive(system, folder, solver, words=()):
+    """Lets lagc, with these words, write into the folder; returns modelDescription.xml as a tree."""
+    words = [LAGC, system_file(system), "-o", folder, *words]
     if solver is not None:
         words += ["--solver", solver]
     lagc = subprocess.run(words, capture_output=True, text=True)
@@ -164,6 +164,11 @@ def build(
     `output`. Platforms are one or several of PLATFORM_NAMES, this machine's where none are given; `solver` is a method in place of the system's own;
     `fmi` is the version of FMI, 2 or 3.
     """
+    return build_with((), system, platforms, solver, output, fmi)
+
+
+def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
+    """The same, with further words for lagc."""
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORM_NAMES:
@@ -172,7 +177,7 @@ def build(
         raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        description = derive(system, folder, solver)
+        description = derive(system, folder, solver, words)
         name = description.find("CoSimulation").get("modelIdentifier")
         content = folder / "content"
         compile_libraries(folder, name, platforms, fmi, content)

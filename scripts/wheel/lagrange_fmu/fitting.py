@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 import numpy as np
 
 from .building import system_file
-from .input_file import read_input
-from .model_exchange import opened
+from .experiment import Experiment
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import Motion, check_names  # first, since it tells where SciPy is missing
+from .sensitivity import check_names  # first, since it tells where SciPy is missing
+from .variational import followed, motion
 
 from scipy.optimize import least_squares  # isort: skip
 from scipy.stats import t as student  # isort: skip
@@ -37,6 +37,7 @@ class Fit:
     rms: dict  # of the residuals, by measured name
     name: str
     system: object  # its file; None of an FMU
+    shared: list  # the names of the values that all experiments have
 
     def __str__(self):
         width = max(map(len, self.values))
@@ -46,15 +47,15 @@ class Fit:
         return "\n".join(lines)
 
     def write_system(self, path):
-        """The system with the fitted values as its start values."""
+        """The system with the fitted values as its start values, but for those that each experiment has of its own."""
         if self.system is None:
             raise Problem("an FMU does not hold its system; fit the system itself to have it written")
         tree = ElementTree.parse(self.system, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
-        for name, value in self.values.items():
+        for name in self.shared:
             element, attribute = _start_of(tree, name)
             if element is None:
                 raise Problem(f"{self.system} does not name '{name}' outside of <for> and <include>; expected a <parameter>, <input> or <coordinate>")
-            element.set(attribute, repr(float(value)))
+            element.set(attribute, repr(float(self.values[name])))
         tree.write(path, encoding="unicode")
         return Path(path)
 
@@ -107,50 +108,54 @@ def _picture(fit):
     return base64.b64encode(buffer.getvalue()).decode()
 
 
-class _Experiment:
-    """A motion that was measured."""
+class _Fitted(Experiment):
+    """With the motion that is to meet it, and the places of what this is differentiated by among all values that are sought."""
 
-    def __init__(self, data, point, vary, noise):
-        self.data = read_input(data) if not isinstance(data, np.ndarray) else data
-        names = self.data.dtype.names[1:]
-        self.inputs = [name for name in names if name in point.inputs]
-        self.measured = [name for name in names if name not in point.inputs]
-        if len(self.data) < 2 or (np.diff(self.data["time"]) <= 0).any():
-            raise Problem("data need at least two rows, and times that increase")
-        if not self.measured:
-            raise Problem(f"the data have no column that the system has as an output or state; expected some of {', '.join([*point.outputs, *point.states])}")
-        check_names(point, self.measured, vary)
-        self.noise = np.array([noise.get(name, 1.0) for name in self.measured])
-        self.motion = Motion(point, self.measured, vary, TOLERANCE)
-        self.values = np.stack([self.data[name] for name in self.measured], axis=1)
-
-    def signals(self, time):
-        return self.inputs, [float(np.interp(time, self.data["time"], self.data[name])) for name in self.inputs]
-
-    def kinks(self):
-        """The inner times where an input, which is linear between the rows, changes its slope."""
-        time = self.data["time"]
-        bends = np.zeros(len(time) - 2)
-        for name in self.inputs:
-            bends = np.maximum(bends, abs(np.diff(np.diff(self.data[name]) / np.diff(time))))
-        return time[1:-1][bends > 0]
+    def __init__(self, data, point, by, places, noise):
+        super().__init__(data, point, noise)
+        check_names(point, self.measured, by)
+        self.motion, self.by, self.places = motion(point, self.measured, by, TOLERANCE), by, places
 
     def run(self, values):
-        """Residuals in units of the noise, and their derivatives."""
-        found, slopes = self.motion.over(self.data["time"], values, self.signals if self.inputs else None, self.kinks())
+        """Residuals in units of the noise, and their derivatives by all values."""
+        found, slopes = self.motion.over(self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks())
         self.found = found
-        return ((found - self.values) / self.noise).ravel(), (slopes / self.noise[:, None]).reshape(found.size, -1)
+        everywhere = np.zeros((found.size, len(values)))
+        everywhere[:, self.places] = (slopes / self.noise[:, None]).reshape(found.size, -1)
+        return ((found - self.values) / self.noise).ravel(), everywhere
+
+    def first(self, name):
+        """What was measured first; None of what was not measured."""
+        return self.data[name][0] if name in self.measured else None
 
 
-class _Runs:
+class _Search:
     """All experiments at values, which the search asks for residuals and for derivatives one after the other."""
 
-    def __init__(self, experiments, vary):
-        self.experiments, self.vary, self.at = experiments, vary, None
+    def __init__(self, point, sets, vary, each, noise):
+        self.names = [*vary, *(f"{name} of experiment {number}" for number in range(1, len(sets) + 1) for name in each)]
+        self.kinds = [*vary, *(name for _ in sets for name in each)]  # as the FMU names them
+        self.experiments, self.at = [], None
+        for number, data in enumerate(sets):
+            own = len(vary) + number * len(each)
+            self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise))
+        point.start()
+        self.begin = dict(zip(self.names, point.read(self.kinds)))
+        for experiment in self.experiments:
+            measured = {self.names[place]: experiment.first(self.kinds[place]) for place in experiment.places[len(vary) :]}
+            self.begin |= {name: value for name, value in measured.items() if value is not None}
+
+    def bounds(self, point, given):
+        """Low ones and high ones; where it begins is within them."""
+        limits = [given.get(kind, point.limits[kind]) for kind in self.kinds]
+        for (name, value), (low, high) in zip(self.begin.items(), limits):
+            if not low <= value <= high or not low < high:
+                raise Problem(f"'{name}' begins at {value:g}, and its bounds are {low:g} and {high:g}; expected a start value between them")
+        return np.array(limits, dtype=float).T
 
     def run(self, values):
         if self.at is None or (self.at != values).any():
-            parts = [experiment.run(dict(zip(self.vary, values))) for experiment in self.experiments]
+            parts = [experiment.run(values) for experiment in self.experiments]
             self.at, self.residuals, self.slopes = values.copy(), np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
     def residuals_at(self, values):
@@ -162,54 +167,50 @@ class _Runs:
         return self.slopes
 
 
-def _bounds(point, vary, given):
-    limits = {name: (given[name] if name in given else point.limits.get(name, (-np.inf, np.inf))) for name in vary}
-    return np.array([limits[name] for name in vary], dtype=float).T
-
-
-def fit(system, data, vary, start_values, bounds, noise):
+def fit(system, data, vary, start_values, bounds, noise, each):
     sets = list(data) if isinstance(data, (list, tuple)) else [data]
-    vary = list(vary)
-    if not vary:
+    vary, each = list(vary), list(each)
+    if not vary and not each:
         raise Problem("nothing varies; expected the names of parameters or start values")
-    with opened(system, dict(start_values), what="be followed") as point:
-        experiments = [_Experiment(one, point, vary, noise) for one in sets]
-        point.start()
-        begin = point.read(vary)
-        runs = _Runs(experiments, vary)
-        found = least_squares(runs.residuals_at, begin, runs.slopes_at, bounds=_bounds(point, vary, bounds), x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12)
-        runs.run(found.x)
-        return _result(found.x, runs, system, point.name, bool(noise))
+    if {*vary} & {*each}:
+        raise Problem(f"'{min({*vary} & {*each})}' varies for all experiments and for each; expected one of these")
+    with followed(system, dict(start_values), [*vary, *each]) as point:
+        search = _Search(point, sets, vary, each, noise)
+        limits = search.bounds(point, bounds)
+        found = least_squares(search.residuals_at, [*search.begin.values()], search.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12)
+        search.run(found.x)
+        return _result(found.x, search, vary, system, point.name, bool(noise))
 
 
-def _result(values, runs, system, name, noise_is_known):
-    slopes, residuals, vary = runs.slopes, runs.residuals, runs.vary
+def _result(values, search, shared, system, name, noise_is_known):
+    slopes, residuals, names = search.slopes, search.residuals, search.names
     freedom = max(1, len(residuals) - len(values))
     variance = 1.0 if noise_is_known else residuals @ residuals / freedom
     scale = np.where(values != 0, abs(values), 1.0)
     _, singular, directions = np.linalg.svd(slopes * scale, full_matrices=False)
     is_told = singular > UNTOLD * singular.max() if singular.max() > 0 else np.zeros(len(singular), bool)
-    untold = [{vary[k]: share for k, share in enumerate(direction) if abs(share) > 0.1} for direction in directions[~is_told]]
+    untold = [{names[k]: share for k, share in enumerate(direction) if abs(share) > 0.1} for direction in directions[~is_told]]
     inner = directions[is_told] / singular[is_told, None]
     covariance = variance * (inner.T @ inner) * np.outer(scale, scale)
     deviations = np.sqrt(np.diag(covariance))
     for shares in untold:
-        deviations[[vary.index(name) for name in shares]] = np.inf
+        deviations[[names.index(name) for name in shares]] = np.inf
     length = np.where(np.isfinite(deviations) & (deviations > 0), deviations, 1.0)
     width = student.ppf(0.975, freedom) * deviations
     rms = {}
-    for experiment in runs.experiments:
+    for experiment in search.experiments:
         for i, measured in enumerate(experiment.measured):
             rms.setdefault(measured, []).append(experiment.found[:, i] - experiment.values[:, i])
     return Fit(
-        dict(zip(vary, values.tolist())),
-        dict(zip(vary, deviations.tolist())),
-        dict(zip(vary, zip((values - width).tolist(), (values + width).tolist()))),
+        dict(zip(names, values.tolist())),
+        dict(zip(names, deviations.tolist())),
+        dict(zip(names, zip((values - width).tolist(), (values + width).tolist()))),
         covariance / np.outer(length, length),
         untold,
-        [experiment.data for experiment in runs.experiments],
-        [(experiment.measured, experiment.found) for experiment in runs.experiments],
+        [experiment.data for experiment in search.experiments],
+        [(experiment.measured, experiment.found) for experiment in search.experiments],
         {measured: float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) for measured, parts in rms.items()},
         name,
         None if is_fmu(system) else system_file(system),
+        shared,
     )

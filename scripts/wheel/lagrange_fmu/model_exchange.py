@@ -1,41 +1,49 @@
-"""An FMU of FMI 2.0 in model exchange: started at values, with its derivatives and their directional derivatives."""
+"""An FMU in model exchange: started at values, with its derivatives and their directional derivatives."""
 
 import shutil
-from collections.abc import Callable
 from contextlib import contextmanager
-from ctypes import POINTER, c_double
 
 import numpy as np
-from fmpy import calloc, extract, free
+from fmpy import extract
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Model,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-)
 
+from .models import Model2, Model3, Slave2
 from .problem import Problem
-from .running import fmu_of
+from .running import fmu_of, is_fmu
 from .simulation import check_start, described
 from .variables import settable
 
+ADJOINT = ("--adjoint", "--scalars")  # words for lagc
+
+
+def along(of, by):
+    """The variable that is the derivative of a state, its derivative or an output by a value, where lagc derived these."""
+    return f"der({of[4:-1]}.by.{by})" if of.startswith("der(") else f"{of}.by.{by}"
+
+
+def words_for(by):
+    """For lagc, which derives them so."""
+    return [word for name in by for word in ("--along", name)]
+
 
 class Point:
-    """An FMU that is started again and again at a point."""
+    """An FMU that is started again and again at a point; by: names, the derivatives by which are variables of their own, which are not listed."""
 
-    def __init__(self, model, description, values):
+    def __init__(self, model, description, values, by=()):
         self.model, self.values = model, values
         self.references = {v.name: v.valueReference for v in description.modelVariables}
+        self.names = {reference: name for name, reference in self.references.items()}
+        outputs = [v.name for v in description.modelVariables if v.causality == "output"]
         self.derivatives = [unknown.variable.name for unknown in description.derivatives]
         self.states = [unknown.variable.derivative.name for unknown in description.derivatives]
+        ends = tuple(f".by.{name}" for name in by)
+        self.derivatives, self.states, self.settable, self.outputs = (
+            [name for name in names if not name.removesuffix(")").endswith(ends)] for names in (self.derivatives, self.states, settable(description), outputs)
+        )
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
         self.name = description.modelName
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
-        self.settable = settable(description)
         self.indicator_count = description.numberOfEventIndicators
-        self.outputs = [v.name for v in description.modelVariables if v.causality == "output"]
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
@@ -43,8 +51,7 @@ class Point:
     def start(self, states=None, values=None):
         """The states that initialization makes of those, and of values by name."""
         values = self.values | (values or {}) | (dict(zip(self.states, states)) if states is not None else {})
-        self.model.reset()
-        self.model.setupExperiment(startTime=0.0)
+        self.model.start_over()
         if values:
             self.model.setReal([self.references[name] for name in values], list(values.values()))
         self.model.enterInitializationMode()
@@ -55,15 +62,11 @@ class Point:
 
     def set_states(self, states):
         """In the order of `states`."""
-        values = np.ascontiguousarray(states, dtype=float)
-        self.model.fmi2SetContinuousStates(self.model.component, values.ctypes.data_as(POINTER(c_double)), len(values))
+        self.model.set_states(np.ascontiguousarray(states, dtype=float))
 
     def indicators(self):
         """What changes its sign at events."""
-        values = np.zeros(self.indicator_count)
-        if len(values):
-            self.model.fmi2GetEventIndicators(self.model.component, values.ctypes.data_as(POINTER(c_double)), len(values))
-        return values
+        return self.model.indicators(self.indicator_count) if self.indicator_count else np.empty(0)
 
     def jacobian(self, unknowns, knowns):
         references = [self.references[name] for name in unknowns]
@@ -71,24 +74,14 @@ class Point:
         return np.array(columns).T.reshape(len(unknowns), len(knowns))
 
 
-def _callbacks(log: Callable[[str], None]):
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: log(words[4].decode()))
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-    return callbacks
-
-
 @contextmanager
-def _opened(fmu, description):
+def _opened(fmu, description, in_series):
     """The FMU as a model, and what it logs."""
     folder, messages = extract(str(fmu)), []
+    kind = Slave2 if in_series else Model3 if description.fmiVersion == "3.0" else Model2
     try:
-        model = FMU2Model(
-            guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier
-        )
-        callbacks = _callbacks(messages.append)  # which lives as long as the model
-        model.instantiate(callbacks=callbacks)
+        model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
+        model.begin(messages)
         try:
             yield model, messages
         finally:
@@ -97,16 +90,27 @@ def _opened(fmu, description):
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _check_abilities(fmu, description, adjoint):
+    version, kind, what = ("3.0", "adjoint", "providesAdjointDerivatives") if adjoint else ("2.0", "directional", "providesDirectionalDerivative")
+    if description.fmiVersion != version or not getattr(description.modelExchange, what, False):
+        raise Problem(f"{fmu} has no {kind} derivatives of FMI {version}; expected a system, or an FMU that was built of it with --fmi {version[0]}")
+    array = next((v.name for v in description.modelVariables if v.dimensions), None)
+    if array is not None:
+        raise Problem(f"'{array}' of {fmu} is an array, whose elements have no names; expected the system that the FMU was built of")
+
+
 @contextmanager
-def opened(system, values, method=None, what="be linearized there"):
-    """The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem."""
-    with fmu_of(system, method=method) as fmu:
+def opened(system, values, method=None, what="be linearized there", adjoint=False, by=()):
+    """
+    The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
+    as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables.
+    """
+    with fmu_of(system, method=method, fmi=3 if adjoint and not is_fmu(system) else None, words=ADJOINT if adjoint else words_for(by)) as fmu:
         description = described(fmu)
-        if description.fmiVersion != "2.0" or description.modelExchange is None or not description.modelExchange.providesDirectionalDerivative:
-            raise Problem(f"{fmu} has no directional derivatives of FMI 2.0; expected a system, or an FMU that was built of it with --fmi 2")
+        _check_abilities(fmu, description, adjoint)
         check_start(values, description)
-        with _opened(fmu, description) as (model, messages):
+        with _opened(fmu, description, bool(by)) as (model, messages):
             try:
-                yield Point(model, description, values)
+                yield Point(model, description, values, by)
             except FMICallException as problem:
                 raise Problem("; ".join([f"{description.modelName} cannot {what}", *(messages or [str(problem)])])) from None

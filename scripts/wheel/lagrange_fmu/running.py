@@ -5,7 +5,7 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-from .building import build
+from .building import build_with
 from .input_file import read_input
 from .problem import Problem
 from .simulation import simulate, write_results
@@ -16,15 +16,15 @@ def is_fmu(path):
 
 
 @contextmanager
-def fmu_of(system, folder=None, method=None, fmi=None):
-    """The FMU of a system, built into the folder, or for a while where there is none; an FMU as it is."""
+def fmu_of(system, folder=None, method=None, fmi=None, words=()):
+    """The FMU of a system, built into the folder, or for a while where there is none, with these words for lagc; an FMU as it is."""
     if is_fmu(system):
         if method is not None or fmi is not None:
             raise Problem(f"{system} is built already, with its solver and version of FMI; expected a system to choose them for")
         yield Path(system)
         return
     with tempfile.TemporaryDirectory() as scratch:
-        yield build(system, output=folder or scratch, solver=method, fmi=fmi or 2)
+        yield build_with(words, system, output=folder or scratch, solver=method, fmi=fmi or 2)
 
 
 def motion_of(system, start_values=None, input=None, folder=None, method=None, fmi=None, **options):

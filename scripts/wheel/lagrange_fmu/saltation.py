@@ -7,6 +7,7 @@ equations with discontinuous right-hand sides, 1958). What the event makes of ne
 import numpy as np
 from scipy.optimize import brentq
 
+from .differences import CENTRAL, difference, relevant, rule_within
 from .problem import Problem
 
 STEP = 1e-3  # of differences, as a share of the states and parameters
@@ -72,40 +73,56 @@ class Saltation:
             raise Problem(f"the event at {self.time:g} s is only touched, and comes for some neighbours not at all: there is no derivative through it")
         return delay
 
-    def neighbour(self, direction, acting, share):
-        """The state behind the event, and the delay of a neighbour: so many steps along the direction, with the acting parameters changed as much."""
+    def neighbour(self, shift, changes):
+        """The state behind the event, and the delay, of a neighbour whose state is shifted, with parameters changed: by reference, by how much."""
         self.model.setFMUState(self.saved)
-        if acting and share != 0.0:
-            values = np.array(self.model.getReal(acting)) + share
+        if changes:
+            values = np.array(self.model.getReal([*changes])) + [*changes.values()]
             self.model.enterEventMode()
-            self.model.setReal(acting, values)
+            self.model.setReal([*changes], values)
             self.model.newDiscreteStates()
             self.model.enterContinuousTimeMode()
-        state = self.state + share * direction
+        state = self.state + shift
         delay = self.delay_of(state)
         self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
         return np.append(self.update(), delay)
 
-    def step_along(self, direction, acting):
-        """A small share of what the states and the acting parameters are."""
-        sizes = [*(np.maximum(abs(self.state), 0.1) / np.maximum(abs(direction), 1e-300)), *(abs(value) or 1.0 for value in (self.model.getReal(acting) if acting else []))]
-        return STEP * min(sizes)
+    def sizes_of(self, acting):
+        return {reference: abs(value) or 1.0 for reference, value in zip(acting, self.model.getReal(acting) if acting else ())}
 
-    def pass_over(self, slopes):
-        """Leaves the FMU behind the event. Returns its state there, and the slopes of that."""
+    def rule_of(self, acting, step):
+        if not acting:
+            return CENTRAL
+        (value,), (reference,) = self.model.getReal(acting), acting
+        return rule_within(value, step, self.point.limits[self.point.names[reference]])
+
+    def change_along(self, direction, acting):
+        """By how much the state behind the event, and the delay, change along the direction, with the acting parameters growing with it."""
+        self.model.setFMUState(self.saved)
+        step = STEP * min([*(np.maximum(abs(self.state), 0.1) / np.maximum(abs(direction), 1e-300)), *self.sizes_of(acting).values()])
+        rule = self.rule_of(acting, step)
+        return difference(lambda steps: self.neighbour(steps * step * direction, dict.fromkeys(acting, steps * step)), rule) / step
+
+    def change_anything(self, acting):
+        """Whether the event is another one with these parameters changed."""
+        self.model.setFMUState(self.saved)
+        steps = {reference: STEP * size for reference, size in self.sizes_of(acting).items()}
+        ends = {reference: self.rule_of([reference], step)[-1][0] * step for reference, step in steps.items()}
+        still = np.zeros_like(self.state)
+        return (self.neighbour(still, ends) != self.neighbour(still, {})).any()
+
+    def pass_over(self, slopes, acting):
+        """Leaves the FMU behind the event. Returns its state there, and the slopes of that; acting: of each slope, the parameters that change with it."""
+        alone = [references[0] for direction, references in zip(slopes, acting) if references and not direction.any()]
+        idle = {*alone} - {*relevant(self.change_anything, alone)}
         found = []
-        for direction, acting in zip(slopes, self.motion.acting):
-            if not direction.any() and not acting:
-                found.append((np.zeros_like(direction), 0.0))
-                continue
-            step = self.step_along(direction, acting)
-            one, two = (self.neighbour(direction, acting, k * step) - self.neighbour(direction, acting, -k * step) for k in (1, 2))
-            change = (8 * one - two) / (12 * step)
-            found.append((change[:-1], change[-1]))
+        for direction, references in zip(slopes, acting):
+            is_idle = not direction.any() and idle.issuperset(references)
+            found.append(np.zeros(len(direction) + 1) if is_idle else self.change_along(direction, references))
         self.model.setFMUState(self.saved)
         self.motion.place(self.time, self.state, self.inputs)
         state = self.update()
         self.model.freeFMUState(self.saved)
         self.motion.place(self.time, state, self.inputs)
         rates = np.array(self.model.getReal(self.motion.rate_references))
-        return state, np.array([change - delay * rates for change, delay in found])
+        return state, np.array([change[:-1] - change[-1] * rates for change in found]).reshape(-1, len(state))

@@ -1,10 +1,7 @@
 """Motions with their derivatives by start values, parameters and inputs, by the variational equations, for which the FMU gives directional derivatives."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from .model_exchange import opened
 from .problem import Problem
 
 try:
@@ -12,19 +9,37 @@ try:
 except ImportError:
     raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
 
+from .differences import difference, relevant, rule_within
 from .saltation import Saltation, crossing_of
 
 LOOKS = 8  # at what events look at, in a step
-STEP = 1e-3  # relative, of differences of fourth order through initialization
+STEP = 1e-3  # relative, of differences through initialization
 
 
-@dataclass(frozen=True)
-class Sensitivities:
-    """At n times: `values[of]`, and `derivatives[of, by]` of them, all in SI units."""
+def start_slopes(point, by, values):
+    """The states that initialization makes of values by name, and their derivatives by each of these names, a row each."""
+    at = dict(zip(by, (point.start(values=values), point.read(by))[1]))
+    step = {name: STEP * (abs(value) or 1.0) for name, value in at.items()}
+    rules = {name: rule_within(value, step[name], point.limits[name]) for name, value in at.items()}
+    start = point.start(values=values)
 
-    time: np.ndarray
-    values: dict
-    derivatives: dict
+    def changed(steps):
+        return point.start(values=values | {name: at[name] + count * step[name] for name, count in steps.items()})
+
+    def changes(names):
+        return (changed({name: rules[name][-1][0] for name in names}) != start).any()
+
+    moving = {*relevant(changes, [name for name in by if name not in point.states])}
+    slopes = [
+        difference(lambda count: changed({name: count}), rules[name]) / step[name] if name in moving or name in point.states else np.zeros_like(start)
+        for name in by
+    ]
+    return point.start(values=values), np.array(slopes).reshape(len(by), len(start))
+
+
+def acting_of(point, by):
+    """Of each of these names what acts along the motion: a start value acts through the start alone."""
+    return [[] if name in point.states else [point.references[name]] for name in by]
 
 
 class Motion:
@@ -36,8 +51,7 @@ class Motion:
         self.state_references = [reference[name] for name in point.states]
         self.rate_references = [reference[name] for name in point.derivatives]
         self.read_references = [reference[name] for name in self.of]
-        # What a start value is by, acts through the start alone.
-        self.acting = [[] if name in point.states else [reference[name]] for name in self.by]
+        self.acting = acting_of(point, self.by)
 
     def place(self, time, state, inputs):
         self.model.setTime(time)
@@ -60,13 +74,7 @@ class Motion:
 
     def start(self, values):
         """The states that initialization makes of these values, and their derivatives."""
-        slopes = []
-        at = dict(zip(self.by, (self.point.start(values=values), self.point.read(self.by))[1]))
-        for name in self.by:
-            step = STEP * (abs(at[name]) or 1.0)
-            one, two = (self.point.start(values=values | {name: at[name] + k * step}) - self.point.start(values=values | {name: at[name] - k * step}) for k in (1, 2))
-            slopes.append((8 * one - two) / (12 * step))
-        return np.concatenate([self.point.start(values=values), *slopes])
+        return np.concatenate([part.ravel() for part in start_slopes(self.point, self.by, values)])
 
     def read(self, time, both, inputs):
         """Values and derivatives of what is asked for."""
@@ -91,6 +99,7 @@ class Motion:
     def follow(self, begin, both, end, inputs, due, rows):
         """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
         solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
+        self.begin_phase(begin)
         while solver.status == "running":
             message = solver.step()
             if solver.status == "failed":
@@ -98,11 +107,18 @@ class Motion:
             dense = solver.dense_output()
             event = self.event_in(dense, solver, inputs)
             reached = event[0] if event else solver.t
+            self.add_step(reached, dense)
             while due and due[0] <= reached:
                 rows.append(self.read(due[0], dense(due.pop(0)), inputs))
             if event:
                 return event[0], self.pass_over(event, dense, solver.t_old, inputs)
         return end, solver.y
+
+    def begin_phase(self, time):
+        """Of smooth motion, of which each step is added next: those may note it who go back."""
+
+    def add_step(self, end, dense):
+        """dense: the states within it."""
 
     def event_in(self, dense, solver, inputs):
         """Its time and the number of its indicator; None for none."""
@@ -117,13 +133,16 @@ class Motion:
         looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
         return next((event for event in (crossing_of(indicators, *part) for part in zip(looks, looks[1:])) if event), None)
 
-    def pass_over(self, event, dense, before, inputs):
+    def saltation(self, event, dense, before, inputs):
         count = len(self.state_references)
         time, indicator = event
-        both = dense(time)
         early = (before + time) / 2
-        saltation = Saltation(self, time, both[:count], (early, dense(early)[:count]), indicator, inputs)
-        state, slopes = saltation.pass_over(both[count:].reshape(len(self.by), count))
+        return Saltation(self, time, dense(time)[:count], (early, dense(early)[:count]), indicator, inputs)
+
+    def pass_over(self, event, dense, before, inputs):
+        count = len(self.state_references)
+        slopes = dense(event[0])[count:].reshape(len(self.by), count)
+        state, slopes = self.saltation(event, dense, before, inputs).pass_over(slopes, self.acting)
         return np.concatenate([state, slopes.ravel()])
 
 
@@ -132,12 +151,3 @@ def check_names(point, of, by):
         for name in names:
             if name not in among:
                 raise Problem(f"'{name}' is not {what}; these are: {', '.join(sorted(among))}")
-
-
-def sensitivities(system, of, by, times, start_values, tolerance):
-    with opened(system, dict(start_values), what="be followed") as point:
-        check_names(point, of, by)
-        motion = Motion(point, of, by, tolerance)
-        values, derivatives = motion.over(np.asarray(times, dtype=float))
-    named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
-    return Sensitivities(np.asarray(times, dtype=float), dict(zip(of, values.T)), named)

@@ -59,6 +59,7 @@ enum SymbolKind {
   SEED_VELOCITY,
   SEED_ACCELERATION,
   SEED_INPUT,
+  SEED_RESULT, /* by what a result counts in a weighted gradient */
   SYMBOL_KIND_COUNT
 };
 

@@ -6,7 +6,6 @@
 #include "algebra/kinks.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "interface/arrays.h"
 #include "interface/symbol_names.h"
 #include "mechanics/switching.h"
 
@@ -325,6 +324,5 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   interface->count_in_fmi2 = interface->count;
   append_indicators(interface, equations->switching);
   if (!interface->depends_on_time) append_time(interface, model);
-  arrays_find(interface);
   return interface;
 }

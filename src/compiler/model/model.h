@@ -195,6 +195,7 @@ struct Model {
   struct Forces forces;
   struct Unknowns unknowns;
   bool linearized;
+  bool unrolled;                   /* the accelerations are wanted as expressions */
   struct LinearizationPoint point; /* where linearized */
   struct SolverChoice solver;
   struct Experiment experiment;

@@ -89,6 +89,29 @@ static struct Routine *directional_routine(const struct Program *program, struct
   return routine;
 }
 
+/* In large blocks the multipliers are where the solutions are. */
+static void append_multipliers(const struct Program *program, struct Values *values) {
+  const struct WeightedGradient *gradient = program->expressions->weighted_gradient;
+  for (size_t b = 0; b < program->blocks.count; b++) {
+    const struct LoopedBlock *looped = &program->blocks.items[b];
+    const struct InertiaBlock *block = looped->block;
+    for (size_t i = 0; i < block->count; i++) values_compute(values, &gradient->side[block->coordinates[i]], 1, false);
+    append_solution(values, &program->blocks, b, gradient->side);
+    for (size_t i = 0; i < block->count; i++)
+      values_hold(values, gradient->multiplier[block->coordinates[i]], place_in(SPACE_SIDE, looped->first_side + i));
+  }
+}
+
+static struct Routine *weighted_gradient_routine(const struct Program *program, struct Values *values) {
+  struct Routine *routine = values_begin(values);
+  const struct WeightedGradient *gradient = program->expressions->weighted_gradient;
+  append_needed_accelerations(program, values, gradient->elements, gradient->count);
+  append_multipliers(program, values);
+  values_compute(values, gradient->elements, gradient->count, false);
+  for (size_t i = 0; i < gradient->count; i++) values_copy(values, target_place(i), gradient->elements[i]);
+  return routine;
+}
+
 /* First the right sides of large blocks, of which a column has all rows or none; then their solutions. */
 static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
                                    struct BlockRows *rows) {
@@ -216,6 +239,10 @@ static bool moves(const struct Program *program) {
   return program->equations->count > 0;
 }
 
+static bool has_weighted_gradient(const struct Program *program) {
+  return program->expressions->weighted_gradient != NULL;
+}
+
 static bool has_jacobian(const struct Program *program) {
   return program->expressions->jacobian != NULL;
 }
@@ -275,6 +302,11 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_DIRECTIONAL] = {"d state / dt along a direction", "directional",
                               "const struct Point *point, const struct Seed *seed, Real *derivative", "derivative",
                               RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, moves, directional_routine},
+    [FUNCTION_WEIGHTED_GRADIENT] = {"The gradient of a weighted sum of the derivatives and outputs",
+                                    "weighted_gradient",
+                                    "const struct Point *point, const struct Seed *seed, Real *gradient", "gradient",
+                                    RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, has_weighted_gradient,
+                                    weighted_gradient_routine},
     [FUNCTION_JACOBIAN] = {"Jacobian matrix", "jacobian", "const struct Point *point, Real *values", "values",
                            RETURNS_STATUS, IN_WORKSPACE, IN_IMPLICIT, has_jacobian, jacobian_routine},
     [FUNCTION_LINEAR] = {"A, B and c", "linear", "const Real *p, const Real *c, Real *matrix", "matrix",

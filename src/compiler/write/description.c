@@ -164,6 +164,7 @@ static void write_tables(FILE *file, const struct Program *program, const struct
   write_constraints(file, program, &facts->constraints);
   if (program->equations->switching != NULL)
     fputs("    .switches = &switches,\n    .event_laws = &event_laws,\n", file);
+  if (program->expressions->weighted_gradient != NULL) fputs("    .reverse_sweep = &reverse_sweep,\n", file);
   write_fields(file, program, IN_LAGRANGIAN, IN_CONSTRAINTS);
 }
 
@@ -185,6 +186,8 @@ static void write_lagrangian(FILE *file, const struct Program *program, const st
   const char *solver = program->solver, *lu = program->lu;
   if (solver != NULL) fprintf(file, "extern const struct Solver solver_%s;\n\n", solver);
   if (lu != NULL) fprintf(file, "extern const struct Lu %s;\n\n", lu);
+  if (program->expressions->weighted_gradient != NULL)
+    fputs("extern const struct ReverseSweep reverse_sweep;\n\n", file);
   fprintf(file, "const struct Lagrangian lagrangian = {\n    .name = \"%s\",\n    .guid = GUID,\n", facts->name);
   write_counts(file, facts);
   fputs("    .variables = variables,\n", file);

@@ -5,10 +5,11 @@
 
 /* The names of arrays; the other spaces are no arrays, or two. */
 static const char *const arrays[SPACE_COUNT] = {
-    [SPACE_PARAMETER] = "p",       [SPACE_PREPARED] = "c",    [SPACE_INPUT] = "u",     [SPACE_ACCELERATION] = "a",
-    [SPACE_SEED_PARAMETER] = "dp", [SPACE_SEED_INPUT] = "du", [SPACE_MASS] = "mass",   [SPACE_SEED_ACCELERATION] = "da",
-    [SPACE_SIDE] = "side",         [SPACE_ROW] = "w",         [SPACE_STATE_ROW] = "x", [SPACE_INPUT_ROW] = "input",
-    [SPACE_TARGET_ROW] = "y",
+    [SPACE_PARAMETER] = "p",    [SPACE_PREPARED] = "c",           [SPACE_INPUT] = "u",
+    [SPACE_ACCELERATION] = "a", [SPACE_SEED_PARAMETER] = "dp",    [SPACE_SEED_INPUT] = "du",
+    [SPACE_MASS] = "mass",      [SPACE_SEED_ACCELERATION] = "da", [SPACE_SIDE] = "side",
+    [SPACE_ROW] = "w",          [SPACE_STATE_ROW] = "x",          [SPACE_INPUT_ROW] = "input",
+    [SPACE_TARGET_ROW] = "y",   [SPACE_SEED_RESULT] = "dy",
 };
 
 static void write_state(FILE *file, const struct Program *program, const char *direction, size_t index) {

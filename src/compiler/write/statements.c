@@ -27,9 +27,11 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
   declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
   declare(file, routine_uses(routine, SPACE_PREPARED), "c", "point->prepared");
   declare(file, reads(routine, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
-  declare(file, reads(routine, SPACE_SEED_STATE, n, 2 * n), "dv", format_text("seed->state + %zu", n));
+  declare(file, reads(routine, SPACE_SEED_STATE, n, program->interface->state_count), "dv",
+          format_text("seed->state + %zu", n));
   declare(file, routine_uses(routine, SPACE_SEED_INPUT), "du", "seed->input");
   declare(file, routine_uses(routine, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
+  declare(file, routine_uses(routine, SPACE_SEED_RESULT), "dy", "seed->result");
 }
 
 /* Where series follow, the factors of large blocks are kept for them. */

@@ -5,6 +5,7 @@
 
 #include "evaluation/evaluate.h"
 #include "fmi/check.h"
+#include "fmi/reverse_sweep.h"
 #include "instance/initial_state.h"
 #include "stepping/reading.h"
 
@@ -114,10 +115,21 @@ static enum Status weighted_column(struct Instance *instance, const unsigned *un
   return status;
 }
 
+static enum Status reverse_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
+                                      const unsigned *known, size_t known_count, const double *seed, double *value) {
+  reading_begin(instance);
+  enum Status status =
+      lagrangian.reverse_sweep->derivative(instance, unknown, unknown_count, known, known_count, seed, value);
+  reading_end(instance);
+  return status;
+}
+
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                const unsigned *known, size_t known_count, const double *seed, double *value) {
   for (size_t i = 0; i < unknown_count; i++)
     if (!isfinite(seed[i])) return refuse_call(instance, "seed %zu is %g; expected a finite number", i + 1, seed[i]);
+  if (lagrangian.reverse_sweep != NULL && lagrangian.reverse_sweep->is_for(instance, unknown, unknown_count))
+    return reverse_derivative(instance, unknown, unknown_count, known, known_count, seed, value);
   double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
   if (column == NULL) return refuse_call(instance, "there is no memory for the derivatives");
   enum Status status = STATUS_DONE;

@@ -9,8 +9,8 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
                                    const unsigned *known, size_t known_count, const double *seed, double *value);
 
 /*
- * value = seed^T * d unknown / d known, one directional derivative for each known: the cost grows with their number, not
- * with that of the unknowns.
+ * value = seed^T * d unknown / d known: by a reverse sweep in FMUs that have it, at the same cost for any number of knowns;
+ * in others by one directional derivative for each known.
  */
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                const unsigned *known, size_t known_count, const double *seed, double *value);

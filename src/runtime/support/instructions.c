@@ -27,6 +27,7 @@ void instructions_seed(struct Frame *frame, const struct Seed *seed) {
   frame->base[SPACE_SEED_STATE] = (double *)seed->state;
   frame->base[SPACE_SEED_INPUT] = (double *)seed->input;
   frame->base[SPACE_SEED_TIME] = (double *)&seed->time;
+  frame->base[SPACE_SEED_RESULT] = (double *)seed->result;
 }
 
 static inline double *at(double *const *base, Place place) {

@@ -1,15 +1,27 @@
 """Finds parameters and start values with which the motion meets measurements; tells how sure they are, and writes a page and the system with the new values."""
 
+import argparse
 from pathlib import Path
 
 from .run import start_value
 from .words_of_systems import SYSTEM_OR_FMU
 
 
+def bounds(text):
+    name, _, ends = text.partition("=")
+    try:
+        low, high = map(float, ends.split(":"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW:HIGH with two numbers") from None
+    return name, (low, high)
+
+
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
     parser.add_argument("data", nargs="+", metavar="DATA.csv", help="time and measured variables, and perhaps inputs, by names in the first line; several are several experiments")
-    parser.add_argument("--vary", nargs="+", required=True, metavar="NAME", help="parameters and start values to be found")
+    parser.add_argument("--vary", nargs="+", default=[], metavar="NAME", help="parameters and start values to be found")
+    parser.add_argument("--each", nargs="+", default=[], metavar="NAME", help="start values and the like that each experiment has of its own, to be found too")
+    parser.add_argument("--bounds", nargs="+", action="extend", default=[], type=bounds, metavar="NAME=LOW:HIGH", help="in place of the variables' min and max")
     parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="values to begin with, or to keep")
     parser.add_argument("--noise", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="standard deviations of measured variables")
     parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="for NAME-fit.html and NAME-fit.xml")
@@ -18,7 +30,7 @@ def arguments(parser):
 def run(arguments):
     from ..fitting import fit
 
-    found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), {}, dict(arguments.noise))
+    found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), dict(arguments.bounds), dict(arguments.noise), arguments.each)
     print(found)
     folder = Path(arguments.output)
     folder.mkdir(parents=True, exist_ok=True)

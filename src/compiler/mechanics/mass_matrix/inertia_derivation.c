@@ -94,7 +94,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
   bool power_has_accelerations =
       (model->given.drive_count > 0 || model->given.inputs_move) && model->forces.work_line > 0;
-  bool unroll_all = power_has_accelerations || model->linearized ||
+  bool unroll_all = power_has_accelerations || model->linearized || model->unrolled ||
                     (model->solver.method != NULL && model->solver.method->needs_linear);
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];

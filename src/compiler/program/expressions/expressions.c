@@ -134,13 +134,16 @@ static void create_initial(struct Expressions *expressions, const Node *seeds) {
   derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
 }
 
-static void create_directional(struct Expressions *expressions) {
+static void create_directional(struct Expressions *expressions, struct Extras extras) {
   struct Graph *graph = expressions->model->graph;
   Node *seeds = create_seeds(graph);
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_pushes(expressions, seeds);
+  if (extras.adjoint)
+    expressions->weighted_gradient = weighted_gradient_create(expressions->model, expressions->equations,
+                                                              expressions->interface, expressions->result, seeds);
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
@@ -214,13 +217,14 @@ static void create_watched_series(struct Expressions *expressions) {
 }
 
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Diagnostics *diagnostics) {
+                                       const struct Interface *interface, struct Extras extras,
+                                       struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   const struct Method *method = equations->method;
   struct Expressions *expressions = allocate(1, sizeof *expressions);
   *expressions = (struct Expressions){.model = model, .equations = equations, .interface = interface};
   if (method != NULL && method->needs_linear) create_linear(expressions, diagnostics);
-  create_directional(expressions);
+  create_directional(expressions, extras);
   if (method != NULL && method->needs_jacobian) create_jacobian(expressions, diagnostics);
   if (method != NULL && method->series != NO_SERIES) create_series(expressions, diagnostics);
   create_output_series(expressions);
@@ -253,6 +257,11 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, linear->a, linear->states * linear->states);
     append_nodes(&targets, linear->b, linear->states * linear->inputs);
     append_nodes(&targets, linear->c, linear->states);
+  }
+  if (expressions->weighted_gradient != NULL) {
+    const struct WeightedGradient *gradient = expressions->weighted_gradient;
+    append_nodes(&targets, gradient->elements, gradient->count);
+    append_nodes(&targets, gradient->side, row_count(equations));
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);

@@ -7,6 +7,7 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/switching.h"
 #include "program/expressions/series_plan.h"
+#include "program/expressions/weighted_gradient.h"
 #include "algebra/node_list.h"
 
 /*
@@ -54,11 +55,18 @@ struct Expressions {
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
   Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
+  struct WeightedGradient *weighted_gradient; /* NULL unless asked for, and where there is none */
+};
+
+/* What lagc can be asked for beside what every FMU has. */
+struct Extras {
+  bool adjoint; /* gradients by a reverse sweep */
 };
 
 /* Reports errors where the chosen solver does not fit the system; NULL then. */
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Diagnostics *diagnostics);
+                                       const struct Interface *interface, struct Extras extras,
+                                       struct Diagnostics *diagnostics);
 
 /* All nodes that are computed. */
 struct NodeList expressions_targets(const struct Expressions *expressions);

@@ -37,6 +37,7 @@ static Place place_of_symbol(const struct Values *values, const struct Symbol *s
   case SEED_COORDINATE: return place_in(SPACE_SEED_STATE, index);
   case SEED_VELOCITY: return place_in(SPACE_SEED_STATE, n + index);
   case SEED_ACCELERATION: return place_in(SPACE_SEED_ACCELERATION, index);
+  case SEED_RESULT: return place_in(SPACE_SEED_RESULT, index);
   case DISPLACEMENT: /* replaced in all that is computed, and without seeds */
   case REACTION:
   case SEED_INPUT:
@@ -51,6 +52,12 @@ Place values_place(const struct Values *values, Node node) {
   if (values->graph->vertices[node].operation == SYMBOL)
     return place_of_symbol(values, graph_symbol_of(values->graph, node));
   return place_in(SPACE_PREPARED, values->prepared->slot[node] - 1);
+}
+
+void values_hold(struct Values *values, Node node, Place place) {
+  values->local[node] = place;
+  values->has_local[node] = true;
+  append_node(&values->computed, node);
 }
 
 void values_copy(struct Values *values, Place target, Node node) {
@@ -94,9 +101,7 @@ static void append(struct Values *values, Node node, struct Form form) {
   else
     routine_append(values->routine, opcodes[form.kind], result, values_place(values, form.left),
                    form.arity == 2 ? values_place(values, form.right) : 0, 0);
-  values->local[node] = result;
-  values->has_local[node] = true;
-  append_node(&values->computed, node);
+  values_hold(values, node, result);
 }
 
 static bool is_missing(const struct Values *values, Node node) {

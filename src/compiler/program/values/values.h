@@ -27,5 +27,8 @@ void values_compute(struct Values *values, const Node *targets, size_t count, bo
 /* The place of a leaf, a prepared value or a computed node. */
 Place values_place(const struct Values *values, Node node);
 
+/* The routine has the value of the node in this place. */
+void values_hold(struct Values *values, Node node, Place place);
+
 /* The routine copies the value of a node to a place. */
 void values_copy(struct Values *values, Place target, Node node);

@@ -1,0 +1,205 @@
+"""
+The derivative of one number of a motion by many parameters, start values and inputs: the adjoint equation backwards along the motion, for which the
+FMU gives adjoint derivatives (Y. Cao, S. Li, L. Petzold, R. Serban: Adjoint sensitivity analysis for differential-algebraic equations, 2003). Its cost
+does not depend on how many they are, but where an event, or the start, depends on them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .experiment import Experiment
+from .model_exchange import opened
+from .problem import Problem
+from .sensitivity import Motion, acting_of, check_names, start_slopes
+
+from scipy.integrate import DOP853, OdeSolution  # isort: skip
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """The number, and its derivatives by name, in SI units."""
+
+    value: float
+    derivatives: dict
+
+
+@dataclass
+class Phase:
+    """Smooth motion between events and kinks of inputs."""
+
+    saved: object  # the FMU's state in it
+    times: list
+    steps: list
+
+    def states(self):
+        return OdeSolution(self.times, self.steps)
+
+
+@dataclass
+class Jump:
+    """Of an event: what the states behind it change by, a row for each state before it and for each parameter."""
+
+    by_states: np.ndarray
+    by_acting: np.ndarray
+
+
+class Trail(Motion):
+    """A motion that can be followed back."""
+
+    def __init__(self, point, of, acting, tolerance):
+        super().__init__(point, of, [], tolerance)
+        self.known_acting, self.trail = acting, []
+
+    def begin_phase(self, time):
+        self.trail.append(Phase(self.model.getFMUState(), [time], []))
+
+    def add_step(self, end, dense):
+        phase = self.trail[-1]
+        if end > phase.times[-1]:
+            phase.times.append(end)
+            phase.steps.append(dense)
+
+    def pass_over(self, event, dense, before, inputs):
+        count, more = len(self.state_references), len(self.known_acting)
+        slopes = np.vstack([np.eye(count), np.zeros((more, count))])
+        acting = [*([] for _ in range(count)), *([reference] for reference in self.known_acting)]
+        state, found = self.saltation(event, dense, before, inputs).pass_over(slopes, acting)
+        self.trail.append(Jump(found[:count], found[count:]))
+        return state
+
+    def forget(self):
+        for part in self.trail:
+            if isinstance(part, Phase):
+                self.model.freeFMUState(part.saved)
+
+
+class WayBack:
+    """
+    What the number depends on the states by at a time, and with the weights of what is read from there on by the acting parameters: one array, in the end
+    of which is the integral, where the number is one.
+    """
+
+    def __init__(self, trail, running, inputs):
+        """running: the references of what is integrated."""
+        self.trail, self.model, self.running, self.inputs = trail, trail.model, list(running), inputs
+        self.state_count = len(trail.state_references)
+        self.knowns = [*trail.state_references, *trail.known_acting]
+        self.now = np.zeros(len(self.knowns) + 1)
+        self.step = None
+
+    def rates(self, time, now, states):
+        self.trail.place(time, states(time), self.inputs)
+        seed = [*now[: self.state_count], *(1.0 for _ in self.running)]
+        found = self.model.adjoint([*self.trail.rate_references, *self.running], self.knowns, seed)
+        return -np.append(found, sum(self.model.getReal(self.running)) if self.running else 0.0)
+
+    def go(self, begin, end, states):
+        """Back from the end to the beginning."""
+        if not begin < end:
+            return
+        tolerance = self.trail.tolerance
+        first = None if self.step is None else min(self.step, end - begin)
+        solver = DOP853(lambda time, now: self.rates(time, now, states), end, self.now, begin, first_step=first, rtol=max(tolerance, 3e-14), atol=1e-2 * tolerance)
+        steps = []
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise Problem(f"the motion cannot be followed back beyond {solver.t:g} s: {message}")
+            steps.append(solver.step_size)
+        self.now = solver.y
+        self.step = steps[-2] if len(steps) > 1 else max(self.step or 0.0, steps[-1])  # the last one is cut short
+
+    def add(self, time, weights, states):
+        """What is read at this time."""
+        self.trail.place(time, states(time), self.inputs)
+        self.now[:-1] += self.model.adjoint(self.trail.read_references, self.knowns, list(weights))
+
+    def along(self, phase, readings):
+        """readings: (time, weights) up to its end, of which those after its beginning are taken."""
+        states, end, begin = phase.states(), phase.times[-1], phase.times[0]
+        self.model.setFMUState(phase.saved)
+        while readings and readings[-1][0] > begin:
+            time, weights = readings.pop()
+            self.go(time, end, states)
+            self.add(time, weights, states)
+            end = time
+        self.go(begin, end, states)
+
+    def over(self, jump):
+        by_state = self.now[: self.state_count].copy()
+        self.now[: self.state_count] = jump.by_states @ by_state
+        self.now[self.state_count : -1] += jump.by_acting @ by_state
+
+
+@dataclass(frozen=True)
+class Aim:
+    """The number: sum of weights(values at the times) times these values, to first order; or the integral of what is read."""
+
+    of: list
+    times: np.ndarray
+    value: object  # of the values at the times, an array n x of
+    weights: object  # likewise; as many
+    is_integral: bool = False
+    inputs: object = None
+    kinks: object = ()
+
+
+def _aim_at_end(name, stop_time, integral):
+    return Aim([name], np.array([0.0, stop_time]), lambda values: values[-1, 0], lambda values: np.array([[0.0], [1.0]]), integral)
+
+
+def _aim_at_data(experiment):
+    def off(values):
+        return (values - experiment.values) / experiment.noise
+
+    return Aim(
+        experiment.measured,
+        experiment.data["time"],
+        lambda values: (off(values) ** 2).sum(),
+        lambda values: 2 * off(values) / experiment.noise,
+        inputs=experiment.signals,
+        kinks=experiment.kinks(),
+    )
+
+
+def _aim(point, of, data, stop_time, integral, noise):
+    if (of is None) == (data is None):
+        raise Problem("expected the name of what is to be differentiated, or data from which the squares of the differences are")
+    if data is not None:
+        return _aim_at_data(Experiment(data, point, noise))
+    if stop_time is None or not stop_time > 0:
+        raise Problem(f"the stop time is {stop_time}; expected one later than 0 s")
+    return _aim_at_end(of, stop_time, integral)
+
+
+def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
+    with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
+        aim = _aim(point, of, data, stop_time, integral, noise)
+        check_names(point, aim.of, by)
+        acting = acting_of(point, by)
+        start, slopes = start_slopes(point, by, {})
+        trail = Trail(point, aim.of, [reference for references in acting for reference in references], tolerance)
+        values, _ = trail.over(aim.times, {}, aim.inputs, aim.kinks)
+        found = _back(trail, aim, values)
+        trail.forget()
+    count = len(start)
+    derivatives = slopes @ found[:count]
+    derivatives[[bool(references) for references in acting]] += found[count:-1]
+    return Gradient(float(found[-1] if aim.is_integral else aim.value(values)), dict(zip(by, derivatives.tolist())))
+
+
+def _back(trail, aim, values):
+    weights = np.zeros_like(values) if aim.is_integral else aim.weights(values)
+    size = np.max(abs(weights)) or 1.0  # the tolerance counts from here
+    readings = [(time, row) for time, row in zip(aim.times, weights / size) if row.any()]
+    way = WayBack(trail, trail.read_references if aim.is_integral else [], aim.inputs)
+    for part in reversed(trail.trail):
+        if isinstance(part, Jump):
+            way.over(part)
+        else:
+            way.along(part, readings)
+    if readings:
+        first = trail.trail[0]
+        way.add(*readings.pop(), first.states())
+    return way.now * size

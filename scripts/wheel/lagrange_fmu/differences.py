@@ -1,0 +1,32 @@
+"""Derivatives by differences of fourth order, which stay within what a value may be."""
+
+from .problem import Problem
+
+CENTRAL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
+FORWARD = ((0, -25 / 12), (1, 4), (2, -3), (3, 4 / 3), (4, -1 / 4))
+BACKWARD = tuple((-steps, -weight) for steps, weight in FORWARD)
+
+
+def rule_within(value, step, limits):
+    """So many steps, and by what what is found there counts: the sum is the change over a step, to first order."""
+    low, high = ((limit - value) / step for limit in limits)
+    if low <= -2 and high >= 2:
+        return CENTRAL
+    if high >= 4 or low <= -4:
+        return FORWARD if high >= 4 else BACKWARD
+    raise Problem(f"the limits {limits[0]:g} and {limits[1]:g} are too close together for a derivative by what is between them; expected limits further apart")
+
+
+def difference(function, rule):
+    """function(steps): an array, or a number."""
+    return sum(weight * function(steps) for steps, weight in rule)
+
+
+def relevant(changes, names):
+    """Those of the names by which something changes; changes(names): whether it does by all of these together. Few questions where few do."""
+    if not names or not changes(names):
+        return []
+    if len(names) == 1:
+        return list(names)
+    half = len(names) // 2
+    return relevant(changes, names[:half]) + relevant(changes, names[half:])

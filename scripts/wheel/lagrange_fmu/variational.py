@@ -1,0 +1,95 @@
+"""
+Motions with their derivatives by the FMU's own solver: of smooth systems, which lagc derives so that the variational equations are a part of the motion.
+"""
+
+import tempfile
+import warnings
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .building import derive
+from .model_exchange import along, opened, words_for
+from .models import Slave2
+from .problem import Problem
+from .running import is_fmu
+from .sensitivity import Motion, check_names, start_slopes
+
+LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
+
+
+def _is_smooth(system, by):
+    """Whether lagc derives it so; what is wrong otherwise, is told where it is built without derivatives."""
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            derive(system, Path(folder), None, words_for(by))
+        except Problem:
+            return False
+        return (Path(folder) / "system.c").stat().st_size < LARGEST
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """At n times: `values[of]`, and `derivatives[of, by]` of them, all in SI units."""
+
+    time: np.ndarray
+    values: dict
+    derivatives: dict
+
+
+@contextmanager
+def followed(system, values, by):
+    """The Point of a system or an FMU, of which motion() makes motions with derivatives by these names."""
+    in_series = not is_fmu(system) and by and _is_smooth(system, by)
+    with opened(system, values, what="be followed", by=by if in_series else ()) as point:
+        yield point
+
+
+def motion(point, of, by, tolerance):
+    return (SeriesMotion if isinstance(point.model, Slave2) else Motion)(point, of, by, tolerance)
+
+
+class SeriesMotion:
+    """As Motion, in communication steps from one time to the next."""
+
+    def __init__(self, point, of, by, tolerance):
+        self.point, self.model, self.of, self.by = point, point.model, list(of), list(by)
+        self.model.tolerance = tolerance
+        self.references = [point.references[name] for name in self.of] + [point.references[along(name, value)] for name in self.of for value in self.by]
+
+    def over(self, times, values=None, inputs=None, kinks=()):
+        """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, linear between times and kinks."""
+        self.model.start_time = times[0]
+        _, slopes = start_slopes(self.point, self.by, values or {})
+        starts = {along(name, by): slope for by, row in zip(self.by, slopes) for name, slope in zip(self.point.states, row)}
+        self.point.start(values=(values or {}) | starts)
+        rows, stops = [], np.union1d(times, kinks)
+        for begin, end in zip(stops, [*stops[1:], None]):
+            self.set_inputs(begin, end, inputs)
+            if begin in times:
+                rows.append(self.model.getReal(self.references))
+            if end is not None:
+                self.model.doStep(begin, end - begin)
+        found = np.array(rows)
+        return found[:, : len(self.of)], found[:, len(self.of) :].reshape(len(rows), len(self.of), len(self.by))
+
+    def set_inputs(self, begin, end, inputs):
+        if inputs is None:
+            return
+        names, values = inputs(begin)
+        references = [self.point.references[name] for name in names]
+        self.model.setReal(references, values)
+        if end is not None:
+            rates = (np.array(inputs(end)[1]) - values) / (end - begin)
+            self.model.setRealInputDerivatives(references, [1] * len(names), rates)
+
+
+def sensitivities(system, of, by, times, start_values, tolerance):
+    with followed(system, dict(start_values), by) as point:
+        check_names(point, of, by)
+        values, derivatives = motion(point, of, by, tolerance).over(np.asarray(times, dtype=float))
+    named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
+    return Sensitivities(np.asarray(times, dtype=float), dict(zip(of, values.T)), named)

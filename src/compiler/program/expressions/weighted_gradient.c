@@ -1,0 +1,109 @@
+#include "program/expressions/weighted_gradient.h"
+
+#include "algebra/differentiate.h"
+#include "algebra/node_list.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+
+enum { KNOWN_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << INPUT | 1 << PARAMETER | 1 << TIME };
+
+/* Expressions, and what each counts by. */
+struct WeightedSum {
+  struct NodeList targets, weights;
+};
+
+static void append_term(struct WeightedSum *sum, Node target, Node weight) {
+  append_node(&sum->targets, target);
+  append_node(&sum->weights, weight);
+}
+
+static bool is_symmetric(const struct Inertia *inertia) {
+  for (size_t i = 0; i < inertia->block_count; i++)
+    if (inertia->blocks[i].force_count > 0) return false;
+  return true;
+}
+
+static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
+  return seeds[graph->vertices[symbol].left];
+}
+
+/* The outputs, and the power whose integral is a state. */
+static struct WeightedSum what_is_read(struct Graph *graph, const struct Equations *equations,
+                                       const struct Interface *interface, const Node *result) {
+  struct WeightedSum sum = {0};
+  for (size_t i = 0; i < interface->count; i++) {
+    const struct ScalarVariable *entry = &interface->variables[i].entry;
+    if (entry->kind != VARIABLE_RESULT || !is_unknown(entry)) continue;
+    char *name = format_text("d %s", entry->name);
+    append_term(&sum, result[entry->index], graph_symbol(graph, SEED_RESULT, (int)entry->index, name));
+  }
+  if (equations->has_work)
+    append_term(&sum, equations->power, graph_symbol(graph, SEED_VELOCITY, (int)equations->count, "d work"));
+  return sum;
+}
+
+/*
+ * Along any direction K da = -d(K a - right_side)|a held, so that side^T da = -multiplier^T d(K a - right_side). What is
+ * multiplied stays as it is while the gradient is taken.
+ */
+static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, const struct Model *model,
+                                 const struct Equations *equations, const Node *seeds,
+                                 struct WeightedGradient *gradient) {
+  size_t n = equations->count, rows = row_count(equations);
+  for (size_t i = 0; i < n && equations->explicit_form; i++)
+    append_term(sum, equations->acceleration[i], gradient->side[i]);
+  if (equations->explicit_form) return;
+  inertia_solve(graph, equations->inertia, gradient->side, gradient->multiplier);
+  for (size_t i = 0; i < rows; i++) {
+    Node symbol = i < n ? model->unknowns.accelerations[i] : model->unknowns.forces[i - n];
+    if (is_looped(equations, i)) gradient->multiplier[i] = seed_of(graph, seeds, symbol);
+    append_term(sum, equations->residual[i], negate(graph, gradient->multiplier[i]));
+  }
+}
+
+/* The place of a symbol among the elements. */
+static size_t place_of(const struct Model *model, const struct Interface *interface, const struct Symbol *symbol) {
+  size_t index = (size_t)symbol->index, n = model->coordinates.count, states = interface->state_count;
+  switch ((int)symbol->kind) {
+  case COORDINATE: return index;
+  case VELOCITY: return n + index;
+  case INPUT: return states + index;
+  case PARAMETER: return states + model->inputs.count + index;
+  default: return states + model->inputs.count + model->parameters.count + model->switches.mode_count;
+  }
+}
+
+static void fill_elements(struct Graph *graph, const struct Model *model, const struct Interface *interface,
+                          const struct WeightedSum *sum, const Node *seeds, struct WeightedGradient *gradient) {
+  size_t n = model->coordinates.count;
+  gradient->count =
+      interface->state_count + model->inputs.count + model->parameters.count + model->switches.mode_count + 1;
+  gradient->elements = allocate(gradient->count, sizeof(Node));
+  struct Gradient found =
+      weighted_gradient(graph, sum->targets.nodes, sum->weights.nodes, sum->targets.count, KNOWN_KINDS);
+  for (size_t i = 0; i < found.count; i++)
+    gradient->elements[place_of(model, interface, graph_symbol_of(graph, found.symbols[i]))] = found.values[i];
+  for (size_t i = 0; i < n; i++) {
+    Node *by_velocity = &gradient->elements[n + i];
+    *by_velocity = add(graph, *by_velocity, seed_of(graph, seeds, model->coordinates.items[i].node));
+  }
+}
+
+struct WeightedGradient *weighted_gradient_create(const struct Model *model, const struct Equations *equations,
+                                                  const struct Interface *interface, const Node *result,
+                                                  const Node *seeds) {
+  struct Graph *graph = model->graph;
+  size_t rows = row_count(equations);
+  if (!is_symmetric(equations->inertia)) return NULL;
+  struct WeightedGradient *gradient = allocate(1, sizeof *gradient);
+  gradient->side = allocate(rows, sizeof(Node));
+  gradient->multiplier = allocate(rows, sizeof(Node));
+  struct WeightedSum sum = what_is_read(graph, equations, interface, result);
+  weighted_gradient_of(graph, sum.targets.nodes, sum.weights.nodes, sum.targets.count, ACCELERATION, rows,
+                       gradient->side);
+  for (size_t i = 0; i < equations->count; i++)
+    gradient->side[i] = add(graph, gradient->side[i], seed_of(graph, seeds, model->velocities.items[i].node));
+  append_accelerations(&sum, graph, model, equations, seeds, gradient);
+  fill_elements(graph, model, interface, &sum, seeds, gradient);
+  return gradient;
+}

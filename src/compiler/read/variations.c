@@ -1,0 +1,120 @@
+#include "read/variations.h"
+
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "base/memory.h"
+#include "read/context/variables.h"
+
+/* The variable of this name by which can be differentiated; NULL for none. */
+static const struct Variable *find(const struct Model *model, const char *name) {
+  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
+                                              &model->velocities};
+  for (size_t k = 0; k < 4; k++)
+    for (size_t i = 0; i < lists[k]->count; i++)
+      if (lists[k]->items[i].type == TYPE_REAL && strcmp(lists[k]->items[i].name, name) == 0)
+        return &lists[k]->items[i];
+  return NULL;
+}
+
+/* The derivative of a variable by another. */
+static struct Variable derivative_of(const struct Model *model, const struct Variable *of, const struct Variable *by) {
+  struct Variable derivative = variable_create(format_text("%s.by.%s", of->name, by->name),
+                                               format_text("derivative of %s by %s", of->name, by->name), of->line);
+  derivative.dimension = dimension_multiply(of->dimension, by->dimension, -1.0);
+  derivative.start = of->node == by->node ? 1.0 : 0.0;
+  derivative.start_expression = graph_constant(model->graph, derivative.start);
+  return derivative;
+}
+
+/* A coordinate with its velocity, whose acceleration is to follow; of the reaction of this place. */
+static void append_coordinate(struct Model *model, size_t of, const struct Variable *by, size_t reaction) {
+  struct Graph *graph = model->graph;
+  struct Variable position = derivative_of(model, &model->coordinates.items[of], by);
+  struct Variable velocity = derivative_of(model, &model->velocities.items[of], by);
+  size_t place = model->coordinates.count;
+  position.node = graph_symbol(graph, COORDINATE, (int)place, position.name);
+  velocity.node = graph_symbol(graph, VELOCITY, (int)place, velocity.name);
+  append_variable(&model->coordinates, position);
+  append_variable(&model->velocities, velocity);
+  model->unknowns.accelerations[place] =
+      graph_symbol(graph, ACCELERATION, (int)place, format_text("der(%s)", velocity.name));
+  model->given.drives[place] = (struct Drive){.given = true, .reaction = reaction};
+  model->given.drive_count++;
+}
+
+/* The direction of the motion of neighbours: one node for each symbol; first: of the coordinates for this value. */
+static Node *direction_of(const struct Model *model, const struct Variable *by, size_t count, size_t first) {
+  const struct Graph *graph = model->graph;
+  Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
+  seeds[graph->vertices[by->node].left] = ONE;
+  for (size_t i = 0; i < count; i++) {
+    seeds[graph->vertices[model->coordinates.items[i].node].left] = model->coordinates.items[first + i].node;
+    seeds[graph->vertices[model->velocities.items[i].node].left] = model->velocities.items[first + i].node;
+    seeds[graph->vertices[model->unknowns.accelerations[i]].left] = model->unknowns.accelerations[first + i];
+  }
+  return seeds;
+}
+
+static void append_outputs(struct Model *model, const struct Equations *equations, size_t outputs,
+                           const struct Variable *by, const Node *seeds) {
+  Node *along = allocate(outputs, sizeof *along);
+  derivative_along(model->graph, equations->outputs, outputs, seeds, along);
+  for (size_t i = 0; i < outputs; i++) {
+    struct Variable output = derivative_of(model, &model->outputs.items[i], by);
+    output.node = along[i];
+    output.start_expression = ZERO;
+    if (model->outputs.items[i].type == TYPE_REAL) append_variable(&model->outputs, output);
+  }
+}
+
+static const char *why_not(const struct Model *model, const struct Equations *equations) {
+  if (model->constraints.count > 0) return "constraints, contacts or friction";
+  if (equations->switching != NULL) return "what switches";
+  if (equations->explicit_form) return "a linearization";
+  if (equations->has_work) return "<work/>";
+  return NULL;
+}
+
+/* The reaction of all, which is 0, stands where drives have theirs. */
+static size_t append_reaction(struct Model *model) {
+  struct Variable reaction = variable_create(copy_text("variations.force"), NULL, 0);
+  reaction.node = graph_symbol(model->graph, REACTION, (int)model->reactions.count, reaction.name);
+  append_variable(&model->reactions, reaction);
+  return model->reactions.count - 1;
+}
+
+static void make_room_for(struct Model *model, size_t total) {
+  model->unknowns.accelerations = reallocate(model->unknowns.accelerations, total, sizeof(Node));
+  model->given.drives = reallocate(model->given.drives, total, sizeof *model->given.drives);
+  struct Quantity *along = allocate(total, sizeof *along);
+  memcpy(along, model->forces.along, model->coordinates.count * sizeof *along);
+  model->forces.along = along;
+}
+
+static void add_variation(struct Model *model, const struct Equations *equations, struct Variable by, size_t outputs,
+                          size_t reaction) {
+  size_t count = equations->count, first = model->coordinates.count;
+  for (size_t i = 0; i < count; i++) append_coordinate(model, i, &by, reaction);
+  Node *seeds = direction_of(model, &by, count, first);
+  append_outputs(model, equations, outputs, &by, seeds);
+  Node *along = allocate(count, sizeof *along);
+  derivative_along(model->graph, equations->acceleration, count, seeds, along);
+  for (size_t i = 0; i < count; i++) model->given.drives[first + i].acceleration = along[i];
+}
+
+void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
+                    struct Diagnostics *diagnostics) {
+  const char *reason = why_not(model, equations);
+  if (reason != NULL) report_error(diagnostics, 0, "--along is for smooth systems; expected one without %s", reason);
+  for (size_t k = 0; k < count; k++) {
+    if (find(model, names[k]) == NULL)
+      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate or a velocity", names[k]);
+    for (size_t j = 0; j < k; j++)
+      if (strcmp(names[j], names[k]) == 0) report_error(diagnostics, 0, "--along %s: expected it once", names[k]);
+  }
+  if (diagnostics->errors > 0) return;
+  size_t outputs = model->outputs.count, reaction = append_reaction(model);
+  make_room_for(model, (count + 1) * equations->count);
+  for (size_t k = 0; k < count; k++) add_variation(model, equations, *find(model, names[k]), outputs, reaction);
+}

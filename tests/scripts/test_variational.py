@@ -1,0 +1,84 @@
+"""Variational equations in the FMU's own solver (lagc --along): against closed forms, and fits by them."""
+
+import subprocess
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fmu
+from building import BUILD, archive_of, build_systems
+from motions import BALL, DOUBLE, DOUBLE_AT, OSCILLATOR, energy_of_double, lagrange_fmu, oscillation, slopes  # noqa: F401
+
+AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
+FITTED = ["m", "k", "d", "x"]
+SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT)}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    for name, (text, by) in SYSTEMS.items():
+        build_systems(f"variational_{name}", {name: text.replace('name="Oscillator"', f'name="{name}"')}, *(word for value in by for word in ("--along", value)))
+
+
+def archive(name):
+    return archive_of(BUILD / f"variational_{name}", name)
+
+
+def motion(name, of, by, times, start=None):
+    """Values and derivatives at the times."""
+    from lagrange_fmu.model_exchange import opened
+    from lagrange_fmu.variational import SeriesMotion
+
+    with opened(archive(name), start or {}, by=by) as point:
+        return SeriesMotion(point, of, by, 1e-11).over(np.array(times))
+
+
+def test_an_oscillation(lagrange_fmu):  # noqa: F811
+    """By parameters, start value and an input that stays; of a state and of its second derivative."""
+    times = [0.0, 0.7, 4.0]
+    values, derivatives = motion("Oscillator", ["x", "der(v)"], list(AT), times, {"F": 4.0})
+    for i, t in enumerate(times):
+        assert values[i, 0] == pytest.approx(float(oscillation(t, *AT.values())), rel=1e-10)
+        assert dict(zip(AT, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: oscillation(mpmath.mpf(t), *at), AT), rel=1e-9, abs=1e-12)
+    assert derivatives[0, 1, 1] == pytest.approx(-0.3 / 2, rel=1e-12)  # m a = F - k x - d v at the start
+
+
+def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
+    """The energy of a double pendulum, though its states depend on the start hundreds of times more."""
+    _, derivatives = motion("Double", ["energy", "a"], list(DOUBLE_AT), [0.0, 1.5, 3.0])
+    expected = slopes(energy_of_double, DOUBLE_AT)
+    for row in derivatives:
+        assert dict(zip(DOUBLE_AT, row[0])) == pytest.approx(expected, rel=1e-7, abs=1e-7)
+    assert abs(derivatives[-1, 1]).max() > 100
+
+
+def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
+    """A force that rises and falls between the rows, which the motion of another solver answered."""
+    from lagrange_fmu import variational
+
+    monkeypatch.setattr(variational, "is_fmu", lambda system: False)
+    monkeypatch.setattr(variational, "_is_smooth", lambda system, by: True)
+    times = np.linspace(0.5, 4, 36)
+    force = np.interp(times, [0.5, 1, 1.5, 2.5, 4], [0, 6, -3, -3, 5])
+    rates = lambda t, state: [state[1], (np.interp(t, times, force) - 61 * state[0] - 0.8 * state[1]) / 2]
+    answer = solve_ivp(rates, (0.5, 4), [0.3, 0.0], t_eval=times, rtol=1e-10, atol=1e-11, max_step=0.02)
+    data = np.rec.fromarrays([times, answer.y[0], force], names="time,x,F").view(np.ndarray)
+    found = lagrange_fmu.fit(archive("Fitted"), data, FITTED)
+    assert [found.values[name] for name in FITTED] == pytest.approx([2, 61, 0.8, 0.3], rel=1e-4)
+    assert found.rms["x"] < 1e-6
+
+
+def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
+    """Is refused by lagc, so that the package goes another way."""
+    from lagrange_fmu.variational import _is_smooth
+
+    work = OSCILLATOR.replace("<experiment", "<work/><experiment")
+    constrained = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text()
+    for text, by, why in ((BALL, "g", "without constraints, contacts or friction"), (constrained, "l", "without constraints"), (work, "k", "without <work/>"),
+                          (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
+        (tmp_path / "system.xml").write_text(text)
+        result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)
+        assert (result.returncode == 0) == (why is None) == _is_smooth(tmp_path / "system.xml", [by])
+        assert why is None or why in result.stderr

@@ -1,0 +1,93 @@
+"""Systems whose motions have closed forms, for what differentiates motions; and the package that does."""
+
+import sys
+
+import mpmath
+import numpy as np
+import pytest
+
+import package
+
+OSCILLATOR = """<system name="Oscillator"><!-- kept -->
+  <parameter name="m" start="2" unit="kg" min="0"/><parameter name="k" start="50" unit="N/m" min="0"/><parameter name="d" start="1" unit="N.s/m" min="0"/>
+  <input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m" start="0.3"/>
+  <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
+  <experiment stopTime="4"/></system>"""
+BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
+  <parameter name="e" start="0.5" unit="1" max="1"/>
+  <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
+# A block on a belt, which sticks and slides.
+BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>
+  <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
+  <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
+# Chaotic; its energy at the end is that at the start.
+DOUBLE = """<system name="Double"><parameter name="m1" start="1" unit="kg"/><parameter name="m2" start="0.7" unit="kg"/>
+  <parameter name="l1" start="1" unit="m"/><parameter name="l2" start="0.6" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
+  <coordinate name="a" velocity="va" unit="rad" start="3"/><coordinate name="b" velocity="vb" unit="rad" start="2.5" velocityStart="0.4"/>
+  <particle name="p" mass="m1" x="l1*sin(a)" y="-l1*cos(a)"/><particle name="q" mass="m2" x="l1*sin(a) + l2*sin(b)" y="-l1*cos(a) - l2*cos(b)"/>
+  <potential>m1*g*p.y + m2*g*q.y</potential>
+  <output name="energy" unit="J">m1*l1^2*va^2/2 + m2*(l1^2*va^2 + l2^2*vb^2 + 2*l1*l2*va*vb*cos(a - b))/2 - (m1 + m2)*g*l1*cos(a) - m2*g*l2*cos(b)</output></system>"""
+DOUBLE_AT = {"m1": 1.0, "m2": 0.7, "l1": 1.0, "l2": 0.6, "g": 9.81, "a": 3.0, "va": 0.0, "b": 2.5, "vb": 0.4}
+
+
+@pytest.fixture(scope="module")
+def lagrange_fmu(tmp_path_factory):
+    folder = package.assemble(tmp_path_factory.mktemp("package"))
+    sys.path.insert(0, str(folder))
+    try:
+        import lagrange_fmu
+
+        yield lagrange_fmu
+    finally:
+        sys.path.remove(str(folder))
+        for name in [name for name in sys.modules if name.split(".")[0] == "lagrange_fmu"]:
+            del sys.modules[name]
+
+
+def oscillation(t, m, k, d, x0, F=0.0):
+    """Weakly damped, from rest at x0, with a constant force."""
+    a, shift = d / (2 * m), F / k
+    w = mpmath.sqrt(k / m - a * a)
+    return shift + (x0 - shift) * mpmath.exp(-a * t) * (mpmath.cos(w * t) + a / w * mpmath.sin(w * t))
+
+
+def bounce(t, h0, g, e, bounces):
+    """The height of a ball that fell from h0, behind so many bounces."""
+    fall = mpmath.sqrt(2 * h0 / g)
+    time, speed = fall, e * g * fall
+    for _ in range(bounces - 1):
+        time, speed = time + 2 * speed / g, e * speed
+    return speed * (t - time) - g / 2 * (t - time) ** 2 if bounces else h0 - g / 2 * t**2
+
+
+def belt(times, k, F, u):
+    """Where the block is: a linear oscillator while it slides, carried along while it sticks; all in closed form."""
+    w = mpmath.sqrt(k)
+    slide_at = 1.5 * F / k
+    # From rest at 0 it is pulled along at first: x'' = F - k x until v = u, or until it turns.
+    catch = mpmath.asin(u * w / F) / w
+    x_catch = F / k * (1 - mpmath.cos(w * catch))
+    leave = catch + (slide_at - x_catch) / u
+    def sliding(t):  # x'' = F - k x with x = slide_at, v = u at first
+        return F / k + (slide_at - F / k) * mpmath.cos(w * t) + u / w * mpmath.sin(w * t)
+    def place(t):
+        return F / k * (1 - mpmath.cos(w * t)) if t <= catch else x_catch + u * (t - catch) if t <= leave else sliding(t - leave)
+    return [place(t) for t in times]
+
+
+def measured(generator, truth, F=0.0, noise=1e-3):
+    times = np.linspace(0, 4, 101)
+    values = np.array([float(oscillation(t, *(truth[name] for name in ("m", "k", "d", "x")), F)) for t in times])
+    return np.rec.fromarrays([times, values + noise * generator.standard_normal(len(times)), np.full(len(times), F)], names="time,x,F").view(np.ndarray)
+
+
+def energy_of_double(m1, m2, l1, l2, g, a, va, b, vb):
+    kinetic = m1 * l1**2 * va**2 / 2 + m2 * (l1**2 * va**2 + l2**2 * vb**2 + 2 * l1 * l2 * va * vb * mpmath.cos(a - b)) / 2
+    return kinetic - (m1 + m2) * g * l1 * mpmath.cos(a) - m2 * g * l2 * mpmath.cos(b)
+
+
+def slopes(function, at):
+    """By each argument, by differences of 40 digits."""
+    with mpmath.workdps(40):
+        exact = [mpmath.mpf(value) for value in at.values()]
+        return {name: float(mpmath.diff(lambda value: function(*exact[:i], value, *exact[i + 1 :]), value)) for i, (name, value) in enumerate(zip(at, exact))}
