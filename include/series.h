@@ -54,6 +54,24 @@ static SERIES_INLINE Pair pair_sum(Pair a, Pair b) {
 static SERIES_INLINE double pair_total(Pair a) {
   return a[0] + a[1];
 }
+
+static SERIES_INLINE Pair pair_at(const double *a) {
+  Pair pair;
+  __builtin_memcpy(&pair, a, sizeof pair);
+  return pair;
+}
+
+static SERIES_INLINE Pair pair_multiple(Pair a, double factor) {
+  return a * factor;
+}
+
+static SERIES_INLINE double pair_first(Pair a) {
+  return a[0];
+}
+
+static SERIES_INLINE double pair_second(Pair a) {
+  return a[1];
+}
 #else
 typedef struct Pair {
   double first, second;
@@ -69,6 +87,22 @@ static SERIES_INLINE Pair pair_sum(Pair a, Pair b) {
 
 static SERIES_INLINE double pair_total(Pair a) {
   return a.first + a.second;
+}
+
+static SERIES_INLINE Pair pair_at(const double *a) {
+  return (Pair){a[0], a[1]};
+}
+
+static SERIES_INLINE Pair pair_multiple(Pair a, double factor) {
+  return (Pair){a.first * factor, a.second * factor};
+}
+
+static SERIES_INLINE double pair_first(Pair a) {
+  return a.first;
+}
+
+static SERIES_INLINE double pair_second(Pair a) {
+  return a.second;
 }
 #endif
 

@@ -10,8 +10,6 @@ _Thread_local Mask lanes_refused;
 /* The one method that hands over to another where a system is stiff (single/single_run.c). */
 extern const struct Solver solver_auto;
 
-static const double logarithm_of_2 = 0.69314718055994530942;
-
 /* --- Memory ------------------------------------------------------------------------------------------------------- */
 
 /* The next count rows of a block. */
@@ -35,9 +33,9 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   if (memory == NULL) return false;
   memset(memory, 0, size);
   Lanes *block = (void *)(memory + (sizeof(Lanes) - (uintptr_t)memory % sizeof(Lanes)));
-  double local = local_tolerance(tolerance);
-  *steps =
-      (struct LaneSteps){.memory = memory, .order = (int)order_for(local), .tolerance = tolerance, .length = length};
+  struct SeriesRule rule = rule_for(local_tolerance(tolerance));
+  *steps = (struct LaneSteps){
+      .memory = memory, .order = (int)rule.order, .margin = rule.margin, .tolerance = tolerance, .length = length};
   steps->longest = fmin(horizon * length, lagrangian.steps.max_step);
   steps->x = take_series(&block, states);
   steps->input = take_series(&block, inputs);
@@ -143,8 +141,7 @@ static Lanes promised_step(const struct LaneSteps *steps) {
     vanish &= last + before == 0.0;
   }
   Lanes of_last = rough_logarithm(last) * share, of_before = rough_logarithm(before) * share_before;
-  Lanes margin = (2.0 + 0.7 * share_before) * (1.0 / logarithm_of_2);
-  Lanes exponent = -lanes_larger(of_last, of_before) - margin;
+  Lanes exponent = -lanes_larger(of_last, of_before) - steps->margin;
   Lanes step = rough_power_of_two(lanes_larger(lanes_smaller(exponent, LANES_OF(900.0)), LANES_OF(-900.0)));
   step = lanes_select(vanish, LANES_OF(DBL_MAX), step);
   return lanes_select(lanes_are_finite(last + before), step, (Lanes){0});

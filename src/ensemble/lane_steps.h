@@ -10,6 +10,7 @@
 struct LaneSteps {
   void *memory; /* of all rows */
   int order;
+  double margin;                           /* see taylor_rule.h */
   double tolerance;                        /* relative */
   double longest;                          /* that a step may be */
   double length;                           /* of the runs */

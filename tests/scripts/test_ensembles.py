@@ -35,7 +35,8 @@ SYSTEMS = {
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_each_run_is_that_of_the_fmu_alone(name):
     """More runs than lanes; each takes its own number of steps."""
-    assert_as_alone(name, *SYSTEMS[name], 3 * HERE + 1, 2e-9)
+    # A planet near its sun changes its velocity by its own size in 0.04 s: 2e-10 s are 5e-9 of it.
+    assert_as_alone(name, *SYSTEMS[name], 3 * HERE + 1, 8e-9 if name == "ParticlePolar" else 2e-9)
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "RotatingPivotPendulum", "ParticlePolar"])

@@ -32,8 +32,8 @@ static void count_factors(const struct Program *program, double *elements, doubl
 }
 
 struct OperationCounts operation_counts_of(const struct Program *program) {
-  double elements, squares;
-  count_factors(program, &elements, &squares);
+  double elements = 0.0, squares = 0.0;
+  if (program->expressions->jacobian != NULL) count_factors(program, &elements, &squares);
   return (struct OperationCounts){.derivatives = operations_of(program->routines[FUNCTION_DERIVATIVES]),
                                   .jacobian = operations_of_jacobian(program),
                                   .series = operations_of(program->series->order),

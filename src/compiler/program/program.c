@@ -94,7 +94,7 @@ static void choose_parts_of_runtime(struct Program *program) {
   program->solver = method_solver(method, program->interface->state_count, jacobian != NULL ? jacobian->count : 0);
   if (method->factors) program->lu = jacobian != NULL && jacobian->factors != NULL ? "lu_sparse" : "lu_dense";
   program->work = step_work_of(program);
-  if (method->hands_over) program->operations = operation_counts_of(program);
+  if (method->series == ALL_TERMS) program->operations = operation_counts_of(program);
 }
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form) {

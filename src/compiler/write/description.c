@@ -203,7 +203,7 @@ static void write_lagrangian(FILE *file, const struct Program *program, const st
   if (solver != NULL)
     fprintf(file, "    .steps.work = {%.0f, %.0f, %.0f},\n", facts->steps.work.evaluation, facts->steps.work.step,
             facts->steps.work.event);
-  if (program->equations->method != NULL && program->equations->method->hands_over)
+  if (program->equations->method != NULL && program->equations->method->series == ALL_TERMS)
     write_operations(file, &facts->steps.operations);
   fputs("};\n", file);
 }

@@ -6,10 +6,11 @@
 #include "write/statements.h"
 
 /*
- * As many orders get code of their own as have together so many products that their code stays in the processor's instruction
- * cache. With few recurrences, it is faster as one piece, without a jump that the processor would have to foresee.
+ * As many orders get code of their own as have together so many products that their code stays in the processor's cache of
+ * decoded instructions, or, where the products of one order take long, in that of instructions. With few recurrences, it is
+ * faster as one piece, without a jump that the processor would have to foresee.
  */
-enum { UNROLLED_PRODUCTS = 1300, RECURRENCES_IN_ONE_PIECE = 12, PRODUCTS_IN_ONE_PIECE = 1100 };
+enum { UNROLLED_PRODUCTS = 1000, RECURRENCES_IN_ONE_PIECE = 12, PRODUCTS_IN_ONE_PIECE = 400 };
 
 /* What an order may need beside k, x and w: its declaration, and what series() passes for it. */
 static const struct {

@@ -160,17 +160,7 @@ static bool auto_interpolate(struct Instance *instance, double time, double *sta
   return is_known;
 }
 
-/*
- * Operations of a step of the series, see lagrangian.steps.operations. The constants here and below were fitted to measured
- * times, 0.3 ns an operation, of systems with one to ten coordinates.
- */
-static double work_of_taylor(int64_t order) {
-  const struct OperationCounts *count = &lagrangian.steps.operations;
-  double p = (double)order, states = (double)lagrangian.state_count;
-  return 380.0 + 4.0 * count->derivatives + p * (0.5 * count->series + 1.5 * states + 0.45 * p * count->recurrences);
-}
-
-/* Operations of Radau IIA for so many evaluations of the equations, and so many Jacobians with their factors. */
+/* Operations of Radau IIA, counted like those of the series (taylor_rule.h), for so many evaluations of the equations, and so many Jacobians with their factors. */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
   const struct OperationCounts *count = &lagrangian.steps.operations;
   double s = (double)stages, states = (double)lagrangian.state_count;
@@ -233,7 +223,7 @@ static bool judge_series(struct Instance *instance, struct Choice *choice, doubl
 
 /* A trial goes on as long as steps grow or want to; one in vain is not soon made again. */
 static bool judge_trial(const struct Instance *instance, struct Choice *choice, double speed, double other) {
-  double window_of_series = window[AUTO_TAYLOR] * work_of_taylor(taylor_order(instance));
+  double window_of_series = window[AUTO_TAYLOR] * work_of_series((double)taylor_rule(instance).order);
   choice->trial_work += choice->work;
   double next = radau_next_step(instance) * window[AUTO_RADAU] / choice->work;
   bool grows = choice->windows < TRIAL_LIMIT && (speed > GROWTH * choice->last_speed || next > other);
@@ -278,7 +268,7 @@ static bool judge(struct Instance *instance, struct Choice *choice) {
 static double work_between(const struct Instance *instance, const struct Choice *choice, const int64_t *before) {
   const int64_t *after = instance->situation->statistics;
   if (choice->method == AUTO_TAYLOR)
-    return work_of_taylor(((const struct Taylor *)instance->solver_memory)->saved->order);
+    return work_of_series((double)((const struct Taylor *)instance->solver_memory)->saved->order);
   return work_of_radau(radau_stage_count(instance),
                        (double)(after[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]),
                        (double)(after[STATISTIC_JACOBIANS] - before[STATISTIC_JACOBIANS]));

@@ -29,7 +29,7 @@ static bool taylor_could_save(const struct Situation *situation, const void *sav
 
 static bool taylor_create(struct Instance *instance) {
   size_t rows = lagrangian.input_count + lagrangian.taylor.rows;
-  size_t terms = 2 * lagrangian.state_count * sizeof(double);
+  size_t terms = 3 * lagrangian.state_count * sizeof(double);
   struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
   if (taylor == NULL) return solver_lacks_memory(instance);
   taylor->saved = instance->saved;
@@ -40,6 +40,7 @@ static bool taylor_create(struct Instance *instance) {
   taylor->work = taylor->input + lagrangian.input_count;
   taylor->term = (double *)(taylor->work + lagrangian.taylor.rows);
   taylor->derivative = taylor->term + lagrangian.state_count;
+  taylor->unit = taylor->derivative + lagrangian.state_count;
   instance->solver_memory = taylor;
   return true;
 }
@@ -59,6 +60,7 @@ static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
 static bool expand(struct Instance *instance, struct Taylor *taylor, double communication_step) {
   double origin = taylor->span->start;
   if (!evaluate_origin(instance, taylor)) return false;
+  taylor_measure_scales(taylor);
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->x[i][1] = taylor->derivative[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
   struct Point point = instance_point(instance);
@@ -80,7 +82,7 @@ static double move_origin(struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->reach);
     double before = taylor->x[i][0], term = change + taylor->low[i];
-    double sum = before + term, part = sum - before, moved = fabs(term) / taylor_scale(taylor, i);
+    double sum = before + term, part = sum - before, moved = fabs(term) * taylor->unit[i];
     if (moved > largest) largest = moved;
     taylor->low[i] = (before - (sum - part)) + (term - part);
     taylor->x[i][0] = sum;
@@ -90,8 +92,12 @@ static double move_origin(struct Taylor *taylor) {
   return largest;
 }
 
-int64_t taylor_order(const struct Instance *instance) {
-  return order_for(taylor_tolerance(instance));
+struct SeriesRule taylor_rule(const struct Instance *instance) {
+  return rule_for(local_tolerance(instance->situation->tolerance));
+}
+
+static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
+  if (taylor->rule.tolerance != local_tolerance(instance->situation->tolerance)) taylor->rule = taylor_rule(instance);
 }
 
 /* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
@@ -109,7 +115,8 @@ static bool taylor_restart(struct Instance *instance, const double *state, const
   (void)step;
   taylor->saved->reach = 0.0;
   taylor->is_measured = false;
-  taylor->saved->order = taylor_order(instance);
+  find_rule(instance, taylor);
+  taylor->saved->order = taylor->rule.order;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     taylor->low[i] = 0.0;
     taylor->x[i][0] = state[i];
@@ -120,6 +127,8 @@ static bool taylor_restart(struct Instance *instance, const double *state, const
 static void taylor_resume(struct Instance *instance) {
   struct Taylor *taylor = instance->solver_memory;
   taylor->is_measured = false;
+  find_rule(instance, taylor);
+  taylor_measure_scales(taylor);
 }
 
 static bool taylor_interpolate(struct Instance *instance, double time, double *state) {

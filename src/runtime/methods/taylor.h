@@ -28,9 +28,11 @@ struct Taylor {
   Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.taylor.series */
   /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
   double *term, *derivative;
-  bool is_measured; /* lagrangian.taylor.start was called last for the end of the reach */
-  bool is_limited;  /* the step is short for another reason than the size of its coefficients */
-  bool crosses;     /* the step crosses a point where a function has no series */
+  double *unit;           /* state_count: 1 / taylor_scale(), as the series began */
+  bool is_measured;       /* lagrangian.taylor.start was called last for the end of the reach */
+  bool is_limited;        /* the step is short for another reason than the size of its coefficients */
+  bool crosses;           /* the step crosses a point where a function has no series */
+  struct SeriesRule rule; /* that the tolerance asks for */
   struct Crawl regular, crossing;
 };
 
@@ -42,26 +44,18 @@ static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
 
 /*
  * The change of state variable i from the origin to s after it, by Horner's rule for even and odd powers apart, which
- * do not wait for one another.
+ * are a pair.
  */
 static inline double taylor_change(const struct Taylor *taylor, size_t i, double s) {
   const double *x = taylor->x[i], square = s * s;
   int64_t j = taylor->saved->order;
-  double first = x[j], second = x[j - 1];
-  for (j -= 2; j > 1; j -= 2) {
-    first = first * square + x[j];
-    second = second * square + x[j - 1];
-  }
-  if (j == 1) return ((first * s + second) * s + x[1]) * s;
-  return (first * s + second) * s;
+  Pair sum = pair_at(x + j - 1);
+  for (j -= 2; j > 1; j -= 2) sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
+  double change = (pair_second(sum) * s + pair_first(sum)) * s;
+  return j == 1 ? (change + x[1]) * s : change;
 }
 
-/* That of a local error. */
-static inline double taylor_tolerance(const struct Instance *instance) {
-  return local_tolerance(instance->situation->tolerance);
-}
-
-/* The order that the tolerance asks for. */
-int64_t taylor_order(const struct Instance *instance);
+/* What the tolerance asks for. */
+struct SeriesRule taylor_rule(const struct Instance *instance);
 
 #endif

@@ -13,34 +13,39 @@
 
 #include "evaluation/inputs.h"
 
-static const double logarithm_of_2 = 0.69314718055994530942;
-
 /*
  * The change of state variable i from the origin to s after it, as taylor_change() computes it, and its time derivative
- * there.
+ * there: each step of Horner's rule has its derivative beside it.
  */
 static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
   const double *x = taylor->x[i], square = s * s;
   int64_t j = taylor->saved->order;
-  double factor = (double)j, first = x[j], second = x[j - 1];
-  double first_rate = factor * first, second_rate = (factor - 1.0) * second;
+  Pair sum = pair_at(x + j - 1), by_square = pair_multiple(sum, 0.0);
   for (j -= 2; j > 1; j -= 2) {
-    factor -= 2.0;
-    first = first * square + x[j];
-    second = second * square + x[j - 1];
-    first_rate = first_rate * square + factor * x[j];
-    second_rate = second_rate * square + (factor - 1.0) * x[j - 1];
+    by_square = pair_sum(pair_multiple(by_square, square), sum);
+    sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
   }
-  *rate = j == 1 ? (first_rate * s + second_rate) * s + x[1] : first_rate * s + second_rate;
-  return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
+  double value = pair_second(sum) * s + pair_first(sum);
+  double slope = 2.0 * s * (pair_second(by_square) * s + pair_first(by_square)) + pair_second(sum);
+  if (j == 1) {
+    slope = slope * s + value;
+    value = value * s + x[1];
+  }
+  *rate = slope * s + value;
+  return value * s;
+}
+
+/* In units of the variables' scales: 1 / scale of each. */
+void taylor_measure_scales(struct Taylor *taylor) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->unit[i] = 1.0 / taylor_scale(taylor, i);
 }
 
 /* The largest coefficients of an order and of the one before, in units of the variables' scales. */
 static void norms(const struct Taylor *taylor, int64_t order, double *last, double *before) {
   *last = *before = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double inverse = 1.0 / taylor_scale(taylor, i);
-    double size = fabs(taylor->x[i][order]) * inverse, size_before = fabs(taylor->x[i][order - 1]) * inverse;
+    double size = fabs(taylor->x[i][order]) * taylor->unit[i],
+           size_before = fabs(taylor->x[i][order - 1]) * taylor->unit[i];
     if (size > *last || isnan(size)) *last = size; /* a NaN stays */
     if (size_before > *before || isnan(size_before)) *before = size_before;
   }
@@ -76,17 +81,17 @@ static double promised_step(const struct Taylor *taylor) {
   for (norms(taylor, order, &last, &before); last + before == 0.0; norms(taylor, order, &last, &before))
     if (--order <= lowest) return INFINITY;
   if (!isfinite(last + before)) return 0.0;
-  double power = (double)order, inverse = 1.0 / (power - 1.0);
+  double power = (double)order;
   double of_last = last > 0.0 ? rough_logarithm(last) / power : -INFINITY;
-  double of_before = before > 0.0 ? rough_logarithm(before) * inverse : -INFINITY;
-  return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - (2.0 + 0.7 * inverse) / logarithm_of_2);
+  double of_before = before > 0.0 ? rough_logarithm(before) / (power - 1.0) : -INFINITY;
+  return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - taylor->rule.margin);
 }
 
 int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative) {
   struct Point point = instance_point(instance);
   point.time = time;
   point.state = instance->work;
-  if (lagrangian.input_count > 0) {
+  if (instance->situation->input_derivatives_set) {
     double *input = instance->work + lagrangian.state_count;
     evaluate_inputs(instance, time, input);
     point.input = input;
@@ -112,8 +117,8 @@ static bool right_side(struct Instance *instance, const struct Taylor *taylor, d
  * The defect times the step that the tolerance allows, in units of the variables' scales. Where the coefficients set the
  * step, the defect grows with the power order, so that the error is smaller by order + 1.
  */
-static double allowed_defect(const struct Instance *instance, const struct Taylor *taylor) {
-  double size = taylor_tolerance(instance);
+static double allowed_defect(const struct Taylor *taylor) {
+  double size = taylor->rule.tolerance;
   return taylor->is_limited ? size : defect_margin * (double)(taylor->saved->order + 1) * size;
 }
 
@@ -130,10 +135,10 @@ static double defect(struct Instance *instance, struct Taylor *taylor, double s)
   for (size_t i = first; i < states; i++) {
     double exact = taylor->derivative[i];
     double difference = fabs(exact - rate[i]) - rounding * DBL_EPSILON * fabs(exact);
-    double share = difference * s / taylor_scale(taylor, i);
+    double share = difference * s * taylor->unit[i];
     if (!(share <= largest)) largest = isfinite(share) ? share : INFINITY;
   }
-  return largest / allowed_defect(instance, taylor);
+  return largest / allowed_defect(taylor);
 }
 
 /*
@@ -146,8 +151,8 @@ static double rounding_of_right_side(struct Instance *instance, struct Taylor *t
   if (!right_side(instance, taylor, s, 4.0 * DBL_EPSILON, other)) return 0.0;
   if (!right_side(instance, taylor, s, 0.0, taylor->derivative)) return 0.0;
   for (size_t i = lagrangian.coordinate_count; i < states; i++)
-    largest = fmax(largest, fabs(other[i] - taylor->derivative[i]) * s / taylor_scale(taylor, i));
-  return largest / allowed_defect(instance, taylor);
+    largest = fmax(largest, fabs(other[i] - taylor->derivative[i]) * s * taylor->unit[i]);
+  return largest / allowed_defect(taylor);
 }
 
 /* The larger of the defects inside the step and at its end. */

@@ -10,6 +10,9 @@
  */
 int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative);
 
+/* Sets taylor->unit by the state at the origin. */
+void taylor_measure_scales(struct Taylor *taylor);
+
 /*
  * Sets the reach of the series that taylor->x holds: as long as its last coefficients promise, but no longer than the
  * functions in the equations allow (series_limit.h), and so that the polynomials were found to obey the equations of

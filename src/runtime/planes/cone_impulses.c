@@ -71,7 +71,7 @@ static void push_friction(struct Cones *cones, size_t row, size_t rows, double p
   for (size_t i = 0; i < rows; i++) cones->impulse[row + i] += part * (share * whole[i] - cones->impulse[row + i]);
 }
 
-static void sweep(struct Cones *cones, double part) {
+static void sweep_contacts(struct Cones *cones, double part) {
   for (size_t row = 0; row < cones->pushes->count;) {
     size_t rows = cones_row_count(cones, row);
     if (row < cones->pushes->contact_count) push_contact(cones, row, part);
@@ -108,7 +108,7 @@ static bool come_to_law(struct Cones *cones, double *best, double *swept, double
   memset(swept, 0, bytes);
   for (int trial = 0; trial < LAW_TRIALS && !(least <= enough); trial++) {
     memcpy(cones->impulse, swept, bytes);
-    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep(cones, parts[2 * trial / LAW_TRIALS]);
+    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep_contacts(cones, parts[2 * trial / LAW_TRIALS]);
     memcpy(swept, cones->impulse, bytes);
     double miss = share_of_miss(cones, cone_newton(cones, work));
     if (miss < least) memcpy(best, cones->impulse, bytes);
