@@ -132,3 +132,14 @@ def test_two_hinges_about_one_axis(tmp_path):
     path.write_text(wrist(["x", "0 0.6 0.8", "0 0.6 0.8"]).replace('angle="q8"/>', 'angle="q8"/></frame><frame name="palm" in="hand">').replace('in="hand" mass', 'in="palm" mass'))
     result = fmu.lagc(path, "-o", tmp_path)
     assert result.returncode == 1 and "structurally singular: the motion along 'q9'" in result.stderr
+
+
+def test_constraints_that_follow_from_each_other(open_fmu):
+    """Both hold the same two coordinates of the gantry, which moves as with one of them."""
+    constraints = ['<constraint name="k">q1 - q2/2</constraint>', '<constraint name="l">2*q1 - q2</constraint>']
+    text = wrist(["x", "y", "z"]).replace("<gravity", "{}<gravity")
+    texts = {name: text.replace("Wrist", name).format("".join(parts)) for name, parts in {"HeldOnce": constraints[:1], "HeldTwice": constraints}.items()}
+    build_systems("trees-held", texts)
+    start = {"q1": 0.2, "q2": 0.4, "q8": 0.5, "w1": 0.3, "w2": 0.6, "w5": 1.0, "w9": 2.0}
+    rates = [open_fmu(name).initialize(start).get(*[f"der(w{i})" for i in range(1, 10)]) for name in texts]
+    np.testing.assert_allclose(*rates, rtol=1e-9, atol=1e-9)
