@@ -93,8 +93,8 @@ static double sure_half(struct Window *window) {
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
   bool is_resolved = sample_accelerations(window);
   for (size_t i = 0; i < states && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->states, states, i,
-                                 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i], window->x[i]);
+    is_resolved = expand_sampled(window, window->states, states, i, 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i],
+                                 window->x[i]);
   double noise = is_resolved ? force_noise * largest_acceleration(window) : 0.0;
   for (size_t i = 0; i < forces && is_resolved; i++)
     is_resolved = expand_sampled(window, window->accelerations, forces, i, noise,
