@@ -1,6 +1,7 @@
 """What scripts/realtime prints: the times of single communication steps of 1 ms."""
 
 import csv
+import importlib.util
 import re
 import shutil
 import subprocess
@@ -103,19 +104,29 @@ def show(row):
     print(f"{row['system']:34}" + "".join(f"{row.get(column, '-'):>16}" for column in COLUMNS[1:]), flush=True)
 
 
+def rows_of(names, seconds):
+    """A row of COLUMNS by name for each system, and, where PythonFMU is installed, for a pendulum in Python."""
+    count = round(seconds / STEP)
+    for name in names:
+        yield measure(name, unpacked(name), read_model_description(archive(name)), count)
+    if importlib.util.find_spec("pythonfmu") is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            yield python_pendulum(folder, count)
+
+
+def all_names():
+    return sorted(path.stem for path in (ROOT / "build" / "fmu").glob("*.fmu"))
+
+
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 600.0
-    count = round(seconds / STEP)
-    names = sys.argv[2:] or sorted(path.stem for path in (ROOT / "build" / "fmu").glob("*.fmu"))
+    names = sys.argv[2:] or all_names()
     print("times in us; the longest leaves out what else the machine did: of each step the fastest of", RUNS, "runs counts")
     show(dict(zip(COLUMNS, COLUMNS)))
     rows = []
-    for name in names:
-        rows.append(measure(name, unpacked(name), read_model_description(archive(name)), count))
-        show(rows[-1])
-    with tempfile.TemporaryDirectory() as folder:
-        rows.append(python_pendulum(folder, count))
-        show(rows[-1])
+    for row in rows_of(names, seconds):
+        rows.append(row)
+        show(row)
     path = ROOT / "build" / "results" / "realtime.csv"
     path.parent.mkdir(exist_ok=True)
     with open(path, "w", newline="", encoding="utf-8") as file:

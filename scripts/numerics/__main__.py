@@ -7,6 +7,7 @@ import platform
 import sys
 from typing import NamedTuple
 
+import realtime
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, folded, page, paragraphs, table, write_csv
@@ -179,6 +180,22 @@ def touching_section(quick, progress):
     return Section([], paragraphs([*absent, *failures]) + folded("in words", paragraphs(touching.NOTES)) + table(touching.HEADER, rows))
 
 
+def stepped(quick):
+    return work_precision.chosen(quick) if quick else realtime.all_names()
+
+
+def steps_section(quick, progress):
+    rows = []
+    for row in realtime.rows_of(stepped(quick), 1.0 if quick else 10.0):
+        rows.append([row.get(column, "") for column in realtime.COLUMNS])
+        progress(f"single steps, {row['system']}")
+    header = [realtime.COLUMNS[0], realtime.COLUMNS[1], *(f"{column} [µs]" for column in realtime.COLUMNS[2:6]), *realtime.COLUMNS[6:]]
+    write_csv(FOLDER / "single_steps.csv", header, rows)
+    text = (f"Single communication steps of 1 ms. Of each step the fastest of {realtime.RUNS} runs counts, which leaves out what else the machine did, but for \"as seen\". "
+            "Allocations are those of all steps; calls of the operating system are counted where strace is installed. scripts/realtime measures longer.")  # fmt: skip
+    return Section([], paragraphs([text]) + table(header, rows))
+
+
 def accelerations_part(quick, progress):
     title = "One evaluation of the accelerations of a robot"
     try:
@@ -225,7 +242,8 @@ def missing_peers(samples, peers=PEERS):
 
 SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
             ("Switching", switching_section), ("Bodies that touch", touching_section),
-            ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section), ("Left out", left_out_section),
+            ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section),
+            ("Single steps", steps_section), ("Left out", left_out_section),
             ("References", references_section), ("Machine and versions", machine_section)]  # fmt: skip
 
 
@@ -256,7 +274,7 @@ def main(words=None):
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 2 + len(switching.PROBLEMS) + len(switching.GROWING)
-    progress, sections = Progress(count + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
+    progress, sections = Progress(count + len(stepped(quick)) + 1 + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
         sections[title] = attempt(title, section, quick, progress)
         write_page(sections)

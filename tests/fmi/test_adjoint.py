@@ -23,6 +23,7 @@ MIXED = """<system name="Mixed"><parameter name="m" start="0.3" unit="kg"/><para
   <output name="push" unit="N">m*der(v) + k*x*tanh(F/(k*l))</output><output name="lean" unit="1">tanh(theta)*l/s*w</output></system>"""
 # Under names of their own, as other tests have them otherwise.
 HELD = {f"Adjoint{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'name="{name}"', f'name="Adjoint{name}"') for name in ("FourBar", "ChainPendulum")}
+HELD["AdjointBranchedArm"] = (ROOT / "tests" / "systems" / "BranchedArm" / "system.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -45,7 +46,7 @@ def model(name):
 
 @pytest.mark.parametrize("name", ["Mixed", *HELD])
 def test_they_are_transposed_directional_ones(name):
-    """By each known, of a sum of all unknowns: small blocks of M, one that is factored at run time, and a closed loop."""
+    """By each known, of a sum of all unknowns: small blocks of M, one that is factored at run time, a closed loop, and a tree of joints."""
     instance, unknowns, knowns = model(name)
     across = np.random.default_rng(1).standard_normal(len(unknowns))
     adjoint = instance.partial("Adjoint", unknowns, knowns, across)

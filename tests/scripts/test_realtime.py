@@ -15,6 +15,7 @@ def test_times_of_steps():
     times = [float(row[name]) for name in ("median", "99.9 %", "longest", "longest as seen")]
     assert 0 < times[0] < times[-1] and times == sorted(times)
     assert row["system calls"] in (0, "")
+    assert int(row["allocations"]) <= 3  # of the first step and the first impact, however many impacts there are
 
 
 def test_an_fmu_that_stops():

@@ -57,6 +57,11 @@ def test_mass_matrix_is_not_formed(name):
     assert "ldlt_factor" not in source
 
 
+def test_long_function_is_written_in_parts():
+    """Its values are those of the robot below; here it is made sure that there are several."""
+    assert "derivatives_2(" in (fmu.archive("DeepRobot").parent.parent / "systems" / "DeepRobot" / "system.c").read_text()
+
+
 def test_robot(open_fmu):
     robot, instance, random = Robot(ROBOT), open_fmu("DeepRobot"), np.random.default_rng(1)
     names = [f"joint{i}" for i in NUMBERS]

@@ -43,22 +43,28 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
   return shorter ? expanded : node;
 }
 
-/* The same of a tree, whose mass matrix is not formed: row i of M a. */
-static Node inertial_side_in_tree(const struct Model *model, const struct Equations *equations, size_t i) {
-  Node *accelerations = allocate(row_count(equations), sizeof *accelerations);
+/* K a of all rows, where trees have no mass matrix; NULL where none has. */
+static Node *product_of_trees(const struct Model *model, const struct Equations *equations) {
+  const struct Inertia *inertia = equations->inertia;
+  bool has_trees = false;
+  for (size_t b = 0; !equations->explicit_form && b < inertia->block_count; b++)
+    has_trees |= inertia->blocks[b].tree != NULL;
+  if (!has_trees) return NULL;
+  Node *unknowns = allocate(row_count(equations), sizeof *unknowns);
   Node *product = allocate(row_count(equations), sizeof *product);
-  for (size_t k = 0; k < row_count(equations); k++) accelerations[k] = unknown_of_row(model, k);
-  inertia_add_product(model->graph, equations->inertia, accelerations, product);
-  return product[i];
+  for (size_t i = 0; i < row_count(equations); i++) unknowns[i] = unknown_of_row(model, i);
+  inertia_add_product(model->graph, inertia, unknowns, product);
+  return product;
 }
 
 /* Row i of M a and the forces of constraints, or the acceleration itself. */
 static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
-                          size_t i) {
+                          const Node *product, size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-  Node sum = block->tree != NULL ? inertial_side_in_tree(model, equations, i) : ZERO;
+  Node sum = ZERO;
+  if (block->tree != NULL) return without_branches(model, product[i]); /* which nothing makes short */
   for (size_t k = 0; k < block->count; k++) {
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
@@ -84,8 +90,9 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   summary->inertial = allocate(summary->motion_count, sizeof(Node));
   summary->right_side = allocate(summary->motion_count, sizeof(Node));
   summary->outputs = allocate(summary->output_count, sizeof(Node));
+  const Node *product = product_of_trees(model, equations);
   for (size_t i = 0; i < summary->motion_count; i++) {
-    summary->inertial[i] = inertial_side(model, equations, &names, i);
+    summary->inertial[i] = inertial_side(model, equations, &names, product, i);
     summary->right_side[i] = readable(model, &names, equations->right_side[i]);
   }
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));

@@ -6,9 +6,15 @@
 /*
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
  * table takes a fraction of one. The derivatives and the series of the motion may be as long by themselves: as statements,
- * they take a fifth and three quarters of the time.
+ * they take a fifth and three quarters of the time. Those of trees are written in parts, which a compiler takes as long for as
+ * they are together.
  */
-enum { STATEMENT_LIMIT = 6000, SERIES_STATEMENT_LIMIT = 8000, DERIVATIVES_STATEMENT_LIMIT = 20000 };
+enum {
+  STATEMENT_LIMIT = 6000,
+  SERIES_STATEMENT_LIMIT = 8000,
+  DERIVATIVES_STATEMENT_LIMIT = 20000,
+  TREE_STATEMENT_LIMIT = 100000
+};
 
 /* Series of up to this many recurrences an order get code of their own for the first orders. */
 enum { UNROLLED_RECURRENCES = 40 };
@@ -74,6 +80,12 @@ static size_t count_of(const struct Routine *routine) {
   return routine != NULL ? routine->count : 0;
 }
 
+static bool has_trees(const struct Inertia *inertia) {
+  bool has = false;
+  for (size_t b = 0; inertia != NULL && b < inertia->block_count; b++) has |= inertia->blocks[b].tree != NULL;
+  return has;
+}
+
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
@@ -83,8 +95,9 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
   program->series_is_unrolled = series != NULL && program->equations->method->series == ALL_TERMS &&
                                 program->blocks.count == 0 && series->recurrences <= UNROLLED_RECURRENCES;
+  size_t limit = has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
-      all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > DERIVATIVES_STATEMENT_LIMIT);
+      all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);
 }
 
 static void choose_parts_of_runtime(struct Program *program) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/sorting.h"
 #include "program/facts/block_facts.h"
 #include "write/c_text.h"
 #include "write/description.h"
@@ -108,18 +109,20 @@ static void write_blocks(FILE *file, const struct Program *program) {
 }
 
 /* The functions of one routine that struct Lagrangian holds, as far as the system has them. */
-static void write_routines(FILE *file, const struct Program *program, const struct Encoding *tables) {
+static void write_routines(FILE *file, const struct Program *program, const struct Encoding *tables,
+                           const struct Parts *derivatives) {
   for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
     bool is_table = tables != NULL && (i != FUNCTION_DERIVATIVES || program->derivatives_are_table);
     if (is_table) instruction_tables_function(file, tables, i, routine);
+    else if (i == FUNCTION_DERIVATIVES && derivatives != NULL) statements_derivatives(file, program, derivatives);
     else statements_function(file, program, i, "", routine);
   }
 }
 
 static void write_as_statements(FILE *file, const struct Program *program) {
-  write_routines(file, program, NULL);
+  write_routines(file, program, NULL, NULL);
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
@@ -129,14 +132,18 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 
 static void write_as_tables(FILE *file, const struct Program *program) {
   struct Encoding *tables = encoding_create(program);
+  struct Parts derivatives = {0};
+  struct Routine *routine = program->routines[FUNCTION_DERIVATIVES];
+  bool has_parts = routine != NULL && !program->derivatives_are_table;
+  if (has_parts) derivatives = parts_of(routine);
   instruction_tables_shared(file, tables);
-  write_routines(file, program, tables);
+  write_routines(file, program, tables, has_parts ? &derivatives : NULL);
   if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);
   instruction_tables_results(file, tables);
   switching_write(file, program);
-  description_write(file, program, encoding_work_count(tables));
+  description_write(file, program, larger(encoding_work_count(tables), derivatives.shared_count));
 }
 
 void code_write(FILE *file, const struct Program *program) {

@@ -2,6 +2,7 @@
 
 #include "algebra/functions.h"
 #include "write/c_text.h"
+#include "write/parts.h"
 
 /* The names of arrays; the other spaces are no arrays, or two. */
 static const char *const arrays[SPACE_COUNT] = {
@@ -24,6 +25,10 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
       [ROW_OF_PAST] = "", [NEXT_COEFFICIENT] = "[k + 1]", [PAST_COEFFICIENT] = "[k - 1]"};
   enum Space space = space_of(place);
   size_t index = index_in(place);
+  if ((int)space == SPACE_SHARED) {
+    fprintf(file, "s[%zu]", index);
+    return;
+  }
   switch (space) {
   case SPACE_NUMBER: write_c_number(file, graph_value(program->model->graph, (Node)index)); return;
   case SPACE_STATE: write_state(file, program, "", index); return;

@@ -48,12 +48,35 @@ void statements_function(FILE *file, const struct Program *program, enum Functio
   size_t n = program->equations->count;
   write_head(file, name, suffix, routine->operation_count);
   if (takes(name, "*point")) statements_declare_point(file, program, routine);
+  if (routine_uses(routine, (enum Space)SPACE_SHARED)) fputs("  Real *s = point->work;\n", file);
   declare_block_spaces(file, program, routine);
-  if (text->accelerations == IN_TARGET) fprintf(file, "  Real *a = %s + %zu;\n", text->target, n);
-  else if (text->accelerations == IN_WORKSPACE && routine_uses(routine, SPACE_ACCELERATION))
+  bool has_accelerations = routine_uses(routine, SPACE_ACCELERATION);
+  if (text->accelerations == IN_TARGET && has_accelerations) fprintf(file, "  Real *a = %s + %zu;\n", text->target, n);
+  if (text->accelerations == IN_WORKSPACE && has_accelerations)
     fprintf(file, "  Real a[%zu];\n", row_count(program->equations));
   write_statements(file, program, routine, text->target);
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
+}
+
+void statements_derivatives(FILE *file, const struct Program *program, const struct Parts *parts) {
+  const struct GeneratedFunction *text = &generated_functions[FUNCTION_DERIVATIVES];
+  size_t operations = 0;
+  if (parts->count == 1) {
+    statements_function(file, program, FUNCTION_DERIVATIVES, "", parts->items[0]);
+    return;
+  }
+  for (size_t i = 0; i < parts->count; i++) {
+    statements_function(file, program, FUNCTION_DERIVATIVES, format_text("_%zu", i + 1), parts->items[i]);
+    operations += parts->items[i]->operation_count;
+  }
+  write_head(file, FUNCTION_DERIVATIVES, "", operations);
+  /* By their addresses, since compilers make functions that are called once a part of what calls them. */
+  fprintf(file, "  static int (*const parts[])(%s) = {", text->arguments);
+  for (size_t i = 0; i < parts->count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);
+  fprintf(file,
+          "};\n  int singular = 0;\n  for (int i = 0; i < %zu && singular == 0; i++) singular = parts[i](point, %s);\n"
+          "  return singular;\n}\n\n",
+          parts->count, text->target);
 }
 
 /* How many results are computed together with the first of them. */

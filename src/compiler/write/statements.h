@@ -2,6 +2,7 @@
 #pragma once
 
 #include "write/function_text.h"
+#include "write/parts.h"
 
 /* Names for what the routine reads of the point and the direction. */
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);
@@ -9,6 +10,9 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
 /* A function of one routine; suffix belongs to its name. */
 void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
                          const struct Routine *routine);
+
+/* derivatives(), in parts where it is long; what they share is in point->work. */
+void statements_derivatives(FILE *file, const struct Program *program, const struct Parts *parts);
 
 /* result() and result_along(), which choose among a function for each result. */
 void statements_results(FILE *file, const struct Program *program);

@@ -125,7 +125,7 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
 }
 
 static void free_resting(const struct Settlement *settlement, struct RestingContacts *resting) {
-  if (resting->block != NULL) settlement->instance->memory.free(resting->block);
+  if (resting->block != NULL) scratch_return(settlement->instance, SCRATCH_RESTING);
   pushes_free(settlement, &resting->pushes);
 }
 
@@ -138,7 +138,7 @@ static bool create_resting(struct Settlement *settlement, struct RestingContacts
     return false;
   }
   size_t n = resting->count = resting->pushes.contact_count;
-  resting->block = settlement->instance->memory.allocate(2 * n * (n + 1) + 6 * n, sizeof(double));
+  resting->block = scratch_take(settlement->instance, SCRATCH_RESTING, (2 * n * (n + 1) + 6 * n) * sizeof(double));
   bool moves = true;
   for (size_t i = 0; i < n; i++) moves &= resting->pushes.mobility[i * resting->pushes.count + i] > DBL_MIN;
   if (resting->block == NULL) {

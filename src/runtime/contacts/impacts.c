@@ -75,7 +75,7 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   size_t n = pushes->contact_count + 3 * pushes->friction_count, count = pushes->count;
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
-  problem->block = settlement->instance->memory.allocate(numbers, sizeof(double));
+  problem->block = scratch_take(settlement->instance, SCRATCH_IMPACT, numbers * sizeof(double));
   if (problem->block == NULL) {
     solver_lacks_memory(settlement->instance);
     return false;
@@ -251,7 +251,7 @@ static bool take_several(struct Settlement *settlement, const struct Pushes *pus
   bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
   if (is_done) add_impulses(settlement, pushes, problem.impulse);
   else refuse_planes(settlement, pushes);
-  if (problem.block != NULL) settlement->instance->memory.free(problem.block);
+  if (problem.block != NULL) scratch_return(settlement->instance, SCRATCH_IMPACT);
   return is_done;
 }
 

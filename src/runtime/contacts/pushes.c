@@ -138,7 +138,7 @@ bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
   size_t count = pushes->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
   size_t scratch = rows + 2 * n + values;
   pushes->block =
-      settlement->instance->memory.allocate(1, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+      scratch_take(settlement->instance, SCRATCH_PUSHES, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
   if (pushes->block == NULL) {
     solver_lacks_memory(settlement->instance);
     return false;
@@ -165,6 +165,6 @@ bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
 }
 
 void pushes_free(const struct Settlement *settlement, struct Pushes *pushes) {
-  settlement->instance->memory.free(pushes->block);
+  scratch_return(settlement->instance, SCRATCH_PUSHES);
   pushes->block = NULL;
 }

@@ -4,11 +4,6 @@ void expand_input(const struct Instance *instance, size_t i, double time, double
   double s = time - instance->situation->time;
   size_t n = lagrangian.input_count;
   const double *d = instance->input_derivatives + i;
-  if (!instance->situation->input_derivatives_set) {
-    coefficient[0] = instance->input[i];
-    for (int k = 1; k <= INPUT_ORDER; k++) coefficient[k] = 0.0;
-    return;
-  }
   coefficient[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
   coefficient[1] = d[0] + s * (d[n] + s / 2 * d[2 * n]);
   coefficient[2] = (d[n] + s * d[2 * n]) / 2;

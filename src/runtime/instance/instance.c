@@ -116,6 +116,7 @@ void instance_destroy(struct Instance *instance) {
   instance->memory.free(instance->prepared);
   instance->memory.free(instance->situation);
   free_shown(instance);
+  scratch_free(instance);
 }
 
 void instance_restore(struct Instance *instance, const void *situation) {

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "instance/log.h"
+#include "instance/scratch.h"
 #include "lagrangian.h"
 
 enum { INPUT_ORDER = 3 }; /* the highest input derivative; an input is a polynomial over a step */
@@ -94,6 +95,7 @@ struct Instance {
   bool uses_event_mode;       /* of a co-simulation: the importer goes through events between steps */
   bool stops_at_events;       /* and an event ends the step */
   bool was_at_zero;           /* what changed its sign last had not left 0 by more than rounding before */
+  struct Scratch scratch[SCRATCH_USES]; /* for events */
   double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */
   void *solver_memory;

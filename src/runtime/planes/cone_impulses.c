@@ -123,13 +123,13 @@ bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes
                         double *impulse) {
   struct Instance *instance = settlement->instance;
   size_t n = pushes->count;
-  double *block = instance->memory.allocate(3 * n + cone_newton_work_count(n), sizeof *block);
+  double *block = scratch_take(instance, SCRATCH_CONES, (3 * n + cone_newton_work_count(n)) * sizeof *block);
   struct Cones cones = {.settlement = settlement, .pushes = pushes, .rate = rate, .impulse = impulse, .scale = block};
   if (block == NULL) {
     solver_lacks_memory(instance);
     return false;
   }
   bool is_done = fill_scales(&cones) && come_to_law(&cones, block + n, block + 2 * n, block + 3 * n);
-  instance->memory.free(block);
+  scratch_return(instance, SCRATCH_CONES);
   return is_done;
 }

@@ -1,0 +1,63 @@
+#include "write/parts.h"
+
+#include "base/memory.h"
+
+/* Instructions of a part. */
+enum { PART_LENGTH = 1500 };
+
+/* Of each local variable: the part that gives it a value, and whether others read it. */
+struct Local {
+  size_t part, shared; /* shared: 1 + its place; 0 where it is of one part alone */
+};
+
+static void note_use(struct Local *locals, Place place, size_t part, size_t *shared_count) {
+  if (space_of(place) != SPACE_LOCAL) return;
+  struct Local *local = &locals[index_in(place)];
+  if (local->part != part && local->shared == 0) local->shared = ++*shared_count;
+}
+
+static struct Local *find_shared(const struct Routine *routine, size_t *shared_count) {
+  struct Local *locals = allocate(routine->local_count, sizeof *locals);
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    size_t part = i / PART_LENGTH;
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+      note_use(locals, instruction->operands[j], part, shared_count);
+    if (opcode_has_result(instruction->opcode) && space_of(instruction->result) == SPACE_LOCAL)
+      locals[index_in(instruction->result)].part = part;
+  }
+  return locals;
+}
+
+static Place placed(const struct Local *locals, Place place) {
+  if (space_of(place) != SPACE_LOCAL || locals[index_in(place)].shared == 0) return place;
+  return place_in((enum Space)SPACE_SHARED, locals[index_in(place)].shared - 1);
+}
+
+static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, size_t first, size_t end) {
+  struct Routine *part = routine_create();
+  for (size_t i = first; i < end; i++) {
+    struct Instruction instruction = routine->instructions[i];
+    Place *operands = instruction.operands;
+    for (int j = 0; j < opcode_arity(instruction.opcode); j++) operands[j] = placed(locals, operands[j]);
+    if (opcode_has_result(instruction.opcode)) instruction.result = placed(locals, instruction.result);
+    routine_append(part, instruction.opcode, instruction.result, operands[0], operands[1], operands[2]);
+    part->instructions[part->count - 1].function = instruction.function;
+  }
+  return part;
+}
+
+struct Parts parts_of(struct Routine *routine) {
+  struct Parts parts = {.items = allocate(1 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
+  bool has_blocks = routine_uses(routine, SPACE_SIDE) || routine_uses(routine, SPACE_MASS);
+  if (has_blocks || routine->count <= 2 * (size_t)PART_LENGTH) {
+    parts.items[parts.count++] = routine;
+    return parts;
+  }
+  const struct Local *locals = find_shared(routine, &parts.shared_count);
+  for (size_t first = 0; first < routine->count; first += PART_LENGTH) {
+    size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
+    parts.items[parts.count++] = part_of(routine, locals, first, end);
+  }
+  return parts;
+}

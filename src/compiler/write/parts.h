@@ -1,0 +1,18 @@
+/*
+ * A long routine in parts, each of which becomes a function: what a compiler takes for a function grows faster than its length.
+ */
+#pragma once
+
+#include "program/values/routine.h"
+
+/* What several parts know, in a routine that was divided: elements of an array. */
+enum { SPACE_SHARED = SPACE_COUNT };
+
+struct Parts {
+  struct Routine **items;
+  size_t count;
+  size_t shared_count;
+};
+
+/* One part for a routine that is short, or that works on blocks, which stays as it is. */
+struct Parts parts_of(struct Routine *routine);
