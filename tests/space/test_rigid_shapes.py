@@ -70,11 +70,15 @@ def column(boxes):
         for k in range(1, boxes + 1)
     )
     return f"""<system name="Column{boxes}">{HEAD}{SIDES}{WEIGHT}<shape name="top0" type="plane"/>{every}<experiment stopTime="2"/></system>"""
+# A stone that the ball could touch: how far they are apart has a root, so that events are looked for in windows.
+BESIDE_STONE = ON_PLANE.replace("OnPlane", "BesideStone").replace("<experiment", """<coordinate name="h" velocity="vh" unit="m" start="3"/>
+  <particle name="stone" mass="m" x="0.5" y="1" z="h"/><shape name="pebble" in="stone" type="sphere" radius="r"/>
+  <contact name="hit" between="ball" and="pebble"/><solver tolerance="1e-8"/><experiment""")
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
+    texts = {"BesideStone": BESIDE_STONE, "OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
     build_systems("rigid-shapes", texts | {"Column2": column(2)})
 
 
@@ -375,3 +379,11 @@ def test_messages(tmp_path, attributes, message):
     (tmp_path / "system.xml").write_text(ON_BALL.replace("<solver", f'<contact between="ball" and="hill" {attributes}/><solver'))
     found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
     assert found.returncode == 1 and message in found.stderr
+
+
+@pytest.mark.parametrize("v, mu", [(1, 0.1), (2.5, 0.1), (0.4, 0.3)])
+def test_ball_that_begins_to_roll_beside_a_stone(v, mu):
+    """It slides until 2 v/(7 mu g), and then rolls at 5/7 v."""
+    with Running("BesideStone", {"mu": mu, "avx": 0.6 * v, "avy": 0.8 * v}) as instance:
+        instance.step(2 * v / (7 * mu * G) + 0.01)
+        assert instance.get("avx", "avy") == pytest.approx([5 / 7 * 0.6 * v, 5 / 7 * 0.8 * v], rel=1e-7)

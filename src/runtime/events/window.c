@@ -11,6 +11,12 @@
 /* What the last coefficients may have of all, for a polynomial that is the motion. */
 static const double resolved_motion = 1e-3;
 
+/*
+ * What of the largest force is noise. Just before a body rolls or rests, the direction of its friction in a plane is that
+ * of a velocity of which little more than rounding is left.
+ */
+static const double force_noise = 1e-10;
+
 struct Window {
   struct Instance *instance;
   double from, to;
@@ -61,7 +67,7 @@ static bool sample_accelerations(const struct Window *window) {
   return true;
 }
 
-/* The largest of them: what is left of one at rest, where others cancel in it, is their rounding. */
+/* The largest of them: what is left of one at rest, where others cancel in it, is their noise. */
 static double largest_acceleration(const struct Window *window) {
   size_t count = CHEBYSHEV_NODES * lagrangian.switches->watched_acceleration_count;
   double largest = 0.0;
@@ -69,15 +75,15 @@ static double largest_acceleration(const struct Window *window) {
   return largest;
 }
 
-/* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion. */
-static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double nominal,
+/* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion, up to noise. */
+static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double noise,
                            double *series) {
   double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];
   for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
   chebyshev_coefficients(f, c);
   chebyshev_powers(c, 0.5 * (window->to - window->from), series);
-  double rounding = 64.0 * DBL_EPSILON * fmax(fabs(c[0]), nominal);
-  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + rounding;
+  double rounding = 64.0 * DBL_EPSILON * fabs(c[0]);
+  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, noise);
 }
 
 /* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
@@ -87,10 +93,11 @@ static double sure_half(struct Window *window) {
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
   bool is_resolved = sample_accelerations(window);
   for (size_t i = 0; i < states && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->states, states, i, lagrangian.steps.nominal[i], window->x[i]);
-  double largest = is_resolved ? largest_acceleration(window) : 0.0;
+    is_resolved = expand_sampled(window, window->states, states, i, 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i],
+                                 window->x[i]);
+  double noise = is_resolved ? force_noise * largest_acceleration(window) : 0.0;
   for (size_t i = 0; i < forces && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->accelerations, forces, i, largest,
+    is_resolved = expand_sampled(window, window->accelerations, forces, i, noise,
                                  window->work[switches->watched_acceleration_row + i]);
   if (!is_resolved) return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {

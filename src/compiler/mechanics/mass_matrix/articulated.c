@@ -84,13 +84,56 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
   return inertia;
 }
 
+/* What the coordinates of a link move, without the turns that its moments need. */
+struct Load {
+  Node mass;
+  struct Vector lever; /* the mass times where its centre is */
+  Node trace;          /* of the moments about the link's origin */
+};
+
+/* With the load of the links behind. */
+static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bodies, const struct Load *behind) {
+  const struct Vector *moment = bodies->moment.row, *coupling = bodies->coupling.row;
+  struct Vector lever = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* of -[lever] */
+  struct Load load = {.mass = add(graph, bodies->mass.row[0].along[0], behind->mass),
+                      .lever = vector_add(graph, lever, behind->lever),
+                      .trace = behind->trace};
+  for (int i = 0; i < 3; i++) load.trace = add(graph, load.trace, moment[i].along[i]);
+  return load;
+}
+
+static void add_load_to_parent(struct Graph *graph, struct Load *parent, const struct Pose *pose, struct Load load) {
+  struct Vector r = pose->origin, shift = vector_scale(graph, load.mass, r);
+  load.lever = matrix_apply(graph, &pose->rotation, load.lever);
+  Node steiner = vector_dot(graph, r, vector_add(graph, vector_add(graph, load.lever, load.lever), shift));
+  parent->mass = add(graph, parent->mass, load.mass);
+  parent->lever = vector_add(graph, parent->lever, vector_add(graph, load.lever, shift));
+  parent->trace = add(graph, parent->trace, add(graph, load.trace, add(graph, steiner, steiner)));
+}
+
+/* The size of the elements of M on the diagonal: a pivot far below it is rounding. */
+static void set_scales(struct Graph *graph, struct ArticulatedLink *item, const struct Load *load) {
+  const struct Link *link = item->link;
+  item->scale = allocate(link->count, sizeof *item->scale);
+  for (size_t i = 0; i < link->count; i++) {
+    struct SpatialVector axis = link->axes[i];
+    Node moved = multiply(graph, load->mass, vector_dot(graph, axis.linear, axis.linear));
+    Node turned = multiply(graph, load->trace, vector_dot(graph, axis.angular, axis.angular));
+    item->scale[i] = add(graph, add(graph, moved, turned), link->inertia[i * link->count + i]);
+  }
+}
+
 static void eliminate_all(struct Graph *graph, struct ArticulatedTree *tree) {
   struct SpatialInertia *behind = allocate(tree->count, sizeof *behind);
+  struct Load *loads = allocate(tree->count, sizeof *loads);
   for (size_t i = tree->count; i-- > 0;) {
     struct ArticulatedLink *item = &tree->items[i];
     struct SpatialInertia whole = spatial_inertia_add(graph, &item->link->bodies, &behind[i]);
     struct SpatialInertia left = eliminate_link(graph, item, whole);
+    struct Load load = load_of(graph, &item->link->bodies, &loads[i]);
+    set_scales(graph, item, &load);
     if (item->parent == NO_LINK) continue;
+    add_load_to_parent(graph, &loads[item->parent], &item->link->pose, load);
     left = spatial_inertia_to_parent(graph, &item->link->pose, &left);
     behind[item->parent] = spatial_inertia_add(graph, &behind[item->parent], &left);
   }

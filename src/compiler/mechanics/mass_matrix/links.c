@@ -205,7 +205,15 @@ static void mark_columns(struct Builder *builder, const struct Elements *element
       builder->is_elsewhere[elements->positions[k].column] = true;
 }
 
-/* Whether each constraint holds always, and the coordinates of one link alone, as the norm of a quaternion does. */
+/* Two constraints of one link may follow from each other, which only saddle.h sees. */
+static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
+  size_t *held = allocate(builder->links->count, sizeof *held);
+  for (size_t j = 0; j < count; j++)
+    if (is_local[j]) held[link[j]]++;
+  for (size_t j = 0; j < count; j++) is_local[j] = is_local[j] && held[link[j]] == 1;
+}
+
+/* Whether each constraint holds always, and alone the coordinates of one link, as the norm of a quaternion does. */
 static bool *find_local_constraints(const struct Builder *builder, const struct Border *border) {
   const struct Model *model = builder->model;
   const struct Elements *jacobian = border->jacobian;
@@ -222,6 +230,7 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
     is_met[row] = true;
   }
   for (size_t j = 0; j < border->count; j++) is_local[j] &= is_met[j];
+  leave_shared_links(builder, link, border->count, is_local);
   return is_local;
 }
 

@@ -122,7 +122,7 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
   return false;
 }
 
-/* The smallest share that a pivot of the tree has of its diagonal element; NAN where one is not finite. */
+/* The smallest share that a pivot of the tree has of its scale; NAN where one is not finite. */
 static double smallest_share_in(const struct ArticulatedTree *tree, size_t coordinate_count, const double *values) {
   double smallest = 1.0;
   for (size_t i = 0; i < tree->count; i++) {
@@ -130,7 +130,7 @@ static double smallest_share_in(const struct ArticulatedTree *tree, size_t coord
     for (size_t k = 0; k < item->link->count; k++) {
       size_t diagonal = item->pattern.start[k + 1] - 1;
       if (item->link->coordinates[k] >= coordinate_count) continue; /* a constraint */
-      double share = values[item->factor[diagonal]] / fabs(values[item->mass[diagonal]]);
+      double share = values[item->factor[diagonal]] / fabs(values[item->scale[k]]);
       if (!isfinite(share)) return NAN;
       smallest = fmin(smallest, share);
     }
@@ -185,19 +185,19 @@ static Node pivot_scale(struct Graph *graph, Node diagonal) {
   return scale;
 }
 
-static void append_pivot(struct Graph *graph, struct Inertia *inertia, size_t coordinate, Node value, Node diagonal) {
+static void append_pivot(struct Inertia *inertia, size_t coordinate, Node value, Node diagonal, Node scale) {
   if (value == ONE || coordinate >= inertia->coordinate_count) return; /* as of driven coordinates */
-  inertia->pivots[inertia->pivot_count++] = (struct Pivot){
-      .value = value, .diagonal = diagonal, .scale = pivot_scale(graph, diagonal), .coordinate = coordinate};
+  inertia->pivots[inertia->pivot_count++] =
+      (struct Pivot){.value = value, .diagonal = diagonal, .scale = scale, .coordinate = coordinate};
 }
 
 /* From the last links to the first, as they are eliminated. */
-static void append_pivots_of_tree(struct Graph *graph, struct Inertia *inertia, const struct InertiaBlock *block) {
+static void append_pivots_of_tree(struct Inertia *inertia, const struct InertiaBlock *block) {
   for (size_t i = block->tree->count; i-- > 0;) {
     const struct ArticulatedLink *item = &block->tree->items[i];
     for (size_t k = 0; k < item->link->count; k++) {
       size_t diagonal = item->pattern.start[k + 1] - 1;
-      append_pivot(graph, inertia, item->link->coordinates[k], item->factor[diagonal], item->mass[diagonal]);
+      append_pivot(inertia, item->link->coordinates[k], item->factor[diagonal], item->scale[k], item->scale[k]);
     }
   }
 }
@@ -206,12 +206,13 @@ void pivots_factor(struct Graph *graph, struct Inertia *inertia) {
   inertia->pivots = allocate(inertia->count, sizeof *inertia->pivots);
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];
-    if (block->tree != NULL) append_pivots_of_tree(graph, inertia, block);
+    if (block->tree != NULL) append_pivots_of_tree(inertia, block);
     if (!block->is_unrolled || block->tree != NULL) continue;
     block_factor(graph, block);
     for (size_t i = 0; i < block->count; i++) {
       size_t diagonal = block->start[i + 1] - 1;
-      append_pivot(graph, inertia, block->coordinates[i], block->factor[diagonal], block->mass[diagonal]);
+      Node element = block->mass[diagonal];
+      append_pivot(inertia, block->coordinates[i], block->factor[diagonal], element, pivot_scale(graph, element));
     }
   }
 }
