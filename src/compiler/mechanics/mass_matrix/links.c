@@ -9,6 +9,9 @@
 /* The average number of coordinates that move a coordinate of a tree, from which on articulated inertias take fewer operations. */
 static const double least_depth = 4.5;
 
+/* Links that move against the one before: a single body that moves freely has two. */
+enum { LEAST_LINKS = 8 };
+
 struct Builder {
   const struct Model *model;
   struct Links *links;
@@ -262,10 +265,12 @@ static void set_constraints(struct Builder *builder, const struct Border *border
   }
 }
 
-/* For each component, how many coordinates move what one of it moves, itself among them, on the average. */
-static double *depths_of(const struct Links *links, const struct Components *components) {
+/* For each component whether it is large, and what one of its coordinates moves hangs on many others on the average. */
+static bool *find_deep(const struct Links *links, const struct Components *components) {
   double *depth = allocate(links->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
          *count = allocate(components->count, sizeof *count);
+  size_t *moving = allocate(components->count, sizeof *moving);
+  bool *is_deep = allocate(components->count, sizeof *is_deep);
   for (size_t i = 0; i < links->count; i++) {
     const struct Link *link = &links->items[i];
     depth[i] = (double)link->count + (link->parent != NO_LINK ? depth[link->parent] : 0.0);
@@ -273,18 +278,18 @@ static double *depths_of(const struct Links *links, const struct Components *com
     size_t component = components->of[link->coordinates[0]];
     sum[component] += (double)link->count * depth[i];
     count[component] += (double)link->count;
+    moving[component]++;
   }
-  for (size_t c = 0; c < components->count; c++) sum[c] = count[c] > 0.0 ? sum[c] / count[c] : 0.0;
-  return sum;
+  for (size_t c = 0; c < components->count; c++)
+    is_deep[c] = moving[c] >= LEAST_LINKS && sum[c] >= least_depth * count[c];
+  return is_deep;
 }
 
 /* Takes the components as trees that are so as a whole, and deep. Whether there are any. */
 static bool choose_trees(struct Builder *builder, const struct Components *components) {
   struct Links *links = builder->links;
   size_t n = builder->row_count;
-  const double *depth = depths_of(links, components);
-  bool *is_tree = allocate(components->count, sizeof *is_tree), any = false;
-  for (size_t c = 0; c < components->count; c++) is_tree[c] = depth[c] >= least_depth;
+  bool *is_tree = find_deep(links, components), any = false;
   for (size_t i = 0; i < n; i++)
     if (builder->is_elsewhere[i] || builder->link_of[i] == NO_LINK) is_tree[components->of[i]] = false;
   for (size_t i = 0; i < n; i++) {
