@@ -10,7 +10,7 @@
 static const double least_depth = 4.5;
 
 /* Links that move against the one before: a single body that moves freely has two. */
-enum { LEAST_LINKS = 8 };
+enum { LEAST_LINKS = 6 };
 
 struct Builder {
   const struct Model *model;
