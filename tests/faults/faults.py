@@ -441,7 +441,6 @@ PLACES = [
     ("state.aside < -slope_back * state.ahead;", "state.aside < -1e9 + slope_back * state.ahead;",
      pytest("test_friction_in_a_plane", "long_steps")),
     # Many runs at once
-    ("(2.0 + 0.7 * share_before)", "(0.5 + 0.7 * share_before)", pytest("test_ensembles", "fmu_alone and ParticlePolar", "ParticlePolar")),
     ("steps->low[i][lane] = 0.0;", "(void)steps;", pytest("test_ensembles", "same_bits and DoublePendulum", "DoublePendulum")),
     ("ensemble->is_left[run] = !is_right;", "", pytest("test_ensembles", "without_a_solution", "ParticleSpherical")),
     ("isfinite(value) && value >= variable->minimum", "isfinite(value)", pytest("test_ensembles", "fmu_refuses", "SimplePendulum")),

@@ -23,7 +23,7 @@ MIXED = """<system name="Mixed"><parameter name="m" start="0.3" unit="kg"/><para
   <output name="push" unit="N">m*der(v) + k*x*tanh(F/(k*l))</output><output name="lean" unit="1">tanh(theta)*l/s*w</output></system>"""
 # Under names of their own, as other tests have them otherwise.
 HELD = {f"Adjoint{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'name="{name}"', f'name="Adjoint{name}"') for name in ("FourBar", "ChainPendulum")}
-HELD["AdjointBranchedArm"] = (ROOT / "tests" / "systems" / "BranchedArm" / "system.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
+HELD["AdjointBranchedArm"] = (ROOT / "tests" / "support" / "branched_arm.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
 
 
 @pytest.fixture(scope="module", autouse=True)

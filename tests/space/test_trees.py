@@ -101,10 +101,9 @@ def test_pendulum(name, open_fmu):
 @pytest.mark.parametrize("solver", ["taylor", "radau"])
 def test_energy(solver, open_fmu):
     """Of a gantry that moves along three axes at once, motors, a slider in its frame, and damping; radau has the Jacobian from directions."""
-    name = {"taylor": "BranchedArm", "radau": "BranchedArmRadau"}[solver]
-    if solver == "radau":
-        text = (fmu.ROOT / "tests" / "systems" / "BranchedArm" / "system.xml").read_text()
-        build_systems("trees-radau", {name: text.replace("BranchedArm", name).replace("<work/>", '<work/><solver method="radau"/>')})
+    name = f"BranchedArm_{solver}"
+    text = (fmu.ROOT / "tests" / "support" / "branched_arm.xml").read_text()
+    build_systems(f"trees-{solver}", {name: text.replace("BranchedArm", name).replace("<work/>", f'<work/><solver method="{solver}"/>')})
     instance = open_fmu(name).initialize(tolerance=1e-11)
     start = instance.get("totalEnergy")
     instance.step(1.5)
