@@ -46,10 +46,7 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
 /* K a of all rows, where trees have no mass matrix; NULL where none has. */
 static Node *product_of_trees(const struct Model *model, const struct Equations *equations) {
   const struct Inertia *inertia = equations->inertia;
-  bool has_trees = false;
-  for (size_t b = 0; !equations->explicit_form && b < inertia->block_count; b++)
-    has_trees |= inertia->blocks[b].tree != NULL;
-  if (!has_trees) return NULL;
+  if (equations->explicit_form || !inertia_has_trees(inertia)) return NULL;
   Node *unknowns = allocate(row_count(equations), sizeof *unknowns);
   Node *product = allocate(row_count(equations), sizeof *product);
   for (size_t i = 0; i < row_count(equations); i++) unknowns[i] = unknown_of_row(model, i);

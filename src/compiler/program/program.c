@@ -80,12 +80,6 @@ static size_t count_of(const struct Routine *routine) {
   return routine != NULL ? routine->count : 0;
 }
 
-static bool has_trees(const struct Inertia *inertia) {
-  bool has = false;
-  for (size_t b = 0; inertia != NULL && b < inertia->block_count; b++) has |= inertia->blocks[b].tree != NULL;
-  return has;
-}
-
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
@@ -95,7 +89,7 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
   program->series_is_unrolled = series != NULL && program->equations->method->series == ALL_TERMS &&
                                 program->blocks.count == 0 && series->recurrences <= UNROLLED_RECURRENCES;
-  size_t limit = has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
+  size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
       all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);
 }

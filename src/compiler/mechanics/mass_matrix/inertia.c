@@ -121,6 +121,12 @@ const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_
   return &inertia->blocks[inertia->block_of[coordinate]];
 }
 
+bool inertia_has_trees(const struct Inertia *inertia) {
+  bool has = false;
+  for (size_t b = 0; inertia != NULL && b < inertia->block_count; b++) has |= inertia->blocks[b].tree != NULL;
+  return has;
+}
+
 bool block_is_full(const struct InertiaBlock *block) {
   return block->constraint_count == 0 && block->start[block->count] == block->count * (block->count + 1) / 2;
 }

@@ -66,6 +66,9 @@ size_t inertia_find(const struct Inertia *inertia, size_t i, size_t j);
 /* K_ij, which is not known in trees: ZERO. */
 Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);
 
+/* Whether some block is a tree; false for NULL, of systems without coordinates. */
+bool inertia_has_trees(const struct Inertia *inertia);
+
 /* The block that a row belongs to. */
 const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate);
 

@@ -87,12 +87,6 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   return jacobian;
 }
 
-static bool has_trees(const struct Inertia *inertia) {
-  bool has = false;
-  for (size_t b = 0; b < inertia->block_count; b++) has |= inertia->blocks[b].tree != NULL;
-  return has;
-}
-
 /* An element of the pattern for each state that the nodes rest on, in all rows of the block. */
 static void append_pattern(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                            const struct InertiaBlock *block) {
@@ -125,7 +119,8 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
 }
 
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
-  if (!equations->explicit_form && has_trees(equations->inertia)) return pattern_for_directions(graph, equations);
+  if (!equations->explicit_form && inertia_has_trees(equations->inertia))
+    return pattern_for_directions(graph, equations);
   struct ElementList list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
