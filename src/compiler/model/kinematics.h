@@ -49,7 +49,7 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
 /* Turns it by a quaternion of norm 1, q[0] + q[1] i + q[2] j + q[3] k. */
 void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
 
-/* Moves and turns the frame by a step, as seen from itself. */
+/* Moves or turns the frame by a step, as seen from itself; one that does both would tell its velocity along axes of its own. */
 void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step);
 
 /* The velocity of a point of the frame at an offset, along its axes. */

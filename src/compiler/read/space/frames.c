@@ -179,37 +179,34 @@ static Node planar_component(struct Reader *reader, xmlNodePtr node, const char 
   return value != NULL ? value->node : ZERO;
 }
 
-/* Its origin is the centre of mass. */
-static struct Pose pose_of_planar_body(struct Reader *reader, xmlNodePtr node, const char *name) {
-  struct Pose pose = pose_of_base();
-  struct Vector origin = {{planar_component(reader, node, name, "x"), planar_component(reader, node, name, "y"),
-                           planar_component(reader, node, name, "z")}};
-  Node angle = planar_component(reader, node, name, "angle");
-  pose_translate(reader->model->graph, &pose, origin, derivative_of(reader->scope, origin));
-  pose_turn(reader->model->graph, &pose, (struct Vector){{ZERO, ZERO, ONE}}, angle,
-            total_time_derivative(reader->scope, angle));
-  return pose;
-}
-
 static void append_step(struct Graph *graph, struct ReferenceFrame *frame, const struct Pose *step) {
   frame->steps = make_room(frame->steps, frame->step_count, sizeof *frame->steps);
   frame->steps[frame->step_count++] = *step;
   pose_follow(graph, &frame->pose, step);
 }
 
+/* Its origin is the centre of mass. */
+static void append_steps_of_planar_body(struct Reader *reader, xmlNodePtr node, const char *name,
+                                        struct ReferenceFrame *frame) {
+  struct Graph *graph = reader->model->graph;
+  struct Pose translation = pose_of_base(), turn = pose_of_base();
+  struct Vector origin = {{planar_component(reader, node, name, "x"), planar_component(reader, node, name, "y"),
+                           planar_component(reader, node, name, "z")}};
+  Node angle = planar_component(reader, node, name, "angle");
+  pose_translate(graph, &translation, origin, derivative_of(reader->scope, origin));
+  pose_turn(graph, &turn, (struct Vector){{ZERO, ZERO, ONE}}, angle, total_time_derivative(reader->scope, angle));
+  append_step(graph, frame, &translation);
+  append_step(graph, frame, &turn);
+}
+
 /* Adds what moves and turns the frame, which has the pose of its parent. */
 static void read_steps(struct Reader *reader, xmlNodePtr node, const char *name, struct ReferenceFrame *frame) {
   struct Graph *graph = reader->model->graph;
-  struct Pose step = pose_of_base();
-  if (frame->is_of_body) {
-    step = pose_of_planar_body(reader, node, name);
-    append_step(graph, frame, &step);
-    return;
-  }
+  if (frame->is_of_body) append_steps_of_planar_body(reader, node, name, frame);
   for (xmlNodePtr element = node->children; element != NULL; element = element->next) {
     bool is_translation = is_element(element, "translate");
     if (!is_translation && !is_element(element, "rotate")) continue;
-    step = pose_of_base();
+    struct Pose step = pose_of_base();
     if (is_translation) translate(reader, element, &step);
     else turn(reader, element, &step);
     append_step(graph, frame, &step);
