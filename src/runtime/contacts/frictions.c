@@ -20,7 +20,7 @@ static const char neither[] = "a friction switches back and forth there without 
 /* What decides on the mode of a friction. */
 struct FrictionState {
   double mode, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
-  double noise, noise_of_rate;                  /* what rounding may make of velocity and rate */
+  double noise, noise_of_rate, noise_of_force;  /* what rounding may make of them */
   bool is_hit;                                  /* its zero was found, or its limit reached */
   bool is_first;                                /* it has not switched in this settlement */
   bool may_jump;                                /* velocities have jumped, or the simulation starts */
@@ -42,7 +42,10 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
                                 .is_hit = is_hit(settlement, indicator),
                                 .is_first = settlement->flips[indicator] == 0.0,
                                 .may_jump = settlement->jumped || settlement->occasion == AT_START};
-  if (state.mode == 0.0) state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
+  if (state.mode == 0.0) {
+    state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
+    state.noise_of_force = settlement->force_noise[friction] + noise[FRICTION_STICTION];
+  }
   state.has_no_force = settlement->switches->rests_on != NULL && state.stiction == 0.0 && value[FRICTION_FORCE] == 0.0;
   /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
   double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
@@ -62,8 +65,9 @@ static double mode_without_force(const struct FrictionState *state) {
 
 /* Of one that sticks. */
 static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
-  /* An importer comes past the limit: at the limit itself it sticks. */
-  bool slips = fabs(state->force) > state->stiction || (state->is_hit && state->is_first && !settlement->jumped);
+  /* An importer comes past the limit: at the limit itself it sticks; so does what has just come to rest at it by rounding. */
+  double limit = state->stiction + (state->is_hit && !state->is_first ? state->noise_of_force : 0.0);
+  bool slips = fabs(state->force) > limit || (state->is_hit && state->is_first && !settlement->jumped);
   return slips ? (state->force > 0.0 ? 1.0 : -1.0) : 0.0;
 }
 

@@ -33,6 +33,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
       {&settlement->value, values},
       {&settlement->noise, values},
       {&settlement->other_noise, values},
+      {&settlement->force_noise, switches->friction_count},
       {&settlement->condition, switches->event_count},
       {&settlement->takes_part, switches->contact_count + switches->friction_count},
       {&settlement->energy, switches->energy_count},
@@ -118,12 +119,19 @@ static void take_roundings(struct Settlement *settlement) {
     add_noise(settlement, friction_place(switches, i, FRICTION_VELOCITY), rounding[friction_indicator(switches, i)]);
 }
 
+static double holding_force(const struct Settlement *settlement, size_t friction) {
+  size_t constraint = settlement->switches->frictions[friction].constraint;
+  return settlement->acceleration[lagrangian.coordinate_count + constraint];
+}
+
 /* Rounding in one way may leave a difference as it is; what it does in another is measured at the beginning of an event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
   double *noise = settlement->noise, *other = settlement->other_noise, factor, other_factor = 0.0;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
   if (!values_rounded(settlement, false, noise, &factor)) return false;
+  for (size_t i = 0; i < settlement->switches->friction_count; i++)
+    settlement->force_noise[i] = holding_force(settlement, i);
   bool is_first = !settlement->is_evaluated;
   if (is_first && !values_rounded(settlement, true, other, &other_factor)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
@@ -132,6 +140,8 @@ bool settlement_evaluate(struct Settlement *settlement) {
     double change = fmax(factor * fabs(noise[i] - settlement->value[i]), other[i]);
     noise[i] = isfinite(change) ? change : 0.0;
   }
+  for (size_t i = 0; i < settlement->switches->friction_count; i++)
+    settlement->force_noise[i] = factor * fabs(settlement->force_noise[i] - holding_force(settlement, i));
   take_roundings(settlement);
   settlement->is_evaluated = true;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
