@@ -131,7 +131,7 @@ def fit(
 ) -> Fit:
     """
     Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
-    inputs in its first line; or a structured array of these; or several experiments. Least squares from the start values on, with the exact
+    inputs in its first line, perhaps with units; or a structured array of these; or several experiments; NaN, or nothing, is what was not measured. Least squares from the start values on, with the exact
     derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
     is not given all columns count the same. `each` has start values, parameters or inputs which are found for each experiment by itself, beginning where
     these were measured first. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can

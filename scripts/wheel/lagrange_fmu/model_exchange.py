@@ -10,7 +10,7 @@ from fmpy.fmi1 import FMICallException
 from .models import Model2, Model3, Slave2
 from .problem import Problem
 from .running import fmu_of, is_fmu
-from .simulation import check_start, described
+from .simulation import check_start, described, units_of
 from .variables import settable
 
 ADJOINT = ("--adjoint", "--scalars")  # words for lagc
@@ -41,7 +41,7 @@ class Point:
             [name for name in names if not name.removesuffix(")").endswith(ends)] for names in (self.derivatives, self.states, settable(description), outputs)
         )
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
-        self.name = description.modelName
+        self.name, self.units = description.modelName, units_of(description)
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
         self.indicator_count = description.numberOfEventIndicators
 

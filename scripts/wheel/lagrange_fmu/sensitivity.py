@@ -146,7 +146,14 @@ class Motion:
         return np.concatenate([state, slopes.ravel()])
 
 
+def check_once(names):
+    for name in names:
+        if names.count(name) > 1:
+            raise Problem(f"'{name}' stands there twice; expected each name once")
+
+
 def check_names(point, of, by):
+    check_once(by)
     for names, among, what in ((of, {*point.outputs, *point.derivatives, *point.states}, "an output, a state or its derivative"), (by, {*point.settable}, "a parameter, a start value or an input")):
         for name in names:
             if name not in among:
