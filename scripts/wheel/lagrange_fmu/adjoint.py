@@ -11,7 +11,7 @@ import numpy as np
 from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
-from .sensitivity import Motion, acting_of, check_names, start_slopes
+from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 
 from scipy.integrate import DOP853, OdeSolution  # isort: skip
 
@@ -167,12 +167,13 @@ def _aim(point, of, data, stop_time, integral, noise):
         experiment = Experiment(data, point, noise)
         check_noise(noise, [experiment])
         return _aim_at_data(experiment)
-    if stop_time is None or not stop_time > 0:
+    if stop_time is None or not 0 < stop_time < np.inf:
         raise Problem(f"the stop time is {stop_time}; expected one later than 0 s")
     return _aim_at_end(of, stop_time, integral)
 
 
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
+    check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         aim = _aim(point, of, data, stop_time, integral, noise)
         check_names(point, aim.of, by)
