@@ -136,11 +136,25 @@ MESHED = """\
 """
 
 
+# Between two lengths the spring of its tendon is slack.
+SLACK = """\
+<mujoco model="slack">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body><joint name="a" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/>
+      <body pos="0.3 0 0"><joint name="b" axis="1 1 0"/><geom type="box" size="0.1 0.2 0.1" pos="0.3 0 0"/></body>
+    </body>
+  </worldbody>
+  <tendon><fixed name="t" stiffness="30" springlength="-0.3 0.4" armature="0.2"><joint joint="a" coef="2"/><joint joint="b" coef="-0.5"/></fixed></tendon>
+</mujoco>
+"""
+
+
 class Generator:
     """Random files: trees of at most five bodies."""
 
     def __init__(self, seed):
-        self.random, self.bodies, self.joints, self.singles = np.random.default_rng(seed), 0, 0, []
+        self.random, self.bodies, self.joints, self.tendons, self.singles = np.random.default_rng(seed), 0, 0, 0, []
 
     def numbers(self, count, low=-1.0, high=1.0):
         return " ".join(f"{x:.6g}" for x in self.random.uniform(low, high, count))
@@ -198,23 +212,37 @@ class Generator:
         child_class = self.choice("", 'childclass="c1"', 'childclass="c2"')
         return f'<body name="{name}" pos="{self.numbers(3)}" {self.turn()} {child_class}>{"".join(inside)}</body>'
 
-    def actuator(self, joint):
+    def actuator(self, transmission):
         limits = self.choice("", 'ctrlrange="-1 1.5"', 'forcerange="-2 3"')
         gear = self.choice("", f'gear="{self.numbers(1, -3, 3)}"')
         law = self.choice("motor", f'position kp="{self.numbers(1, 1, 9)}" kv="{self.numbers(1, 0, 2)}"', f'velocity kv="{self.numbers(1, 0, 2)}"',
                           f'general gainprm="{self.numbers(1)}" biastype="affine" biasprm="{self.numbers(3)}"')  # fmt: skip
-        return f'<{law} joint="{joint}" {gear} {limits}/>'
+        return f"<{law} {transmission} {gear} {limits}/>"
+
+    def tendon(self):
+        joints = self.random.permutation(self.singles)[: self.random.integers(1, 4)]
+        pulls = "".join(f'<joint joint="{joint}" coef="{self.numbers(1)}"/>' for joint in joints)
+        # MuJoCo leaves out how the inertia of a tendon couples joints of different branches.
+        ways = {"stiffness": 9, "damping": 2} | ({"armature": 0.5} if len(joints) == 1 else {})
+        given = " ".join(f'{way}="{self.numbers(1, 0, high)}"' for way, high in ways.items() if self.random.random() < 0.6)
+        relaxed = self.choice("", f'springlength="{self.numbers(1)}"')
+        self.tendons += 1
+        classes = self.choice("", 'class="c1"')
+        return f'<fixed name="t{self.tendons}" {given} {relaxed} {classes}>{pulls}</fixed>'
 
     def text(self):
         sequence = "".join(self.choice(*"xyzXYZ") for _ in range(3))
         bodies = "".join(self.body() for _ in range(self.random.integers(1, 3)))
-        actuators = "".join(self.actuator(joint) for joint in self.singles if self.random.random() < 0.7)
+        tendons = "".join(self.tendon() for _ in range(self.random.integers(0, 4)) if self.singles)
+        transmissions = [f'joint="{joint}"' for joint in self.singles] + [f'tendon="t{i + 1}" name="a{i + 1}"' for i in range(self.tendons)]
+        actuators = "".join(self.actuator(transmission) for transmission in transmissions if self.random.random() < 0.7)
         return (
             f'<mujoco model="r"><compiler angle="{self.choice("degree", "radian")}" eulerseq="{sequence}"/>'
             f'<option gravity="{self.choice("0 0 -9.81", self.numbers(3))}"/>'
             f'<default><joint damping="{self.numbers(1, 0, 1)}"/><geom density="700"/>'
-            f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default></default>'
-            f"</default><worldbody>{bodies}</worldbody><actuator>{actuators}</actuator></mujoco>"
+            f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default>'
+            f'<tendon damping="{self.numbers(1, 0, 1)}"/></default><tendon stiffness="{self.numbers(1, 0, 2)}"/>'
+            f"</default><worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
         )
 
 
@@ -227,7 +255,8 @@ def robots(tmp_path_factory):
     files = FILES | {"Coupled": COUPLED} | {name: LOOPED.format(text) for name, text in EQUALITIES.items()}
     for name, text in files.items():
         (folder / f"{name}.xml").write_text(text)
-    files |= {"Meshed": MESHED}
+    files |= {"Meshed": MESHED, "Slack": SLACK}
+    (folder / "Slack.xml").write_text(SLACK)
     (folder / "Meshed.xml").write_text(MESHED)
     (folder / "Started.xml").write_text(LOOPED.format(""))
     (folder / "shapes").mkdir()
@@ -324,6 +353,19 @@ def check_accelerations(name, text, instance, digits):
 @pytest.mark.parametrize("name", FILES)
 def test_accelerations(name, open_fmu):
     check_accelerations(name, FILES[name], open_fmu(name, kind=FMU2Model), 1e-10)
+
+
+def test_slack_tendon(open_fmu):
+    """A state that is set jumps over the ends of what is slack: each is one to start from here."""
+    reference, random, lengths = Reference(SLACK), np.random.default_rng(1), set()
+    for _ in range(STATES):
+        reference.draw(random)
+        position, velocity, expected = reference.coordinates()
+        instance = open_fmu("Slack").initialize(dict(zip(["r.a", "r.b", "r.a_velocity", "r.b_velocity"], [*position, *velocity])))
+        assert instance.get("der(r.a_velocity)", "der(r.b_velocity)") == pytest.approx(expected, rel=1e-10)
+        assert instance.get("r.t_tendon") == pytest.approx(reference.data.ten_length[0], rel=1e-14)
+        lengths.add(int(np.searchsorted([-0.3, 0.4], reference.data.ten_length[0])))
+    assert lengths == {0, 1, 2}
 
 
 def test_inertia_of_meshes(open_fmu):

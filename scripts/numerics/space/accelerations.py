@@ -21,7 +21,7 @@ ROBOTS = [
     ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
     ("iCub", "32 axes on a base that flies", "icub_description/robots/icub_reduced.urdf", "floating"),
 ]
-CHAINS = [10, 20, 40]  # axes, one after another
+CHAINS = [10, 20, 40, 80, 120, 200]  # axes, one after another
 ROUND = 0.05  # seconds of one program in one round
 # Of each package a header, and the folders where releases of Debian have it.
 SYSTEM = Path("/usr/include")

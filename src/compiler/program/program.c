@@ -13,7 +13,7 @@ enum {
   STATEMENT_LIMIT = 6000,
   SERIES_STATEMENT_LIMIT = 8000,
   DERIVATIVES_STATEMENT_LIMIT = 20000,
-  TREE_STATEMENT_LIMIT = 100000
+  TREE_STATEMENT_LIMIT = 200000
 };
 
 /* Series of up to this many recurrences an order get code of their own for the first orders. */
