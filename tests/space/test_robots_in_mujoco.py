@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import fmu
 from fmu import build_systems
+from numerics.space import hand
 
 mujoco = pytest.importorskip("mujoco")
 pytestmark = pytest.mark.release
@@ -289,7 +290,7 @@ class Reference:
         names = []
         for i in range(self.model.njnt):
             joint = self.model.joint(i)
-            name = joint.name or self.model.body(joint.bodyid[0]).name
+            name = (joint.name or self.model.body(joint.bodyid[0]).name).replace(":", "_")
             ends = {0: ["_x", "_y", "_z", "_qw", "_qx", "_qy", "_qz"], 1: ["_qw", "_qx", "_qy", "_qz"]}.get(joint.type[0], [""])
             names += [f"r.{name}{end}" for end in ends]
         return names
@@ -353,6 +354,15 @@ def check_accelerations(name, text, instance, digits):
 @pytest.mark.parametrize("name", FILES)
 def test_accelerations(name, open_fmu):
     check_accelerations(name, FILES[name], open_fmu(name, kind=FMU2Model), 1e-10)
+
+
+def test_hand(open_fmu):
+    """Shadow's, with 24 joints, 20 servomotors with limits, and tendons."""
+    if hand.source() is None:
+        pytest.skip("gymnasium-robotics is not installed")
+    text = hand.text()
+    build_systems("mujoco-hand", {"Shadow": '<system name="Shadow"><include file="hand.xml" as="r"/></system>'}, files={"Shadow/hand.xml": text})
+    check_accelerations("Shadow", text, open_fmu("Shadow", kind=FMU2Model), 1e-10)
 
 
 def test_slack_tendon(open_fmu):
