@@ -39,7 +39,7 @@ EACH = """\
           <geom type="capsule" fromto="0 0 0 0.1 0.2 0.4" size="0.05"/>
           <geom type="ellipsoid" size="0.1 0.05 0.2" pos="0 0 0.1" quat="1 2 3 4"/>
           <body name="tip" pos="0 0 0.4" xyaxes="1 1 0 0 1 1">
-            <joint name="ball" type="ball" damping="0" armature="0" stiffness="0" pos="0 0.1 0"/>
+            <joint name="ball" type="ball" damping="0.3" armature="0" stiffness="0" pos="0 0.1 0"/>
             <inertial pos="0.05 0 0.1" mass="1.5" fullinertia="0.02 0.03 0.025 0.001 -0.002 0.003"/>
             <geom type="sphere" size="0.1"/>
           </body>
@@ -203,8 +203,8 @@ class Generator:
             inside.append("<freejoint/>")
         if kind == "ball":
             self.joints += 1
-            plain = 'stiffness="0" damping="0" armature="0"'
-            inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {plain}/>')
+            given = f'stiffness="0" damping="{self.numbers(1, 0, 2)}" armature="{self.choice("0", self.numbers(1, 0, 0.5))}"'
+            inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {given}/>')
         inside += [self.geom() for _ in range(self.random.integers(1, 3))]
         if self.random.random() < 0.4:
             inside.append(self.inertial())

@@ -181,6 +181,25 @@ static struct JointStart start_of_quaternion(const struct Joint *joint) {
   return start;
 }
 
+/* For a quaternion of length 1 the square of the angular velocity is 4 times that of its rate. */
+static void write_ball(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+                       const char *description) {
+  const char *name = joint->symbol;
+  write_components(writer, name, 3, start, description);
+  const char *squares = format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name,
+                                    name, name, name);
+  if (joint->armature > 0) {
+    write_parameter(writer, format_text("%s_armature", name), joint->armature, "kg.m2",
+                    format_text("inertia of %s about any axis", name));
+    set_content(write_element(writer, "kinetic"), format_text("2*%s_armature*%s", name, squares));
+  }
+  if (joint->damping > 0) {
+    write_parameter(writer, format_text("%s_damping", name), joint->damping, "N.m.s/rad",
+                    format_text("viscous damping of %s", name));
+    set_content(write_element(writer, "dissipation"), format_text("2*%s_damping*%s", name, squares));
+  }
+}
+
 void write_joint(const struct Writer *writer, const struct Joint *joint) {
   char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
                                   joint->parent->name, joint->child->name);
@@ -188,7 +207,7 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
   else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, &start, description);
-  else if (joint->type == BALL) write_components(writer, joint->symbol, 3, &start, description);
+  else if (joint->type == BALL) write_ball(writer, joint, &start, description);
 }
 
 /* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */

@@ -95,11 +95,18 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/* What has a coordinate for each degree of freedom in the language has no place for what acts along them. */
+/* A ball joint turns against its damping and armature about any axis; what else acts along a single coordinate has no place in several. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
-  static const char *const refused[] = {"stiffness", "damping", "armature", "frictionloss", "springdamper"};
+  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
-  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+  if (joint->type == BALL) {
+    joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+    joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+    if (mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+    return;
+  }
+  mjcf_refuse(mjcf, node, "damping");
+  mjcf_refuse(mjcf, node, "armature");
 }
 
 /* The body of a free joint starts where it is placed. */
