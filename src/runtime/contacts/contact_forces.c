@@ -51,12 +51,6 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
   return sticks;
 }
 
-static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
-  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
-  if (contact_is_closed(settlement, contact)) return true;
-  return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
-}
-
 /* Whether an open contact at rest would close, as one that another has opened too soon. */
 static bool sinks(const struct Settlement *settlement) {
   bool any = false;
@@ -74,7 +68,7 @@ static bool choose_resting(struct Settlement *settlement) {
   size_t contacts = switches->contact_count;
   bool slides = false;
   for (size_t i = 0; i < contacts; i++)
-    settlement->takes_part[i] = is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
+    settlement->takes_part[i] = contact_is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) {
     settlement->takes_part[contacts + i] = friction_sticks(settlement, i) ? 0.0 : 1.0;
     for (size_t k = 0; k < contacts; k++)
