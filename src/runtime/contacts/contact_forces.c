@@ -310,9 +310,9 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   bool closes = sinks(settlement);
   if (resting.count <= COMBINED_LIMIT && (closes || !is_surely_one(&resting))) {
     int count = count_solutions(&resting);
-    /* What neither sinks nor pulls is the solution, though others may share its forces in another way. */
+    /* What neither sinks nor pulls is a solution, though others may share its forces in another way, and rounding hide it. */
     if (count == 1) *again = closes && take_solution(settlement, &resting);
-    else problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
+    else if (count > 1 || closes) problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
   }
   free_resting(settlement, &resting);
   return problem;

@@ -31,8 +31,7 @@ size_t window_sample_count(void) {
 size_t window_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches->watched_limit == NULL) return 0;
-  return window_sample_count() + (CHEBYSHEV_NODES + 1) * switches->watched_acceleration_count +
-         lagrangian.state_count +
+  return window_sample_count() + (CHEBYSHEV_NODES + 1) * switches->watched_acceleration_count + lagrangian.state_count +
          SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
 }
 

@@ -84,7 +84,8 @@ static void join_sliding(struct PlaneForces *forces) {
     double share = sliding_share(forces->settlement, pushes->member[row]);
     for (size_t i = 0; i < n; i++)
       for (size_t j = 0; j < contacts; j++)
-        pushes->mobility[i * n + j] -= share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->mobility[i * n + row];
+        pushes->mobility[i * n + j] -=
+            share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->mobility[i * n + row];
     memset(&pushes->mobility[row * n], 0, n * sizeof(double));
     forces->rate[row] = 0.0;
   }
@@ -94,8 +95,10 @@ static void fill_rates(struct PlaneForces *forces) {
   const struct Settlement *settlement = forces->settlement;
   for (size_t row = 0; row < forces->pushes.count; row++) {
     size_t member = forces->pushes.member[row];
-    forces->rate[row] = row < forces->pushes.contact_count ? contact_value(settlement, member, CONTACT_ACCELERATION)
-                                                           : settlement->value[friction_place(settlement->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
+    forces->rate[row] =
+        row < forces->pushes.contact_count
+            ? contact_value(settlement, member, CONTACT_ACCELERATION)
+            : settlement->value[friction_place(settlement->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
   }
 }
 
@@ -137,10 +140,12 @@ static void set_planes(struct PlaneForces *forces, double none) {
     struct PlaneState state = plane_state(settlement, plane);
     bool is_pressed = false;
     for (size_t i = 0; i < pushes->contact_count; i++)
-      is_pressed |= rests_on(settlement->switches, state.facts->along, pushes->member[i]) && contact_is_closed(settlement, pushes->member[i]);
+      is_pressed |= rests_on(settlement->switches, state.facts->along, pushes->member[i]) &&
+                    contact_is_closed(settlement, pushes->member[i]);
     if (!is_pressed) plane_free(settlement, &state);
     else if (slides(forces, row)) plane_slide(settlement, &state);
-    else if (hypot(forces->behind[row], forces->behind[row + 1]) > none) plane_head(settlement, &state, &forces->behind[row]);
+    else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
+      plane_head(settlement, &state, &forces->behind[row]);
     else plane_stick(settlement, &state);
     row++; /* the one across goes with it */
   }
