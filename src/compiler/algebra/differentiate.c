@@ -185,6 +185,10 @@ Node *own_symbols(const struct Graph *graph) {
   return symbols;
 }
 
+Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol) {
+  return replacements[graph->vertices[symbol].left];
+}
+
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, targets, count);

@@ -53,5 +53,8 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
 /* Each symbol of the graph for itself: replacements that change nothing yet. */
 Node *own_symbols(const struct Graph *graph);
 
+/* What stands for a symbol among replacements, or seeds, of all symbols. */
+Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol);
+
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);
