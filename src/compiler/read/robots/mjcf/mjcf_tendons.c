@@ -46,7 +46,8 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "fixed")) {
     mjcf_report_unknown(
-        mjcf, node, "a <fixed> one, or a <spring> or <joint type=\"distance\"> in a <system> that includes the robot");
+        mjcf, node,
+        "a <fixed> one, or a <spring> or a <constraint> of a distance in a <system> that includes the robot");
     return;
   }
   struct Tendon tendon = {.name = attribute(node, "name"), .line = xmlGetLineNo(node)};
