@@ -106,7 +106,8 @@ static void take(struct SingleRun *run, const struct LaneView *lane) {
   take_values(run, lane);
   take_numbers(run->instance.prepared, lagrangian.prepared_count, lane->prepared, lane->stride);
   run->instance.prepared_is_stale = false;
-  run->instance.situation->last_step = (struct Span){lane->origin, lane->origin + lane->reach};
+  situation_begin(run->instance.situation, lane->origin);
+  run->instance.situation->last_step.end = lane->origin + lane->reach;
 }
 
 /* --- The functions ---------------------------------------------------------------------------------------------------- */
@@ -157,6 +158,8 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
   double tolerance = instance->situation->tolerance;
   instance_reset(instance);
   instance->situation->tolerance = tolerance;
+  instance->situation->stop_time_defined = 1;
+  instance->situation->stop_time = run->step.end;
   instance->situation->phase = PHASE_INITIALIZATION;
   take_values(run, lane);
   take_state(run, lane);
