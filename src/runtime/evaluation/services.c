@@ -69,9 +69,9 @@ bool solver_is_held(const struct Instance *instance) {
                     lagrangian.constraints.count > switches->contact_count + switches->friction_count;
   if (has_others) return true;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (contact_is_closed(instance, i)) return true;
+    if (contact_holds(instance, i)) return true;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (friction_sticks(instance, i)) return true;
+    if (friction_holds(instance, i)) return true;
   return false;
 }
 

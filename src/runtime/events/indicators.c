@@ -21,8 +21,8 @@ bool indicator_is_force(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t contacts = contact_indicator(switches, 0), frictions = friction_indicator(switches, 0);
   if (indicator < contacts) return false;
-  if (indicator < frictions) return contact_is_closed(instance, indicator - contacts);
-  return friction_sticks(instance, indicator - frictions);
+  if (indicator < frictions) return contact_holds(instance, indicator - contacts);
+  return friction_holds(instance, indicator - frictions);
 }
 
 /* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */

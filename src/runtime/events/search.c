@@ -10,7 +10,7 @@
 #include "events/indicators.h"
 #include "events/window.h"
 
-enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, APPROACH_LIMIT = 8 };
+enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
 /* How far the slope leads beyond a zero: the next value then lies on the other side. */
 static const double overshoot = 1.1;
@@ -77,7 +77,7 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
 static enum Verdict judge_signs(const double *f, double noise) {
-  double c[CHEBYSHEV_DEGREE + 1], d[CHEBYSHEV_DEGREE + 1], largest = 0.0;
+  double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
   if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
@@ -94,6 +94,9 @@ static enum Verdict judge_signs(const double *f, double noise) {
   double margin = chebyshev_tail_of_derivative * tail;
   if (d[0] - chebyshev_range(d) > margin) return STAYS; /* it rises */
   if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
+  chebyshev_derivative(d, curvature);
+  bool is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
+  if (is_concave && f[CHEBYSHEV_DEGREE] >= 0.0) return f[0] < -noise ? FALLS : STAYS; /* as a body that is thrown */
   return UNKNOWN;
 }
 
@@ -110,7 +113,7 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
  * Narrows the two sides of a fall to where the polynomial through f, the values at the nodes, has it: its slope leads from one
  * side to the other, and a little beyond, so that both come near.
  */
-static void approach(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
+static void narrow_fall(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
                      struct Sample *before, struct Sample *behind) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], half = 0.5 * (to - from);
   double time = before->time + (behind->time - before->time) * (before->f / (before->f - behind->f));
@@ -120,7 +123,7 @@ static void approach(struct Search *search, size_t indicator, double sign, const
   for (int i = 0; i < NEWTON_STEPS; i++) place -= chebyshev_value(c, place) / chebyshev_value(d, place);
   double slope = chebyshev_value(d, place) / half;
   time = from + half * (1.0 + place);
-  for (int i = 0; i < APPROACH_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {
+  for (int i = 0; i < NARROWING_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {
     struct Sample next = sample_at(search, indicator, sign, time);
     double rounding = DBL_EPSILON * fabs(time);
     *(next.f < 0.0 ? behind : before) = next;
@@ -154,7 +157,7 @@ static double refine(struct Search *search, size_t indicator, double sign, struc
   return before.f <= -behind.f && !is_branch ? before.time : behind.time;
 }
 
-/* The same in a window in which f, with these values at the nodes, falls throughout. */
+/* The same in a window in which f, with these values at the nodes, falls through 0 once. */
 static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from,
                           double to) {
   int node = CHEBYSHEV_DEGREE;
@@ -162,7 +165,7 @@ static double refine_fall(struct Search *search, size_t indicator, double sign, 
   while (node > 1 && f[node - 1] >= 0.0) node--;
   struct Sample before = {chebyshev_time(from, to, node), f[node]};
   struct Sample behind = {chebyshev_time(from, to, node - 1), f[node - 1]};
-  approach(search, indicator, sign, f, from, to, &before, &behind);
+  narrow_fall(search, indicator, sign, f, from, to, &before, &behind);
   return refine(search, indicator, sign, before, behind);
 }
 

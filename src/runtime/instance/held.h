@@ -4,11 +4,11 @@
 
 #include "instance/instance.h"
 
-static inline bool contact_is_closed(const struct Instance *instance, size_t contact) {
+static inline bool contact_holds(const struct Instance *instance, size_t contact) {
   return instance->parameter[lagrangian.switches->contacts[contact].mode] > 0.0;
 }
 
-static inline bool friction_sticks(const struct Instance *instance, size_t friction) {
+static inline bool friction_holds(const struct Instance *instance, size_t friction) {
   return instance->parameter[lagrangian.switches->frictions[friction].mode] == 0.0;
 }
 
