@@ -89,6 +89,12 @@ static void give_state(const double *state, const struct LaneView *lane) {
   give_numbers(state, lagrangian.state_count, lane->series, SERIES_LENGTH * lane->stride);
 }
 
+static bool ends_with_zeros(const struct SingleRun *run) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    if (run->series[i][run->order] != 0.0) return false;
+  return true;
+}
+
 /* Its polynomials for interpolate_lane(), which reads them many times. */
 static void take_series(struct SingleRun *run, const struct LaneView *lane) {
   run->origin = lane->origin;
@@ -99,6 +105,7 @@ static void take_series(struct SingleRun *run, const struct LaneView *lane) {
     take_numbers(run->series[i] + 1, (size_t)lane->order, row + lane->stride, lane->stride);
     run->series[i][0] = lane->low[i * lane->stride];
   }
+  while (run->order > 2 && ends_with_zeros(run)) run->order--;
 }
 
 /* The instance becomes the lane's run, in its last step. */

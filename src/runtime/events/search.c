@@ -114,7 +114,7 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
  * side to the other, and a little beyond, so that both come near.
  */
 static void narrow_fall(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
-                     struct Sample *before, struct Sample *behind) {
+                        struct Sample *before, struct Sample *behind) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], half = 0.5 * (to - from);
   double time = before->time + (behind->time - before->time) * (before->f / (before->f - behind->f));
   double place = (time - from) / half - 1.0;
@@ -136,8 +136,7 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
  * one where it is smaller, or, of a branch, the later one, where the next piece has a value.
  * By the Illinois method, with every third step a bisection.
  */
-static double refine(struct Search *search, size_t indicator, double sign, struct Sample before,
-                     struct Sample behind) {
+static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;
   if (before.f < 0.0) return before.time;
   for (int i = 0; i < REFINEMENT_LIMIT && behind.time - before.time > DBL_EPSILON * fabs(behind.time); i++) {
