@@ -258,6 +258,7 @@ class Scene {
     const mesh = new THREE.Group(), axis = AXES.indexOf(shape.axis), add = (geometry) => mesh.children[mesh.add(new THREE.Mesh(geometry, material)).children.length - 1];
     const [radius, length] = [measure("radius"), measure("length")], part = new THREE.Group();
     if (shape.type === "box") add(new THREE.BoxBufferGeometry(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(name) || 0.02 * this.radius)));
+    else if (shape.type === "ellipsoid") add(new THREE.SphereBufferGeometry(0.5, 48, 32)).scale.set(...["sizeX", "sizeY", "sizeZ"].map(measure));
     else if (shape.type === "mesh") this.addSurface(mesh, this.meshes.get(shape.mesh), material);
     else if (shape.type === "sphere") {
       add(new THREE.SphereBufferGeometry(radius, 32, 24));
@@ -268,7 +269,7 @@ class Scene {
       if (shape.type === "capsule") for (const end of [-1, 1]) add(new THREE.SphereBufferGeometry(radius, 32, 16)).position.y = (end * length) / 2;
     }
     // three's axis of cylinders is y.
-    if (!["box", "sphere", "mesh"].includes(shape.type)) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
+    if (!["box", "sphere", "mesh", "ellipsoid"].includes(shape.type)) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
     part.add(mesh);
     part.position.set(...AXES.map(measure));
     part.rotation.set(...["roll", "pitch", "yaw"].map(measure), "ZYX");

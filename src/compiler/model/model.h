@@ -99,8 +99,8 @@ struct GivenMotion {
   const struct Variable *constraint; /* one that moves in a given way, so that it does work; NULL for none */
 };
 
-enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH };
-enum { SHAPE_TYPES = SHAPE_MESH + 1 };
+enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH, SHAPE_ELLIPSOID };
+enum { SHAPE_TYPES = SHAPE_ELLIPSOID + 1 };
 
 /* What is drawn, and touches. A plane is where its axis is 0, and open above it. */
 struct ContactShape {
@@ -114,7 +114,7 @@ struct ContactShape {
   struct Matrix turn;   /* from its own axes to the frame's */
   Node angles[3];       /* rad, of that about the frame's x, y and z, one after the other */
   Node radius, length;  /* m; of a capsule without its round ends */
-  struct Vector size;   /* m, of a box along the frame's axes */
+  struct Vector size;   /* m, of a box or ellipsoid along its axes */
   struct Mesh *mesh;    /* NULL of other types */
   bool is_hidden;       /* touches, and is not drawn */
   char *color; /* such as "#ff8000", or "#ff800080" where half of it is seen through; NULL for the page's choice */

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/services.h"
 
@@ -50,12 +51,6 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
   return sticks;
 }
 
-static bool is_at_rest(const struct Settlement *settlement, size_t contact) {
-  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
-  if (contact_is_closed(settlement, contact)) return true;
-  return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
-}
-
 /* Whether an open contact at rest would close, as one that another has opened too soon. */
 static bool sinks(const struct Settlement *settlement) {
   bool any = false;
@@ -73,7 +68,7 @@ static bool choose_resting(struct Settlement *settlement) {
   size_t contacts = switches->contact_count;
   bool slides = false;
   for (size_t i = 0; i < contacts; i++)
-    settlement->takes_part[i] = is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
+    settlement->takes_part[i] = contact_is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) {
     settlement->takes_part[contacts + i] = friction_sticks(settlement, i) ? 0.0 : 1.0;
     for (size_t k = 0; k < contacts; k++)
@@ -282,6 +277,13 @@ static const char *refuse_forces(const struct Settlement *settlement, const stru
   return "forces of contacts with friction are not determined";
 }
 
+/* What rests on a contact that closes slides as it moves: it may have been let go as the contact opened. */
+static void let_slide(struct Settlement *settlement, size_t contact) {
+  for (size_t i = 0; i < settlement->switches->friction_count; i++)
+    if (is_in_plane(settlement->switches, i) && rests_on(settlement->switches, i, contact))
+      set_friction(settlement, i, 1.0);
+}
+
 /* Opens and closes the contacts as the solution says. Whether that changes any. */
 static bool take_solution(struct Settlement *settlement, const struct RestingContacts *resting) {
   bool changes = false;
@@ -293,6 +295,7 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
     bool presses = resting->found_force[i] > rounded_force * size, parts = resting->found[i] > rounded_force * size;
     if (is_closed ? !parts : !presses) continue;
     set_contact(settlement, contact, !is_closed);
+    if (!is_closed) let_slide(settlement, contact);
     settlement->was_opened[contact] = is_closed ? 1.0 : 0.0;
     changes = true;
   }
@@ -304,10 +307,12 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   *again = false;
   const char *problem = NULL;
   if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return problem;
-  if (resting.count <= COMBINED_LIMIT && (sinks(settlement) || !is_surely_one(&resting))) {
+  bool closes = sinks(settlement);
+  if (resting.count <= COMBINED_LIMIT && (closes || !is_surely_one(&resting))) {
     int count = count_solutions(&resting);
-    if (count == 1) *again = take_solution(settlement, &resting);
-    else problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
+    /* What neither sinks nor pulls is a solution, though others may share its forces in another way, and rounding hide it. */
+    if (count == 1) *again = closes && take_solution(settlement, &resting);
+    else if (count > 1 || closes) problem = refuse_forces(settlement, &resting, count > 1 ? "more than one" : "no");
   }
   free_resting(settlement, &resting);
   return problem;

@@ -11,6 +11,7 @@
 #include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "events/continuity.h"
 #include "events/indicators.h"
 #include "events/settlement.h"
@@ -24,6 +25,9 @@ static const double largest_penetration = 1e-9;
 
 /* A gap below 0 by so many times what rounding makes of it may be found again: a search forgives FLOOR_IN_NOISE times. */
 static const double found_again = 0.25 * FLOOR_IN_NOISE;
+
+/* A velocity whose square is no number is none. */
+static const double least_speed = 1e-150;
 
 static const char no_impact[] = "a contact cannot take an impact there";
 
@@ -96,6 +100,21 @@ static void let_all_slide(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
 }
 
+/* What slides in a plane and is stopped altogether by an impact has no direction any more but the one that it had. */
+static bool let_stopped_head(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  if (switches->plane_count == 0) return true;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
+  switches->switching_values(&point, settlement->acceleration, settlement->value);
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    size_t along = switches->planes[i].along;
+    if (!friction_sticks(settlement, along) && !(speed_in_plane(settlement, along) > least_speed))
+      set_friction(settlement, along, 1.0);
+  }
+  return true;
+}
+
 /* An impact of a contact, and of those that are hit together with it. */
 static bool take_impact(struct Settlement *settlement, size_t contact) {
   if (!choose_hit(settlement, contact)) return false;
@@ -108,7 +127,7 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   let_go(settlement);
   settlement->jumped = true;
   settlement->impacts++;
-  return done;
+  return done && let_stopped_head(settlement);
 }
 
 /* Whether an open contact that touches would come back at once. */

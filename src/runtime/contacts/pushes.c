@@ -19,6 +19,12 @@ bool is_touching(const struct Settlement *settlement, size_t contact) {
   return settlement->value[gap] <= noise || is_hit(settlement, contact_indicator(settlement->switches, contact));
 }
 
+bool contact_is_at_rest(const struct Settlement *settlement, size_t contact) {
+  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
+  if (contact_is_closed(settlement, contact)) return true;
+  return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
+}
+
 /* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
 static double lost_height(const struct Settlement *settlement) {
   return settlement->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(settlement->instance);

@@ -52,6 +52,9 @@ bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contac
 /* Whether the gap is 0, but for rounding. */
 bool is_touching(const struct Settlement *settlement, size_t contact);
 
+/* Whether it is closed, or touches without coming nearer or parting. */
+bool contact_is_at_rest(const struct Settlement *settlement, size_t contact);
+
 /* Whether the flight of a contact that parts at this rate would be lost in what rounding, or the method, makes of it. */
 bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate);
 

@@ -233,7 +233,7 @@ static const char *lose(const struct Instance *instance, struct EventProgress *p
     const char *function = instance->limited_by;
     log_message(instance, STATUS_DISCARD,
                 "time %.15g: what events look at may hide some of them there however closely it is followed%s%s; "
-                "expected a function that is not so narrow, or narrow ones at other places",
+                "expected a function that is not so narrow, narrow ones at other places, or a looser tolerance",
                 progress->searched, function != NULL ? ", by " : "", function != NULL ? function : "");
     return too_close;
   }

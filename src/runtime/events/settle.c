@@ -1,5 +1,6 @@
 #include "events/settle.h"
 
+#include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "events/branches.h"
 #include "events/conditions.h"
@@ -94,10 +95,14 @@ static const char *check_laws(const struct Settlement *settlement) {
   return problem;
 }
 
-/* In exchange the event mode itself takes up what an importer went too far. */
+/*
+ * As the modes say: the last that looked at forces may have tried others. In exchange the event mode itself takes up what an
+ * importer went too far.
+ */
 static const char *keep_on_constraints(const struct Settlement *settlement) {
   bool has_to_keep = settlement->occasion != AT_START && settlement->occasion != IN_EXCHANGE;
   if (!settlement->changed || !has_to_keep) return NULL;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return constraints_not_kept;
   return solver_project(settlement->instance, settlement->time, settlement->state);
 }
 

@@ -31,6 +31,7 @@ struct Settlement {
   bool lags;                           /* frictions have changed, and velocities were not taken to what holds since */
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
+  bool has_found_forces;               /* modes were set by the forces of all at rest at once */
   int impacts, lifts;
 };
 

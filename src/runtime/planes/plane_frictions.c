@@ -8,8 +8,12 @@
 #include "contacts/frictions.h"
 #include "evaluation/evaluate.h"
 #include "planes/cone_impulses.h"
+#include "planes/plane_forces.h"
 #include "planes/plane_starts.h"
 #include "planes/plane_stops.h"
+
+/* So often may one switch before all are looked at together. */
+enum { TOGETHER_LIMIT = 20 };
 
 static const char no_directions[] = "the directions of frictions in a plane cannot be found there";
 
@@ -60,6 +64,13 @@ static bool change_slide(struct Settlement *settlement, const struct PlaneState 
   return true;
 }
 
+/* Once, where it does not come to an end one by one: by the forces of all. Whether there are such. */
+static bool settle_together(struct Settlement *settlement) {
+  if (settlement->has_found_forces) return false;
+  settlement->has_found_forces = true;
+  return plane_forces_settle(settlement);
+}
+
 /* Of those that slide along headings; *again where any turns, or sticks since it has no way to go. */
 static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   bool heads = false;
@@ -67,7 +78,10 @@ static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   for (size_t i = 0; i < settlement->switches->plane_count; i++)
     heads |= plane_state(settlement, i).mode == PLANE_HEADS;
   if (!heads) return NULL;
-  if (!plane_headings_find(settlement, again, &stays)) return no_directions;
+  if (!plane_headings_find(settlement, again, &stays)) {
+    *again = true;
+    return settle_together(settlement) ? NULL : no_directions;
+  }
   if (stays == settlement->switches->plane_count) return NULL;
   *again = true;
   struct PlaneState state = plane_state(settlement, stays);
@@ -76,11 +90,11 @@ static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   return NULL;
 }
 
-/* One of those that flip without end; friction_count for none. */
-static size_t find_flipping(const struct Settlement *settlement) {
+/* One of those that flip more often than that; friction_count for none. */
+static size_t find_flipping(const struct Settlement *settlement, double often) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->plane_count; i++)
-    if (settlement->flips[friction_indicator(switches, switches->planes[i].along)] > FRICTION_FLIP_LIMIT)
+    if (settlement->flips[friction_indicator(switches, switches->planes[i].along)] > often)
       return switches->planes[i].along;
   return switches->friction_count;
 }
@@ -96,15 +110,17 @@ static const char *act_on_planes(struct Settlement *settlement, bool *again) {
   if (*again) return NULL;
   if (stops) {
     *again = true;
-    return planes_stop(settlement) ? NULL : no_directions;
+    return planes_stop(settlement) || settle_together(settlement) ? NULL : no_directions;
   }
   return act_on_headings(settlement, again);
 }
 
 static const char *act(struct Settlement *settlement, bool *again) {
   const char *problem = frictions_act(settlement, again);
-  if (problem == NULL && !*again) problem = act_on_planes(settlement, again);
-  size_t flipping = find_flipping(settlement);
+  bool goes_round = find_flipping(settlement, TOGETHER_LIMIT) < settlement->switches->friction_count;
+  if (problem == NULL && !*again && goes_round && settle_together(settlement)) *again = true;
+  else if (problem == NULL && !*again) problem = act_on_planes(settlement, again);
+  size_t flipping = find_flipping(settlement, FRICTION_FLIP_LIMIT);
   if (problem == NULL && flipping < settlement->switches->friction_count) return frictions_refuse(settlement, flipping);
   return problem;
 }

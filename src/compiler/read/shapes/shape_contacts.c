@@ -51,6 +51,11 @@ static void check_attributes(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "a <contact> with stiction and without friction; expected friction=\"...\" beside it");
 }
 
+/* What a shape is that touches planes alone though it is neither flat nor round; NULL for others. */
+static const char *only_on_planes(const struct ContactShape *shape) {
+  return shape->type == SHAPE_MESH ? "a mesh" : shape->type == SHAPE_ELLIPSOID ? "an ellipsoid" : NULL;
+}
+
 /* Whether both shapes are there, and have touches. */
 static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
   shapes[0] = shape_of_attribute(reader, node, "between");
@@ -63,10 +68,11 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   for (int i = 0; i < 2; i++)
     if (shapes[1 - i]->type == SHAPE_PLANE && !prepare_corners(reader, node, shapes[i])) return false;
   if (count_touches(shapes[0], shapes[1]) > 0) return true;
-  if (shapes[0]->type == SHAPE_MESH || shapes[1]->type == SHAPE_MESH) {
-    report_at(reader, node,
-              "there is no <contact> between '%s' and '%s', of which one is a mesh; expected a plane for it",
-              shapes[0]->name, shapes[1]->name);
+  const char *type = only_on_planes(shapes[0]);
+  if (type == NULL) type = only_on_planes(shapes[1]);
+  if (type != NULL) {
+    report_at(reader, node, "there is no <contact> between '%s' and '%s', of which one is %s; expected a plane for it",
+              shapes[0]->name, shapes[1]->name, type);
     return false;
   }
   report_at(reader, node,

@@ -12,26 +12,30 @@
 /* A measure of a shape, and the types that have it. */
 struct Measure {
   const char *name;
-  unsigned types;
-  bool is_needed;
+  unsigned types, needing; /* those that must have it */
 };
 
 #define TYPE(type) (1u << (type))
 
+enum {
+  with_radius = TYPE(SHAPE_SPHERE) | TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE),
+  with_length = TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE),
+  with_sizes = TYPE(SHAPE_BOX) | TYPE(SHAPE_ELLIPSOID),
+  without_axis = TYPE(SHAPE_SPHERE) | TYPE(SHAPE_MESH) | with_sizes
+};
+
 static const struct Measure measures[] = {
-    {"radius", TYPE(SHAPE_SPHERE) | TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE), true},
-    {"length", TYPE(SHAPE_CYLINDER) | TYPE(SHAPE_CAPSULE), true},
-    {"sizeX", TYPE(SHAPE_BOX), false},
-    {"sizeY", TYPE(SHAPE_BOX), false},
-    {"sizeZ", TYPE(SHAPE_BOX), false},
+    {"radius", with_radius, with_radius},         {"length", with_length, with_length},
+    {"sizeX", with_sizes, TYPE(SHAPE_ELLIPSOID)}, {"sizeY", with_sizes, TYPE(SHAPE_ELLIPSOID)},
+    {"sizeZ", with_sizes, TYPE(SHAPE_ELLIPSOID)},
 };
 static const char *const of_meshes[] = {"file", "scale"};
-static const unsigned without_axis = TYPE(SHAPE_SPHERE) | TYPE(SHAPE_BOX) | TYPE(SHAPE_MESH);
 enum { MEASURE_COUNT = sizeof measures / sizeof *measures };
 
 static const char *const type_names[] = {
-    [SHAPE_PLANE] = "plane",       [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
-    [SHAPE_CYLINDER] = "cylinder", [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh"};
+    [SHAPE_PLANE] = "plane",        [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
+    [SHAPE_CYLINDER] = "cylinder",  [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh",
+    [SHAPE_ELLIPSOID] = "ellipsoid"};
 
 static const struct ContactShape *find_shape(const struct Reader *reader, const char *name) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
@@ -47,28 +51,34 @@ static enum ShapeType type_of(xmlNodePtr node) {
   return type; /* the schema refuses others */
 }
 
+static const char *article_of(const struct ContactShape *shape) {
+  return shape->type == SHAPE_ELLIPSOID ? "an" : "a";
+}
+
 static void check_measures(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape) {
   bool has_size = false;
   for (int i = 0; i < MEASURE_COUNT; i++) {
     const struct Measure *measure = &measures[i];
-    bool is_given = has_attribute(node, measure->name), is_of_type = (measure->types & TYPE(shape->type)) != 0;
+    bool is_given = has_attribute(node, measure->name), is_of_type = (measure->types & TYPE(shape->type)) != 0,
+         is_needed = (measure->needing & TYPE(shape->type)) != 0;
     has_size |= is_given;
     if (is_given && !is_of_type)
-      report_at(reader, node, "the shape '%s' is a %s, which has no %s", shape->name, type_names[shape->type],
-                measure->name);
-    if (!is_given && is_of_type && measure->is_needed)
+      report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
+                type_names[shape->type], measure->name);
+    if (!is_given && is_needed)
       report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", type_names[shape->type], shape->name,
                 measure->name, measure->name);
   }
   for (int i = 0; i < 2; i++)
     if (has_attribute(node, of_meshes[i]) && shape->type != SHAPE_MESH)
-      report_at(reader, node, "the shape '%s' is a %s, which has no %s", shape->name, type_names[shape->type],
-                of_meshes[i]);
+      report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
+                type_names[shape->type], of_meshes[i]);
   if (shape->type == SHAPE_MESH && !has_attribute(node, "file"))
     report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
               shape->name);
   if (has_attribute(node, "axis") && (TYPE(shape->type) & without_axis) != 0)
-    report_at(reader, node, "the shape '%s' is a %s, which has no axis", shape->name, type_names[shape->type]);
+    report_at(reader, node, "the shape '%s' is %s %s, which has no axis", shape->name, article_of(shape),
+              type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
 }

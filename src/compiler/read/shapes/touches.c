@@ -101,7 +101,7 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
   case SHAPE_BOX: append_corners(graph, &points, shape); break;
   case SHAPE_CYLINDER: append_rims(graph, &points, shape); break;
   case SHAPE_MESH: append_mesh_corners(graph, &points, shape); break;
-  case SHAPE_PLANE: break;
+  default: break;
   }
   return points;
 }
@@ -136,6 +136,23 @@ static void touch_plane(const struct Pair *pair, struct Touches *touches) {
     touches->items[touches->count++] =
         (struct Touch){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius)};
   }
+}
+
+/* The second's plane: where the first's support function has its normal, the other way. */
+static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
+  struct Graph *graph = pair->graph;
+  struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
+  struct Vector own = matrix_apply_transposed(graph, &pair->first->pose.rotation, normal);
+  own = matrix_apply_transposed(graph, &pair->first->shape->turn, own);
+  for (int i = 0; i < 3; i++) {
+    Node half = scale(graph, 0.5, pair->first->shape->size.along[i]);
+    lowest.along[i] = multiply(graph, power_number(graph, half, 2.0), own.along[i]);
+  }
+  Node reach = power_number(graph, vector_dot(graph, lowest, own), 0.5);
+  lowest = turned_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
+  Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
+  touches->items[touches->count++] =
+      (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach)};
 }
 
 /* Two balls, as which all round shapes touch, about the nearest points of what is in them. */
@@ -233,6 +250,7 @@ static TouchFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
     [SHAPE_CYLINDER] = {touch_plane},
     [SHAPE_CAPSULE] = {[SHAPE_PLANE] = touch_plane, [SHAPE_CAPSULE] = touch_capsules},
     [SHAPE_MESH] = {touch_plane},
+    [SHAPE_ELLIPSOID] = {touch_ellipsoid},
 };
 
 static size_t point_count(const struct ContactShape *shape) {

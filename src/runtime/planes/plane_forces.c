@@ -1,0 +1,185 @@
+/*
+ * From rest, accelerations and forces fulfil the law of impacts, for accelerations in place of rates: a contact presses or parts,
+ * and a friction pushes against its acceleration with all that it may, or has none. What slides faster pushes along its own
+ * direction with the contacts that it rests on.
+ */
+#include "planes/plane_forces.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contacts/pushes.h"
+#include "evaluation/services.h"
+#include "planes/cone_impulses.h"
+
+/* In units of the largest: accelerations that are none, and forces. */
+static const double no_share = 1e-9;
+
+/* Rows as of the pushes: the accelerations without their forces, and these; then with them. */
+struct PlaneForces {
+  struct Settlement *settlement;
+  struct Pushes pushes;
+  double *rate, *force, *behind;
+};
+
+/* Whether it is, or may be brought to rest. What rests on an open contact moves as it does. */
+static bool is_at_rest(const struct Settlement *settlement, const struct PlaneState *state) {
+  if (state->mode == PLANE_STICKS || !plane_moves(state)) return true;
+  return state->has_force && plane_is_slow(settlement, state);
+}
+
+/* False where that cannot be. */
+static bool stop_slow(struct Settlement *settlement) {
+  bool moves = false;
+  for (size_t i = 0; i < settlement->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    if (!state.has_force || !is_at_rest(settlement, &state)) continue;
+    moves |= state.speed > 0.0;
+    plane_stick(settlement, &state);
+  }
+  return !moves || settlement->occasion == AT_START || settlement_push(settlement);
+}
+
+/* All but frictions along lines that stick, which hold as they do. */
+static void choose_pushes(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    settlement->takes_part[i] = contact_is_at_rest(settlement, i) ? 1.0 : 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool holds = friction_sticks(settlement, i) && !is_in_plane(switches, i);
+    settlement->takes_part[switches->contact_count + i] = holds ? 0.0 : 1.0;
+  }
+}
+
+/* The pushes, and the accelerations without them. */
+static bool find_free(struct PlaneForces *forces) {
+  struct Settlement *settlement = forces->settlement;
+  const struct SwitchTable *switches = settlement->switches;
+  settlement_keep_modes(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (settlement->takes_part[i] != 0.0) set_contact(settlement, i, false);
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    if (state.mode == PLANE_STICKS) plane_free(settlement, &state);
+  }
+  bool is_done = plane_evaluate(settlement) && pushes_create(settlement, &forces->pushes);
+  settlement_restore_modes(settlement);
+  return is_done;
+}
+
+static bool slides(const struct PlaneForces *forces, size_t row) {
+  const struct SwitchTable *switches = forces->settlement->switches;
+  size_t plane = plane_of(switches, forces->pushes.member[row]);
+  if (plane == switches->plane_count) return true;
+  struct PlaneState state = plane_state(forces->settlement, plane);
+  return !is_at_rest(forces->settlement, &state);
+}
+
+/* What slides pushes with each contact, and has no push of its own. */
+static void join_sliding(struct PlaneForces *forces) {
+  const struct Pushes *pushes = &forces->pushes;
+  size_t n = pushes->count, contacts = pushes->contact_count;
+  for (size_t row = contacts; row < n; row++) {
+    if (!slides(forces, row)) continue;
+    double share = sliding_share(forces->settlement, pushes->member[row]);
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < contacts; j++)
+        pushes->mobility[i * n + j] -=
+            share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->mobility[i * n + row];
+    memset(&pushes->mobility[row * n], 0, n * sizeof(double));
+    forces->rate[row] = 0.0;
+  }
+}
+
+static void fill_rates(struct PlaneForces *forces) {
+  const struct Settlement *settlement = forces->settlement;
+  for (size_t row = 0; row < forces->pushes.count; row++) {
+    size_t member = forces->pushes.member[row];
+    forces->rate[row] =
+        row < forces->pushes.contact_count
+            ? contact_value(settlement, member, CONTACT_ACCELERATION)
+            : settlement->value[friction_place(settlement->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
+  }
+}
+
+/* The accelerations with the forces. Returns the largest of all that they add up from. */
+static double fill_behind(struct PlaneForces *forces) {
+  size_t n = forces->pushes.count;
+  double largest = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    forces->behind[i] = forces->rate[i];
+    largest = fmax(largest, fabs(forces->rate[i]));
+    for (size_t j = 0; j < n; j++) {
+      double part = forces->pushes.mobility[i * n + j] * forces->force[j];
+      forces->behind[i] += part;
+      largest = fmax(largest, fabs(part));
+    }
+  }
+  return largest;
+}
+
+/* One that neither presses nor parts stays as it is: others may share its force. */
+static void set_contacts(struct PlaneForces *forces, double none) {
+  struct Settlement *settlement = forces->settlement;
+  const struct Pushes *pushes = &forces->pushes;
+  for (size_t row = 0; row < pushes->contact_count; row++) {
+    size_t contact = pushes->member[row];
+    bool presses = forces->force[row] * pushes->mobility[row * pushes->count + row] > none;
+    bool stays = contact_is_closed(settlement, contact) && forces->behind[row] <= none;
+    set_contact(settlement, contact, presses || stays);
+    settlement->was_opened[contact] = presses || stays ? 0.0 : 1.0;
+  }
+}
+
+static void set_planes(struct PlaneForces *forces, double none) {
+  struct Settlement *settlement = forces->settlement;
+  const struct Pushes *pushes = &forces->pushes;
+  for (size_t row = pushes->contact_count; row < pushes->count; row++) {
+    size_t plane = plane_of(settlement->switches, pushes->member[row]);
+    if (plane == settlement->switches->plane_count) continue;
+    struct PlaneState state = plane_state(settlement, plane);
+    bool is_pressed = false;
+    for (size_t i = 0; i < pushes->contact_count; i++)
+      is_pressed |= rests_on(settlement->switches, state.facts->along, pushes->member[i]) &&
+                    contact_is_closed(settlement, pushes->member[i]);
+    if (!is_pressed) plane_free(settlement, &state);
+    else if (slides(forces, row)) plane_slide(settlement, &state);
+    else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
+      plane_head(settlement, &state, &forces->behind[row]);
+    else plane_stick(settlement, &state);
+    row++; /* the one across goes with it */
+  }
+}
+
+static bool find_forces(struct PlaneForces *forces) {
+  struct Settlement *settlement = forces->settlement;
+  size_t n = forces->pushes.count;
+  double *block = scratch_take(settlement->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
+  if (block == NULL) {
+    solver_lacks_memory(settlement->instance);
+    return false;
+  }
+  forces->rate = block;
+  forces->force = block + n;
+  forces->behind = block + 2 * n;
+  fill_rates(forces);
+  join_sliding(forces);
+  bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
+  if (is_done) {
+    double none = no_share * fill_behind(forces);
+    set_contacts(forces, none);
+    set_planes(forces, none);
+  }
+  scratch_return(settlement->instance, SCRATCH_FORCES);
+  return is_done;
+}
+
+bool plane_forces_settle(struct Settlement *settlement) {
+  struct PlaneForces forces = {.settlement = settlement};
+  if (!stop_slow(settlement)) return false;
+  choose_pushes(settlement);
+  if (!find_free(&forces)) return false;
+  bool is_done = find_forces(&forces);
+  pushes_free(settlement, &forces.pushes);
+  return is_done;
+}

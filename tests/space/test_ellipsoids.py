@@ -1,0 +1,122 @@
+"""Ellipsoids on planes: their gaps against a search for the lowest point, and a rattleback against the equations of Newton and Euler, which SciPy integrates."""
+
+import subprocess
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+import fmu
+from building import LAGC, build_systems
+
+G = 9.81
+SIZES = np.array([0.2, 0.04, 0.03])  # m
+YAW = 0.1  # rad, of the shell against the axes of inertia, so that it has a preferred way to turn
+MOMENTS = np.diag([1.5e-4, 1.5e-3, 1.55e-3])  # kg m2, of 1 kg
+# The shape's own axes are along the rows.
+SHELL = np.diag(SIZES / 2) @ Rotation.from_euler("z", YAW).as_matrix().T
+
+FREE = "".join(f'<coordinate name="{x}" velocity="v{x}" unit="m"/>' for x in "xyz") + "".join(
+    f'<coordinate name="q{i}" velocity="r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4)
+)
+BODY = f"""{FREE}<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternion="q0 q1 q2 q3"/></frame>
+  <body name="stone" in="f" mass="1" Ixx="1.5e-4" Iyy="1.5e-3" Izz="1.55e-3"/><gravity z="-9.81"/>"""
+SHAPE = '<shape name="shell" in="f" type="ellipsoid" sizeX="0.2" sizeY="0.04" sizeZ="0.03" yaw="0.1"/>'
+RATTLEBACK = f"""<system name="Rattleback">{BODY}{SHAPE}<shape name="table" type="plane"/>
+  <contact name="touch" between="shell" and="table" friction="10"/><experiment stopTime="2" stepSize="0.05"/></system>"""
+# The plane stands first, is tilted, and pushes with 1 N for each metre.
+TILTED = f"""<system name="EggOverPlane">{BODY}{SHAPE.replace('yaw="0.1"', 'yaw="0.1" x="0.02" z="-0.01"')}
+  <shape name="table" type="plane" axis="x" roll="0.3" pitch="-0.9" z="2"/>
+  <contact name="touch" between="table" and="shell" stiffness="1"/><experiment stopTime="2"/></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("ellipsoids", {"Rattleback": RATTLEBACK, "EggOverPlane": TILTED})
+
+
+def quaternion(turn, spin=(0, 0, 0)):
+    """Of a turn, and its rate by an angular velocity along the axes of the base."""
+    q, w = turn.as_quat()[[3, 0, 1, 2]], np.array(spin)
+    rate = 0.5 * np.r_[-w @ q[1:], q[0] * w + np.cross(w, q[1:])]
+    return {f"q{i}": q[i] for i in range(4)} | {f"r{i}": rate[i] for i in range(4)}
+
+
+def to_contact(up):
+    """From the centre of the shell to its lowest point, along the body's axes."""
+    return -SHELL.T @ SHELL @ up / np.linalg.norm(SHELL @ up)
+
+
+def rolling(_, state):
+    """
+    Newton and Euler with the force F of a point that stands still: v = r x w, F = m (dv/dt + g up), I dw/dt + w x I w = r x F, along
+    the body's axes, in which dr/dt follows from that of the way up.
+    """
+    turn, w = Rotation.from_quat(state[3:7]), state[7:]
+    up = turn.as_matrix()[2]
+    up_rate, reach, r = np.cross(up, w), np.linalg.norm(SHELL @ up), to_contact(up)
+    r_rate = -SHELL.T @ SHELL @ up_rate / reach - ((SHELL @ up) @ (SHELL @ up_rate)) / reach**2 * r
+    v = np.cross(r, w)
+    without = np.cross(r_rate, w) + np.cross(w, v) + G * up  # F but for what dw/dt adds, r x dw/dt
+    cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+    spin_rate = np.linalg.solve(MOMENTS - cross @ cross, np.cross(r, without) - np.cross(w, MOMENTS @ w))
+    x, y, z, s = state[3:7]
+    turn_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
+    return np.r_[turn.apply(v), turn_rate, spin_rate]
+
+
+@pytest.mark.parametrize("spin", [5.0, -5.0])
+def test_rattleback(spin):
+    """Spun one way it rattles and turns back, the other way it goes on, rolling without slip and without loss."""
+    turn = Rotation.from_euler("y", 0.02)
+    up, w = turn.as_matrix()[2], np.array([0, 0, spin])
+    start = np.r_[0, 0, np.linalg.norm(SHELL @ up), turn.as_quat(), w]
+    truth = solve_ivp(rolling, (0, 1.5), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+    velocity = turn.apply(np.cross(to_contact(up), w))
+    values = dict(zip(("x", "y", "z"), start)) | dict(zip(("vx", "vy", "vz"), velocity)) | quaternion(turn, turn.apply(w))
+    instance = fmu.Instance("Rattleback").initialize(values)
+    energy = instance.get("totalEnergy")
+    instance.run(1.5, 0.05)
+    assert instance.get("x", "y", "z") == pytest.approx(list(truth[:3]), abs=1e-8)
+    spins = instance.get("stone.omegaX", "stone.omegaY", "stone.omegaZ")
+    assert spins == pytest.approx(list(truth[7:]), rel=1e-6)
+    assert Rotation.from_quat(instance.get("q1", "q2", "q3", "q0")).apply(spins)[2] < -4
+    assert instance.get("totalEnergy") == pytest.approx(energy, abs=1e-10)
+    assert instance.fmu.getInteger(instance.vr("touch.friction.sliding")) == [0]
+    instance.free()
+
+
+def test_gap():
+    """Where a search finds the point of the surface that is nearest to the plane."""
+    chance = np.random.default_rng(1)
+    base = Rotation.from_euler("xyz", [0.3, -0.9, 0])
+    normal = base.apply([1, 0, 0])
+    for _ in range(5):
+        turn = Rotation.from_quat(chance.normal(size=4))
+        place = chance.normal(0, 0.1, 3)
+        instance = fmu.Instance("EggOverPlane").initialize(dict(zip("xyz", place)) | quaternion(turn))
+
+        def height(angles):
+            on_ball = np.array([np.cos(angles[0]) * np.cos(angles[1]), np.sin(angles[0]) * np.cos(angles[1]), np.sin(angles[1])])
+            point = place + turn.apply([0.02, 0, -0.01] + SHELL.T @ on_ball)
+            return (point - [0, 0, 2]) @ normal
+
+        least = min(minimize(height, guess, tol=1e-12).fun for guess in ([0, 0], [2, 0.5], [4, -0.5], [1, 1.2], [1, -1.2]))
+        assert instance.get("touch.force") == pytest.approx(-least, abs=1e-9)
+        instance.free()
+
+
+@pytest.mark.parametrize(
+    "shapes, message",
+    [
+        (SHAPE.replace(' sizeY="0.04"', ""), "the ellipsoid 'shell' has no sizeY; expected sizeY=\"...\" in m"),
+        (SHAPE.replace("yaw", "radius"), "the shape 'shell' is an ellipsoid, which has no radius"),
+        (SHAPE + '<shape name="ball" type="sphere" radius="1"/><contact name="c" between="shell" and="ball"/>', "of which one is an ellipsoid; expected a plane for it"),
+    ],
+)
+def test_messages(tmp_path, shapes, message):
+    (tmp_path / "system.xml").write_text(f'<system name="Egg">{BODY}{shapes}</system>')
+    found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert found.returncode == 1 and message in found.stderr
