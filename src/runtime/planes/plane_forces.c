@@ -13,7 +13,7 @@
 #include "planes/cone_impulses.h"
 
 /* In units of the largest: accelerations that are none, and forces. */
-static const double no_share = 1e-9;
+static const double least_force_share = 1e-9;
 
 /* Rows as of the pushes: the accelerations without their forces, and these; then with them. */
 struct PlaneForces {
@@ -91,7 +91,7 @@ static void join_sliding(struct PlaneForces *forces) {
   }
 }
 
-static void fill_rates(struct PlaneForces *forces) {
+static void fill_rates_of_planes(struct PlaneForces *forces) {
   const struct Settlement *settlement = forces->settlement;
   for (size_t row = 0; row < forces->pushes.count; row++) {
     size_t member = forces->pushes.member[row];
@@ -151,7 +151,7 @@ static void set_planes(struct PlaneForces *forces, double none) {
   }
 }
 
-static bool find_forces(struct PlaneForces *forces) {
+static bool find_plane_forces(struct PlaneForces *forces) {
   struct Settlement *settlement = forces->settlement;
   size_t n = forces->pushes.count;
   double *block = scratch_take(settlement->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
@@ -162,11 +162,11 @@ static bool find_forces(struct PlaneForces *forces) {
   forces->rate = block;
   forces->force = block + n;
   forces->behind = block + 2 * n;
-  fill_rates(forces);
+  fill_rates_of_planes(forces);
   join_sliding(forces);
   bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
   if (is_done) {
-    double none = no_share * fill_behind(forces);
+    double none = least_force_share * fill_behind(forces);
     set_contacts(forces, none);
     set_planes(forces, none);
   }
@@ -179,7 +179,7 @@ bool plane_forces_settle(struct Settlement *settlement) {
   if (!stop_slow(settlement)) return false;
   choose_pushes(settlement);
   if (!find_free(&forces)) return false;
-  bool is_done = find_forces(&forces);
+  bool is_done = find_plane_forces(&forces);
   pushes_free(settlement, &forces.pushes);
   return is_done;
 }
