@@ -121,7 +121,6 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
-  progress->searched = fmax(progress->searched, instance->situation->searched);
   const size_t *lifted = progress->has_lifted ? &progress->indicator : NULL;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
