@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from fmpy import extract, platform, read_model_description, sharedLibraryExtension
+from fmpy import extract, platform, read_model_description, sharedLibraryExtension, simulate_fmu
 from fmpy.fmi2 import FMU2Slave
 
 from fmu import ROOT, archive, unpacked
@@ -82,22 +82,38 @@ def python_pendulum(folder, count):
     file = Path(folder) / "PythonPendulum.fmu"
     description = read_model_description(file)
     instance = FMU2Slave(guid=description.guid, unzipDirectory=extract(file, Path(folder) / "unpacked"), modelIdentifier=description.coSimulation.modelIdentifier)
-    least = np.full(count, np.inf)
-    longest = 0.0
-    for _ in range(RUNS):
+    taken = np.empty((RUNS, count))
+    for run in taken:
         instance.instantiate()
         instance.setupExperiment(startTime=0.0)
         instance.enterInitializationMode()
         instance.exitInitializationMode()
-        taken = np.empty(count)
         for i in range(count):
             before = time.perf_counter()
             instance.doStep(i * STEP, STEP)
-            taken[i] = time.perf_counter() - before
-        least, longest = np.minimum(least, taken), max(longest, taken.max())
+            run[i] = time.perf_counter() - before
         instance.freeInstance()
-    times = [np.median(least), np.sort(least)[count - 1 - count // 1000], least.max(), longest]
-    return dict(zip(COLUMNS, ("pendulum by PythonFMU", count, *(f"{1e6 * one:.3g}" for one in times), "", "")))
+    return row_of("pendulum by PythonFMU", taken)
+
+
+def imported_pendulum(solver, count):
+    """The FMU of SimplePendulum in model exchange, by a solver of FMPy, whose loop in Python is in the times."""
+    taken = []
+    for _ in range(RUNS):
+        clock = []
+        simulate_fmu(
+            archive("SimplePendulum"), fmi_type="ModelExchange", solver=solver, step_size=STEP, output_interval=STEP, stop_time=(count + 1) * STEP,
+            step_finished=lambda *_, clock=clock: clock.append(time.perf_counter()) or True,
+        )  # fmt: skip
+        taken.append(np.diff(clock)[:count])
+    return row_of(f"pendulum by FMPy's {solver}", np.array(taken))
+
+
+def row_of(name, taken):
+    """taken: s of each step, a row for each run."""
+    least, count = np.sort(taken.min(axis=0)), taken.shape[1]
+    times = [np.median(least), least[count - 1 - count // 1000], least[-1], taken.max()]
+    return dict(zip(COLUMNS, (name, count, *(f"{1e6 * one:.3g}" for one in times), "", "")))
 
 
 def show(row):
@@ -105,10 +121,11 @@ def show(row):
 
 
 def rows_of(names, seconds):
-    """A row of COLUMNS by name for each system, and, where PythonFMU is installed, for a pendulum in Python."""
+    """A row of COLUMNS by name for each system; for a pendulum by FMPy's solvers and, where PythonFMU is installed, for one in Python."""
     count = round(seconds / STEP)
     for name in names:
         yield measure(name, unpacked(name), read_model_description(archive(name)), count)
+    yield from (imported_pendulum(solver, count) for solver in ("Euler", "CVode"))
     if importlib.util.find_spec("pythonfmu") is not None:
         with tempfile.TemporaryDirectory() as folder:
             yield python_pendulum(folder, count)

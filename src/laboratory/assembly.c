@@ -102,10 +102,9 @@ static void add_shared_tables(const struct Encoding *encoding) {
 
 static void add_results(const struct Encoding *encoding) {
   const struct Program *program = encoding->program;
-  size_t count = program->interface->result_count, *alone = allocate(count, sizeof *alone);
-  for (size_t i = 0; i < count; i++) alone[i] = i;
-  interpreter.results = encode_all(encoding, program->result, program->leader, count);
-  interpreter.results_along = encode_all(encoding, program->result_along, alone, count);
+  const struct ResultGroups alone = groups_of_one(program->interface->result_count);
+  interpreter.results = encode_all(encoding, program->result, &program->groups);
+  interpreter.results_along = encode_all(encoding, program->result_along, &alone);
   interpreter.values = allocate(interpreter.results.largest_place + 1, sizeof(double));
 }
 

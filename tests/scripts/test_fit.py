@@ -13,16 +13,22 @@ from scipy.integrate import solve_ivp
 import fmu
 import package
 from building import build_systems
-from motions import BALL, BELT, OSCILLATOR, belt, bounce, lagrange_fmu, measured, oscillation  # noqa: F401
+from motions import BALL, BELT, OSCILLATOR, belt, bounce, lagrange_fmu, measured, oscillation, slopes  # noqa: F401
 
 TOLERATED = dict(rel=1e-8, abs=1e-9)
 TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
   <particle name="p[i]" mass="1" y="h[i]"/><contact name="floor[i]" gap="h[i]" unit="m" restitution="0.5"/></for><gravity y="-9.81"/></system>"""
 
+LATE = """<system name="Late"><parameter name="F" start="3" unit="N"/><parameter name="begin" start="0.5" unit="s"/><coordinate name="x" velocity="v" unit="m"/>
+  <particle mass="1" x="x"/><force coordinate="x">if(time > begin, F, 0)</force></system>"""
+WALLED = """<system name="Walled"><parameter name="l" start="1" unit="m"/><parameter name="e" start="0.5" unit="1"/>
+  <coordinate name="x" velocity="vx" unit="m" start="1"/><coordinate name="y" velocity="vy" unit="m"/><particle mass="1" x="x" y="y"/><gravity y="-9.81"/>
+  <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><contact name="wall" gap="x + 0.2*l" unit="m" restitution="e"/></system>"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT})
+    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -77,6 +83,75 @@ def test_events_at_once(lagrange_fmu):
         lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]"], ["h[1]"], [0, 1])
     apart = lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]", "h[2]"], ["h[1]"], [0, 0.7], {"h[2]": 1.1})
     assert apart.derivatives["h[2]", "h[1]"][1] == pytest.approx(0, abs=1e-9)
+
+
+def test_at_the_edge_of_what_happens(lagrange_fmu):
+    """A ball that starts on the ground, whose neighbours below do not; at the very time of an impact; and where neighbours behave otherwise."""
+    ball, values = fmu.archive("Ball"), {"h": 0.0, "v": 1.0}
+    found = lagrange_fmu.sensitivities(ball, ["h"], ["h", "e"], [0.3], values)
+
+    def height(h, e):  # behind the first bounce
+        speed = mpmath.sqrt(1 + 2 * 9.81 * h)
+        rest = mpmath.mpf(0.3) - (1 + speed) / 9.81
+        return e * speed * rest - 9.81 / 2 * rest**2
+
+    expected = slopes(height, {"h": 0.0, "e": 0.5})
+    assert {name: found.derivatives["h", name][0] for name in expected} == pytest.approx(expected, rel=1e-7)
+    impact = math.sqrt(2 / 9.81)
+    before = lagrange_fmu.sensitivities(ball, ["v"], ["h", "g"], [impact])
+    assert [before.derivatives["v", name][0] for name in ("h", "g")] == pytest.approx([0, -impact], rel=1e-9, abs=1e-9)
+    assert lagrange_fmu.sensitivities(ball, ["h"], ["h"], [0.7], {"e": 0.0}).derivatives["h", "h"][0] == pytest.approx(0, abs=1e-9)
+    for by, values, why in (("e", {"e": 0.0}, "leads some neighbours into other modes .* by e through it"), ("h", {"h": 0.0}, "no derivative by 'h' at 0")):
+        with pytest.raises(lagrange_fmu.Problem, match=why):
+            lagrange_fmu.sensitivities(ball, ["h"], [by], [0.7], values)
+
+
+def test_where_it_switches(lagrange_fmu):
+    """A force that begins at a time, by this; not where that is the start."""
+    found = lagrange_fmu.sensitivities(fmu.archive("Late"), ["x"], ["begin"], [0.4, 1.0])
+    assert found.derivatives["x", "begin"] == pytest.approx([0, -3 * 0.5], rel=1e-9)
+    with pytest.raises(lagrange_fmu.Problem, match="no derivative by 'begin' at 0"):
+        lagrange_fmu.sensitivities(fmu.archive("Late"), ["x"], ["begin"], [1.0], {"begin": 0.0})
+
+
+def test_starts_of_dependent_coordinates(lagrange_fmu):
+    """Of a pendulum in x and y: what is set is moved onto the circle, and only what lies along it counts."""
+    found = lagrange_fmu.sensitivities(fmu.archive("PendulumCartesian"), ["x"], ["x", "y", "vx"], [0.0, 1.0], {"x": 0.6, "y": -0.8, "l": 1.0})
+    g = fmu.start_values("PendulumCartesian")["g"]
+    rates = lambda t, state: [state[1], -g * np.sin(state[0]), state[3], -g * np.cos(state[0]) * state[2], state[5], -g * np.cos(state[0]) * state[4]]
+    angle = np.arctan2(0.6, 0.8)
+    end = solve_ivp(rates, (0, 1), [angle, 0, 1, 0, 0, 1], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+    by_angle, by_rate = np.cos(end[0]) * end[2], np.cos(end[0]) * end[4]
+    for name, turn in (("x", 0.8 * by_angle), ("y", 0.6 * by_angle), ("vx", 0.8 * by_rate)):
+        assert found.derivatives["x", name][1] == pytest.approx(turn, rel=1e-7), name
+
+
+def test_through_a_constraint_and_an_impact(lagrange_fmu):
+    """A pendulum in x and y that bounces off a wall, against its angle by SciPy, by differences."""
+    at, times = {"l": 1.0, "e": 0.5, "vy": 0.0}, [0.7, 0.9]
+
+    def place(l, e, vy):
+        strikes = lambda t, state: np.sin(state[0]) + 0.2
+        strikes.terminal, strikes.direction = True, -1
+        rates, found = lambda t, state: [state[1], -9.81 / l * np.sin(state[0])], []
+        for end in times:
+            time, state = 0.0, [np.pi / 2, vy / l]
+            while time < end:
+                part = solve_ivp(rates, (time, end), state, method="DOP853", rtol=1e-12, atol=1e-13, events=strikes)
+                time, state = part.t[-1], part.y[:, -1] * ([1, -e] if len(part.t_events[0]) else [1, 1])
+            found.append(l * np.sin(state[0]))
+        return np.array(found)
+
+    found = lagrange_fmu.sensitivities(fmu.archive("Walled"), ["x"], list(at), times, at)
+    for name, value in at.items():
+        change = (place(**at | {name: value + 1e-4}) - place(**at | {name: value - 1e-4})) / 2e-4
+        assert found.derivatives["x", name] == pytest.approx(change, rel=1e-6, abs=1e-7), name
+
+
+@pytest.mark.parametrize("times", [[], [1, 0], [0, 1, 1], [-1, 0], [0, math.nan], [math.inf]])
+def test_times(lagrange_fmu, times):
+    with pytest.raises(lagrange_fmu.Problem, match="expected one at least, from 0 s on"):
+        lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["k"], times)
 
 
 def test_derivatives_through_friction(lagrange_fmu):

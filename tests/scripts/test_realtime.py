@@ -23,3 +23,10 @@ def test_an_fmu_that_stops():
     words = realtime.words_for(unpacked("BouncingBall"), read_model_description(archive("BouncingBall")), 10, 1)
     words[1] = "/nonexistent.so"
     assert subprocess.run(words, capture_output=True).returncode != 0
+
+
+def test_peers():
+    """FMPy's solvers do as many steps, of the same model."""
+    for solver in ("Euler", "CVode"):
+        row = realtime.imported_pendulum(solver, 200)
+        assert row["steps"] == 200 and 0 < float(row["median"]) <= float(row["longest"]) <= float(row["longest as seen"])

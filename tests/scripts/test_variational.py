@@ -13,7 +13,11 @@ from motions import BALL, DOUBLE, DOUBLE_AT, OSCILLATOR, energy_of_double, lagra
 
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
-SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT)}
+# A damper that is stiff for a while, in which x creeps.
+TURNING = """<system name="Turning"><parameter name="k" start="40" unit="N/m"/><parameter name="c" start="1e5" unit="N.s/m"/><constant name="second" value="1" unit="s"/>
+  <coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
+  <dissipation>c*exp(-((time/second - 1.5)/0.3)^8)*v^2/2</dissipation></system>"""
+SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"])}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -52,6 +56,27 @@ def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
     for row in derivatives:
         assert dict(zip(DOUBLE_AT, row[0])) == pytest.approx(expected, rel=1e-7, abs=1e-7)
     assert abs(derivatives[-1, 1]).max() > 100
+
+
+def test_through_handovers(lagrange_fmu):  # noqa: F811
+    """Of a motion that turns stiff and back, so that auto goes from Taylor series to Radau's method and back; against the equations written by hand, by SciPy."""
+    from lagrange_fmu.model_exchange import opened
+    from lagrange_fmu.variational import SeriesMotion
+
+    times, by, k, c = [0.0, 0.7, 1.5, 2.5, 4.0], ["k", "c", "x"], 40.0, 1e5
+    with opened(archive("Turning"), {}, by=by) as point:
+        _, found = SeriesMotion(point, ["x"], by, 1e-10).over(np.array(times))
+        handovers = point.model.getInteger([point.references["solverHandovers"]])[0]
+    assert handovers >= 2
+
+    def rates(t, y):
+        share = np.exp(-(((t - 1.5) / 0.3) ** 8))
+        force = lambda x, v: -k * x - c * share * v
+        return [y[1], force(y[0], y[1]), y[3], force(y[2], y[3]) - y[0], y[5], force(y[4], y[5]) - share * y[1], y[7], force(y[6], y[7])]
+
+    truth = solve_ivp(rates, (0, 4), [1, 0, 0, 0, 0, 0, 1, 0], method="Radau", rtol=1e-8, atol=[1e-11] * 4 + [1e-16] * 2 + [1e-11] * 2, t_eval=times)
+    for i in range(len(times)):
+        assert found[i, 0] == pytest.approx(truth.y[[2, 4, 6], i], rel=1e-6, abs=1e-12)
 
 
 def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import fmu
 from fmu import build_systems
+from numerics.space import hand
 
 mujoco = pytest.importorskip("mujoco")
 pytestmark = pytest.mark.release
@@ -38,7 +39,7 @@ EACH = """\
           <geom type="capsule" fromto="0 0 0 0.1 0.2 0.4" size="0.05"/>
           <geom type="ellipsoid" size="0.1 0.05 0.2" pos="0 0 0.1" quat="1 2 3 4"/>
           <body name="tip" pos="0 0 0.4" xyaxes="1 1 0 0 1 1">
-            <joint name="ball" type="ball" damping="0" armature="0" stiffness="0" pos="0 0.1 0"/>
+            <joint name="ball" type="ball" damping="0.3" armature="0" stiffness="0" pos="0 0.1 0"/>
             <inertial pos="0.05 0 0.1" mass="1.5" fullinertia="0.02 0.03 0.025 0.001 -0.002 0.003"/>
             <geom type="sphere" size="0.1"/>
           </body>
@@ -136,11 +137,25 @@ MESHED = """\
 """
 
 
+# Between two lengths the spring of its tendon is slack.
+SLACK = """\
+<mujoco model="slack">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body><joint name="a" axis="0 1 0"/><geom size="0.1" pos="0.3 0 0"/>
+      <body pos="0.3 0 0"><joint name="b" axis="1 1 0"/><geom type="box" size="0.1 0.2 0.1" pos="0.3 0 0"/></body>
+    </body>
+  </worldbody>
+  <tendon><fixed name="t" stiffness="30" springlength="-0.3 0.4" armature="0.2"><joint joint="a" coef="2"/><joint joint="b" coef="-0.5"/></fixed></tendon>
+</mujoco>
+"""
+
+
 class Generator:
     """Random files: trees of at most five bodies."""
 
     def __init__(self, seed):
-        self.random, self.bodies, self.joints, self.singles = np.random.default_rng(seed), 0, 0, []
+        self.random, self.bodies, self.joints, self.tendons, self.singles = np.random.default_rng(seed), 0, 0, 0, []
 
     def numbers(self, count, low=-1.0, high=1.0):
         return " ".join(f"{x:.6g}" for x in self.random.uniform(low, high, count))
@@ -188,8 +203,8 @@ class Generator:
             inside.append("<freejoint/>")
         if kind == "ball":
             self.joints += 1
-            plain = 'stiffness="0" damping="0" armature="0"'
-            inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {plain}/>')
+            given = f'stiffness="0" damping="{self.numbers(1, 0, 2)}" armature="{self.choice("0", self.numbers(1, 0, 0.5))}"'
+            inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {given}/>')
         inside += [self.geom() for _ in range(self.random.integers(1, 3))]
         if self.random.random() < 0.4:
             inside.append(self.inertial())
@@ -198,23 +213,37 @@ class Generator:
         child_class = self.choice("", 'childclass="c1"', 'childclass="c2"')
         return f'<body name="{name}" pos="{self.numbers(3)}" {self.turn()} {child_class}>{"".join(inside)}</body>'
 
-    def actuator(self, joint):
+    def actuator(self, transmission):
         limits = self.choice("", 'ctrlrange="-1 1.5"', 'forcerange="-2 3"')
         gear = self.choice("", f'gear="{self.numbers(1, -3, 3)}"')
         law = self.choice("motor", f'position kp="{self.numbers(1, 1, 9)}" kv="{self.numbers(1, 0, 2)}"', f'velocity kv="{self.numbers(1, 0, 2)}"',
                           f'general gainprm="{self.numbers(1)}" biastype="affine" biasprm="{self.numbers(3)}"')  # fmt: skip
-        return f'<{law} joint="{joint}" {gear} {limits}/>'
+        return f"<{law} {transmission} {gear} {limits}/>"
+
+    def tendon(self):
+        joints = self.random.permutation(self.singles)[: self.random.integers(1, 4)]
+        pulls = "".join(f'<joint joint="{joint}" coef="{self.numbers(1)}"/>' for joint in joints)
+        # MuJoCo leaves out how the inertia of a tendon couples joints of different branches.
+        ways = {"stiffness": 9, "damping": 2} | ({"armature": 0.5} if len(joints) == 1 else {})
+        given = " ".join(f'{way}="{self.numbers(1, 0, high)}"' for way, high in ways.items() if self.random.random() < 0.6)
+        relaxed = self.choice("", f'springlength="{self.numbers(1)}"')
+        self.tendons += 1
+        classes = self.choice("", 'class="c1"')
+        return f'<fixed name="t{self.tendons}" {given} {relaxed} {classes}>{pulls}</fixed>'
 
     def text(self):
         sequence = "".join(self.choice(*"xyzXYZ") for _ in range(3))
         bodies = "".join(self.body() for _ in range(self.random.integers(1, 3)))
-        actuators = "".join(self.actuator(joint) for joint in self.singles if self.random.random() < 0.7)
+        tendons = "".join(self.tendon() for _ in range(self.random.integers(0, 4)) if self.singles)
+        transmissions = [f'joint="{joint}"' for joint in self.singles] + [f'tendon="t{i + 1}" name="a{i + 1}"' for i in range(self.tendons)]
+        actuators = "".join(self.actuator(transmission) for transmission in transmissions if self.random.random() < 0.7)
         return (
             f'<mujoco model="r"><compiler angle="{self.choice("degree", "radian")}" eulerseq="{sequence}"/>'
             f'<option gravity="{self.choice("0 0 -9.81", self.numbers(3))}"/>'
             f'<default><joint damping="{self.numbers(1, 0, 1)}"/><geom density="700"/>'
-            f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default></default>'
-            f"</default><worldbody>{bodies}</worldbody><actuator>{actuators}</actuator></mujoco>"
+            f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default>'
+            f'<tendon damping="{self.numbers(1, 0, 1)}"/></default><tendon stiffness="{self.numbers(1, 0, 2)}"/>'
+            f"</default><worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
         )
 
 
@@ -227,7 +256,8 @@ def robots(tmp_path_factory):
     files = FILES | {"Coupled": COUPLED} | {name: LOOPED.format(text) for name, text in EQUALITIES.items()}
     for name, text in files.items():
         (folder / f"{name}.xml").write_text(text)
-    files |= {"Meshed": MESHED}
+    files |= {"Meshed": MESHED, "Slack": SLACK}
+    (folder / "Slack.xml").write_text(SLACK)
     (folder / "Meshed.xml").write_text(MESHED)
     (folder / "Started.xml").write_text(LOOPED.format(""))
     (folder / "shapes").mkdir()
@@ -260,7 +290,7 @@ class Reference:
         names = []
         for i in range(self.model.njnt):
             joint = self.model.joint(i)
-            name = joint.name or self.model.body(joint.bodyid[0]).name
+            name = (joint.name or self.model.body(joint.bodyid[0]).name).replace(":", "_")
             ends = {0: ["_x", "_y", "_z", "_qw", "_qx", "_qy", "_qz"], 1: ["_qw", "_qx", "_qy", "_qz"]}.get(joint.type[0], [""])
             names += [f"r.{name}{end}" for end in ends]
         return names
@@ -324,6 +354,28 @@ def check_accelerations(name, text, instance, digits):
 @pytest.mark.parametrize("name", FILES)
 def test_accelerations(name, open_fmu):
     check_accelerations(name, FILES[name], open_fmu(name, kind=FMU2Model), 1e-10)
+
+
+def test_hand(open_fmu):
+    """Shadow's, with 24 joints, 20 servomotors with limits, and tendons."""
+    if hand.source() is None:
+        pytest.skip("gymnasium-robotics is not installed")
+    text = hand.text()
+    build_systems("mujoco-hand", {"Shadow": '<system name="Shadow"><include file="hand.xml" as="r"/></system>'}, files={"Shadow/hand.xml": text})
+    check_accelerations("Shadow", text, open_fmu("Shadow", kind=FMU2Model), 1e-10)
+
+
+def test_slack_tendon(open_fmu):
+    """A state that is set jumps over the ends of what is slack: each is one to start from here."""
+    reference, random, lengths = Reference(SLACK), np.random.default_rng(1), set()
+    for _ in range(STATES):
+        reference.draw(random)
+        position, velocity, expected = reference.coordinates()
+        instance = open_fmu("Slack").initialize(dict(zip(["r.a", "r.b", "r.a_velocity", "r.b_velocity"], [*position, *velocity])))
+        assert instance.get("der(r.a_velocity)", "der(r.b_velocity)") == pytest.approx(expected, rel=1e-10)
+        assert instance.get("r.t_tendon") == pytest.approx(reference.data.ten_length[0], rel=1e-14)
+        lengths.add(int(np.searchsorted([-0.3, 0.4], reference.data.ten_length[0])))
+    assert lengths == {0, 1, 2}
 
 
 def test_inertia_of_meshes(open_fmu):

@@ -14,7 +14,7 @@ OSCILLATOR = """<system name="Oscillator"><!-- kept -->
   <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
   <experiment stopTime="4"/></system>"""
 BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
-  <parameter name="e" start="0.5" unit="1" max="1"/>
+  <parameter name="e" start="0.5" unit="1" min="0" max="1"/>
   <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
 # A block on a belt, which sticks and slides.
 BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>

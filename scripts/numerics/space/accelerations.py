@@ -10,6 +10,8 @@ from statistics import median
 from building import runtime
 from fmu import LAGC, ROOT
 
+from numerics.space import hand
+
 FOLDER = ROOT / "build" / "accelerations"
 SOURCES = Path(__file__).parent
 # Name, what it is, its file among the example robots, its base.
@@ -21,7 +23,7 @@ ROBOTS = [
     ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
     ("iCub", "32 axes on a base that flies", "icub_description/robots/icub_reduced.urdf", "floating"),
 ]
-CHAINS = [10, 20, 40]  # axes, one after another
+CHAINS = [10, 20, 40, 80, 120, 200]  # axes, one after another
 ROUND = 0.05  # seconds of one program in one round
 # Of each package a header, and the folders where releases of Debian have it.
 SYSTEM = Path("/usr/include")
@@ -49,6 +51,14 @@ def prefix():
     return next(folder for folder in Path(spec.origin).parents if folder.name == "cmeel.prefix")
 
 
+def written(path, text):
+    """The file, which is left as it is where it says the same already."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+    return path
+
+
 def chain(count):
     """The file of a robot of so many links, which turn about x, y and z by turns."""
     link = """<link name="link{0}"><inertial><origin xyz="0.01 0.02 -0.15"/><mass value="1.5"/>
@@ -56,11 +66,7 @@ def chain(count):
     hinge = """<joint name="joint{0}" type="continuous"><parent link="link{1}"/><child link="link{0}"/>
       <origin xyz="0.02 0.01 -0.3"/><axis xyz="{2} {3} {4}"/></joint>"""
     parts = [hinge.format(i, i - 1, *(int(i % 3 == axis) for axis in range(3))) + link.format(i) for i in range(1, count + 1)]
-    path, text = FOLDER / f"chain{count}.urdf", f'<robot name="chain{count}"><link name="link0"/>{"".join(parts)}</robot>'
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    if not path.exists() or path.read_text() != text:
-        path.write_text(text)
-    return path
+    return written(FOLDER / f"chain{count}.urdf", f'<robot name="chain{count}"><link name="link0"/>{"".join(parts)}</robot>')
 
 
 def is_current(target, *sources):
@@ -144,6 +150,10 @@ def rows(quick):
     except (Missing, RuntimeError) as error:
         pinocchio, sentences = None, [str(error)]
     cases = [(name, text, robots / path, base) for name, text, path, base in ROBOTS[: 1 if quick else None]]
+    if hand.source() is None:
+        sentences.append("No Shadow hand: the Python package gymnasium-robotics, or mujoco, is not installed here.")
+    elif not quick:
+        cases.append(("Shadow", "hand of 24 axes", written(FOLDER / "shadow.urdf", hand.urdf()), "fixed"))
     cases += [(f"Chain{count}", f"{count} axes, one after another", chain(count), "fixed") for count in CHAINS if not quick]
     for name, text, path, base in cases:
         programs = [[our_program(name, path, base)]]

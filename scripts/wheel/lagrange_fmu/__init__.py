@@ -88,9 +88,10 @@ def sensitivities(
     tolerance: float = 1e-10,
 ) -> Sensitivities:
     """
-    The derivatives of outputs and states `of`, at times in s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
+    The derivatives of outputs and states `of`, at increasing times in s of a motion that starts at 0 s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
     `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for smooth systems in XML, else with SciPy; events change
-    them by what they make of neighbouring motions. Several events at once, and one that is only touched, are refused.
+    them by what they make of neighbouring motions; at the time of an event they are those before it. Several events at once, one that is only touched,
+    and one behind which neighbours are in other modes are refused.
     """
     from .variational import sensitivities
 
@@ -131,7 +132,7 @@ def fit(
 ) -> Fit:
     """
     Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
-    inputs in its first line; or a structured array of these; or several experiments. Least squares from the start values on, with the exact
+    inputs in its first line, perhaps with units; or a structured array of these; or several experiments; NaN, or nothing, is what was not measured. Least squares from the start values on, with the exact
     derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
     is not given all columns count the same. `each` has start values, parameters or inputs which are found for each experiment by itself, beginning where
     these were measured first. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .experiment import Experiment
+from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
-from .sensitivity import Motion, acting_of, check_names, start_slopes
+from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 
 from scipy.integrate import DOP853, OdeSolution  # isort: skip
 
@@ -150,14 +150,11 @@ def _aim_at_end(name, stop_time, integral):
 
 
 def _aim_at_data(experiment):
-    def off(values):
-        return (values - experiment.values) / experiment.noise
-
     return Aim(
         experiment.measured,
         experiment.data["time"],
-        lambda values: (off(values) ** 2).sum(),
-        lambda values: 2 * off(values) / experiment.noise,
+        lambda values: (experiment.off(values) ** 2).sum(),
+        lambda values: 2 * experiment.off(values) / experiment.noise,
         inputs=experiment.signals,
         kinks=experiment.kinks(),
     )
@@ -167,13 +164,16 @@ def _aim(point, of, data, stop_time, integral, noise):
     if (of is None) == (data is None):
         raise Problem("expected the name of what is to be differentiated, or data from which the squares of the differences are")
     if data is not None:
-        return _aim_at_data(Experiment(data, point, noise))
-    if stop_time is None or not stop_time > 0:
+        experiment = Experiment(data, point, noise)
+        check_noise(noise, [experiment])
+        return _aim_at_data(experiment)
+    if stop_time is None or not 0 < stop_time < np.inf:
         raise Problem(f"the stop time is {stop_time}; expected one later than 0 s")
     return _aim_at_end(of, stop_time, integral)
 
 
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
+    check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         aim = _aim(point, of, data, stop_time, integral, noise)
         check_names(point, aim.of, by)

@@ -7,14 +7,13 @@ FORWARD = ((0, -25 / 12), (1, 4), (2, -3), (3, 4 / 3), (4, -1 / 4))
 BACKWARD = tuple((-steps, -weight) for steps, weight in FORWARD)
 
 
-def rule_within(value, step, limits):
-    """So many steps, and by what what is found there counts: the sum is the change over a step, to first order."""
+def rules_within(value, step, limits):
+    """So many steps, and by what what is found there counts: the sum is the change over a step, to first order. The best is the first; one at least."""
     low, high = ((limit - value) / step for limit in limits)
-    if low <= -2 and high >= 2:
-        return CENTRAL
-    if high >= 4 or low <= -4:
-        return FORWARD if high >= 4 else BACKWARD
-    raise Problem(f"the limits {limits[0]:g} and {limits[1]:g} are too close together for a derivative by what is between them; expected limits further apart")
+    rules = [rule for rule in (CENTRAL, FORWARD, BACKWARD) if all(low <= steps <= high for steps, _ in rule)]
+    if not rules:
+        raise Problem(f"the limits {limits[0]:g} and {limits[1]:g} are too close together for a derivative by what is between them; expected limits further apart")
+    return rules
 
 
 def difference(function, rule):

@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from .building import system_file
-from .experiment import Experiment
+from .experiment import Experiment, check_noise
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import check_names  # first, since it tells where SciPy is missing
+from .sensitivity import check_names, check_once  # first, since it tells where SciPy is missing
 from .variational import followed, motion
 
 from scipy.optimize import least_squares  # isort: skip
@@ -120,13 +120,13 @@ class _Fitted(Experiment):
         """Residuals in units of the noise, and their derivatives by all values."""
         found, slopes = self.motion.over(self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks())
         self.found = found
-        everywhere = np.zeros((found.size, len(values)))
-        everywhere[:, self.places] = (slopes / self.noise[:, None]).reshape(found.size, -1)
-        return ((found - self.values) / self.noise).ravel(), everywhere
+        everywhere = np.zeros((np.count_nonzero(self.is_measured), len(values)))
+        everywhere[:, self.places] = (slopes / self.noise[:, None])[self.is_measured]
+        return self.off(found)[self.is_measured], everywhere
 
     def first(self, name):
         """What was measured first; None of what was not measured."""
-        return self.data[name][0] if name in self.measured else None
+        return next(value for value in self.data[name] if np.isfinite(value)) if name in self.measured else None
 
 
 class _Search:
@@ -139,6 +139,7 @@ class _Search:
         for number, data in enumerate(sets):
             own = len(vary) + number * len(each)
             self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise))
+        check_noise(noise, self.experiments)
         point.start()
         self.begin = dict(zip(self.names, point.read(self.kinds)))
         for experiment in self.experiments:
@@ -174,6 +175,10 @@ def fit(system, data, vary, start_values, bounds, noise, each):
         raise Problem("nothing varies; expected the names of parameters or start values")
     if {*vary} & {*each}:
         raise Problem(f"'{min({*vary} & {*each})}' varies for all experiments and for each; expected one of these")
+    check_once([*vary, *each])
+    for name in bounds:
+        if name not in (*vary, *each):
+            raise Problem(f"'{name}' has bounds and does not vary; expected bounds of {', '.join([*vary, *each])}")
     with followed(system, dict(start_values), [*vary, *each]) as point:
         search = _Search(point, sets, vary, each, noise)
         limits = search.bounds(point, bounds)
@@ -200,7 +205,7 @@ def _result(values, search, shared, system, name, noise_is_known):
     rms = {}
     for experiment in search.experiments:
         for i, measured in enumerate(experiment.measured):
-            rms.setdefault(measured, []).append(experiment.found[:, i] - experiment.values[:, i])
+            rms.setdefault(measured, []).append((experiment.found - experiment.values)[experiment.is_measured[:, i], i])
     return Fit(
         dict(zip(names, values.tolist())),
         dict(zip(names, deviations.tolist())),

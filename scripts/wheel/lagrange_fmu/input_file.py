@@ -1,25 +1,69 @@
-"""The signals of an FMU's inputs, from a CSV."""
+"""Signals and measurements from a CSV."""
 
 import csv
+import re
 
 import numpy as np
 
 from .problem import Problem
 
+NOTHING = ("", "NA", "nan")  # for a value that is missing
 
-def read_input(path):
-    """A structured array of time, in s and not decreasing, and the inputs, whose names are in the first line; linear between the lines."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.reader(file) if row]
-    names = [name.strip() for name in rows[0]] if rows else []
-    if names[:1] != ["time"] or len(names) < 2 or len(set(names)) < len(names):
-        raise Problem(f"{path}: the first line is '{','.join(names)}'; expected time and names of inputs, such as time,tau")
+
+def _rows_of(path):
+    """The number of each line that is not empty, and its words; and by what they are separated."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            first = file.readline()
+            file.seek(0)
+            separator = next((mark for mark in ";\t" if mark in first), ",")
+            reader = csv.reader(file, delimiter=separator)
+            return [(reader.line_num, [word.strip() for word in row]) for row in reader if row], separator
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise Problem(f"{path} is not a text of UTF-8 with columns ({problem}); expected a CSV, which a spreadsheet saves as 'CSV UTF-8'") from None
+
+
+def _name_in(word, units, path):
+    """Of "theta [rad]" theta, whose unit is to be this."""
+    name, unit = re.fullmatch(r"(.*?)(?:\s+[\[(](.*)[\])])?", word).groups()
+    expected = "s" if name == "time" else units.get(name) or "1"
+    if unit is not None and (name == "time" or name in units) and unit.strip() != expected:
+        raise Problem(f"{path}: '{name}' is in '{unit}'; expected it in {expected}, as the system has it")
+    return name
+
+
+def _number(word, separator, place):
+    if word in NOTHING:
+        return np.nan
+    try:
+        return float(word if separator == "," else word.replace(",", "."))
+    except ValueError:
+        raise Problem(f"{place} '{word}' is not a number") from None
+
+
+def read_table(path, units):
+    """
+    A structured array of time, in s, and what else has a name in the first line, perhaps with its unit, which is to be that of `units`: "theta [rad]".
+    Commas, semicolons or tabs are between columns; beside the latter two, decimals may have commas. NaN where nothing stands.
+    """
+    rows, separator = _rows_of(path)
+    names = [_name_in(word, units, path) for word in rows[0][1]] if rows else []
+    if names[:1] != ["time"] or len(names) < 2 or len({*names} - {""}) < len(names):
+        first = separator.join(rows[0][1]) if rows else ""
+        raise Problem(f"{path}: the first line is '{first}'; expected time and names of variables, each once, such as time,theta")
+    if separator != "," and all(any(mark in word for _, row in rows[1:] for word in row) for mark in ",."):
+        raise Problem(f"{path}: there are numbers with commas and numbers with points; expected one kind, and no marks between thousands")
     values = np.empty((len(rows) - 1, len(names)))
-    for line, row in enumerate(rows[1:], 2):
-        try:
-            values[line - 2] = [float(word) for word in row]
-        except ValueError:
-            raise Problem(f"{path}:{line}: '{','.join(row)}' is not {len(names)} numbers") from None
-    if len(values) < 1 or not np.isfinite(values).all() or (np.diff(values[:, 0]) < 0).any():
-        raise Problem(f"{path}: expected lines of finite numbers, whose times do not decrease")
+    for place, (line, row) in enumerate(rows[1:]):
+        if len(row) != len(names):
+            raise Problem(f"{path}:{line}: '{separator.join(row)}' is not {len(names)} numbers, of which the first line has the names")
+        values[place] = [_number(word, separator, f"{path}:{line}:") for word in row]
     return np.rec.fromarrays(values.T, names=names).view(np.ndarray)
+
+
+def read_input(path, units):
+    """Likewise of inputs, which are linear between the lines; all values are there, and times do not decrease."""
+    data = read_table(path, units)
+    if len(data) < 1 or not all(np.isfinite(data[name]).all() for name in data.dtype.names) or (np.diff(data["time"]) < 0).any():
+        raise Problem(f"{path}: expected lines of finite numbers, whose times do not decrease")
+    return data

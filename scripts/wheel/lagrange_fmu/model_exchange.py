@@ -10,10 +10,11 @@ from fmpy.fmi1 import FMICallException
 from .models import Model2, Model3, Slave2
 from .problem import Problem
 from .running import fmu_of, is_fmu
-from .simulation import check_start, described
+from .simulation import check_start, described, units_of
 from .variables import settable
 
 ADJOINT = ("--adjoint", "--scalars")  # words for lagc
+COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # what is discrete beside modes
 
 
 def along(of, by):
@@ -29,8 +30,9 @@ def words_for(by):
 class Point:
     """An FMU that is started again and again at a point; by: names, the derivatives by which are variables of their own, which are not listed."""
 
-    def __init__(self, model, description, values, by=()):
-        self.model, self.values = model, values
+    def __init__(self, model, description, values, by=(), messages=()):
+        """messages: what the model logs."""
+        self.model, self.values, self.messages = model, values, messages
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         self.names = {reference: name for name, reference in self.references.items()}
         outputs = [v.name for v in description.modelVariables if v.causality == "output"]
@@ -41,9 +43,11 @@ class Point:
             [name for name in names if not name.removesuffix(")").endswith(ends)] for names in (self.derivatives, self.states, settable(description), outputs)
         )
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
-        self.name = description.modelName
+        self.name, self.units = description.modelName, units_of(description)
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
         self.indicator_count = description.numberOfEventIndicators
+        modes = [v for v in description.modelVariables if v.variability == "discrete" and v.causality == "local" and v.name not in COUNTERS]
+        self.mode_references = [[v.valueReference for v in modes if (v.type in ("Real", "Float64")) == is_real] for is_real in (True, False)]
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
@@ -59,6 +63,11 @@ class Point:
         self.model.newDiscreteStates()
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
+
+    def modes(self):
+        """Of what switches; the same list where that does the same."""
+        real, whole = self.mode_references
+        return [*(self.model.getReal(real) if real else ()), *(self.model.whole_numbers(whole) if whole else ())]
 
     def set_states(self, states):
         """In the order of `states`."""
@@ -111,6 +120,6 @@ def opened(system, values, method=None, what="be linearized there", adjoint=Fals
         check_start(values, description)
         with _opened(fmu, description, bool(by)) as (model, messages):
             try:
-                yield Point(model, description, values, by)
+                yield Point(model, description, values, by, messages)
             except FMICallException as problem:
                 raise Problem("; ".join([f"{description.modelName} cannot {what}", *(messages or [str(problem)])])) from None

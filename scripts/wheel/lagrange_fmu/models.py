@@ -57,6 +57,9 @@ class Model2(_Model2):
         self.fmi2GetEventIndicators(self.component, numbers_of(values), count)
         return values
 
+    def whole_numbers(self, references):
+        return self.getInteger(references)
+
 
 class Slave2(_Model2):
     """In co-simulation, which knows no modes of model exchange."""
@@ -103,6 +106,9 @@ class Model3(Model):
 
     def setReal(self, references, values):
         self.fmu.setFloat64(references, values)
+
+    def whole_numbers(self, references):
+        return self.fmu.getInt32(references)
 
     def newDiscreteStates(self):
         return self.fmu.updateDiscreteStates()

@@ -8,7 +8,7 @@ from pathlib import Path
 from .building import build_with
 from .input_file import read_input
 from .problem import Problem
-from .simulation import simulate, write_results
+from .simulation import described, simulate, units_of, write_results
 
 
 def is_fmu(path):
@@ -29,8 +29,8 @@ def fmu_of(system, folder=None, method=None, fmi=None, words=()):
 
 def motion_of(system, start_values=None, input=None, folder=None, method=None, fmi=None, **options):
     """The Motion of a system or FMU; `input` may be the path of a CSV."""
-    signals = read_input(input) if isinstance(input, (str, os.PathLike)) else input
     with fmu_of(system, folder, method, fmi) as fmu:
+        signals = read_input(input, units_of(described(fmu))) if isinstance(input, (str, os.PathLike)) else input
         return simulate(fmu, start_values or {}, input=signals, **options)
 
 

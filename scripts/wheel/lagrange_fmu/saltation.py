@@ -5,9 +5,10 @@ equations with discontinuous right-hand sides, 1958). What the event makes of ne
 """
 
 import numpy as np
+from fmpy.fmi1 import FMICallException
 from scipy.optimize import brentq
 
-from .differences import CENTRAL, difference, relevant, rule_within
+from .differences import CENTRAL, difference, relevant, rules_within
 from .problem import Problem
 
 STEP = 1e-3  # of differences, as a share of the states and parameters
@@ -31,6 +32,10 @@ def crossing_of(indicators, begin, end):
     return times[place] + PAST * unit, crossing[place]
 
 
+class OtherModes(Problem):
+    """What neighbours of a motion do behind an event."""
+
+
 class Saltation:
     """An event of a motion, at a time just past it, in an FMU that is placed there and has not handled it yet."""
 
@@ -43,6 +48,8 @@ class Saltation:
         motion.place(time, state, inputs)
         self.rates = np.array(self.model.getReal(motion.rate_references))
         self.level = self.point.indicators()[indicator]
+        self.update()
+        self.modes = self.point.modes()
 
     def update(self):
         """What the event makes of the present state."""
@@ -85,7 +92,15 @@ class Saltation:
         state = self.state + shift
         delay = self.delay_of(state)
         self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
-        return np.append(self.update(), delay)
+        by = f"by {', '.join(self.point.names[reference] for reference in changes)} " if changes else ""
+        try:
+            after = self.update()
+        except FMICallException:
+            why = "; ".join(self.point.messages)
+            raise Problem(f"the event at {self.time:g} s cannot be had {by}for some neighbours, so that there is no derivative: {why}; expected other values, or a min and a max that keep to what there is") from None
+        if self.point.modes() != self.modes:
+            raise OtherModes(f"the event at {self.time:g} s leads some neighbours into other modes than this motion, so that there is no derivative {by}through it; expected other values, or a stop time before it")
+        return np.append(after, delay)
 
     def sizes_of(self, acting):
         return {reference: abs(value) or 1.0 for reference, value in zip(acting, self.model.getReal(acting) if acting else ())}
@@ -94,7 +109,7 @@ class Saltation:
         if not acting:
             return CENTRAL
         (value,), (reference,) = self.model.getReal(acting), acting
-        return rule_within(value, step, self.point.limits[self.point.names[reference]])
+        return rules_within(value, step, self.point.limits[self.point.names[reference]])[0]
 
     def change_along(self, direction, acting):
         """By how much the state behind the event, and the delay, change along the direction, with the acting parameters growing with it."""
@@ -109,7 +124,10 @@ class Saltation:
         steps = {reference: STEP * size for reference, size in self.sizes_of(acting).items()}
         ends = {reference: self.rule_of([reference], step)[-1][0] * step for reference, step in steps.items()}
         still = np.zeros_like(self.state)
-        return (self.neighbour(still, ends) != self.neighbour(still, {})).any()
+        try:
+            return (self.neighbour(still, ends) != self.neighbour(still, {})).any()
+        except OtherModes:
+            return True
 
     def pass_over(self, slopes, acting):
         """Leaves the FMU behind the event. Returns its state there, and the slopes of that; acting: of each slope, the parameters that change with it."""

@@ -9,32 +9,62 @@ try:
 except ImportError:
     raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
 
-from .differences import difference, relevant, rule_within
+from fmpy.fmi1 import FMICallException
+
+from .differences import relevant, rules_within
 from .saltation import Saltation, crossing_of
 
 LOOKS = 8  # at what events look at, in a step
 STEP = 1e-3  # relative, of differences through initialization
 
 
+class Start:
+    """Initialization at values by name, and at those around them."""
+
+    def __init__(self, point, by, values):
+        self.point, self.values = point, values
+        self.states, self.modes, self.sides = self.found(values)
+        self.at = dict(zip(by, point.read(by)))
+        self.step = {name: STEP * (abs(value) or 1.0) for name, value in self.at.items()}
+        self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
+
+    def found(self, values):
+        """The states; the modes; and on which side of each event it begins."""
+        states = self.point.start(values=values)
+        return states, self.point.modes(), np.sign(self.point.indicators())
+
+    def changed(self, steps):
+        """What is found with so many steps by name; None where it cannot start so."""
+        try:
+            return self.found(self.values | {name: self.at[name] + count * self.step[name] for name, count in steps.items()})
+        except FMICallException:
+            self.point.messages.clear()
+            return None
+
+    def changes(self, names):
+        """Whether anything does, with all of these."""
+        found = self.changed({name: self.rules[name][0][-1][0] for name in names})
+        return found is None or (found[0] != self.states).any() or found[1] != self.modes or (found[2] != self.sides).any()
+
+    def slope_by(self, name):
+        """On both sides, or on one where it cannot start on the other."""
+        for rule in self.rules[name]:
+            found = [self.changed({name: count}) for count, _ in rule]
+            if None in found:
+                continue
+            states, modes, sides = zip(*found)
+            if any(mode != self.modes for mode in modes) or (np.max(sides, axis=0) * np.min(sides, axis=0) < 0).any():
+                break
+            return sum(weight * state for state, (_, weight) in zip(states, rule)) / self.step[name]
+        raise Problem(f"the motion has no derivative by '{name}' at {self.at[name]:g}, around which there is no start, or one in other modes; expected another value of it")
+
+
 def start_slopes(point, by, values):
     """The states that initialization makes of values by name, and their derivatives by each of these names, a row each."""
-    at = dict(zip(by, (point.start(values=values), point.read(by))[1]))
-    step = {name: STEP * (abs(value) or 1.0) for name, value in at.items()}
-    rules = {name: rule_within(value, step[name], point.limits[name]) for name, value in at.items()}
-    start = point.start(values=values)
-
-    def changed(steps):
-        return point.start(values=values | {name: at[name] + count * step[name] for name, count in steps.items()})
-
-    def changes(names):
-        return (changed({name: rules[name][-1][0] for name in names}) != start).any()
-
-    moving = {*relevant(changes, [name for name in by if name not in point.states])}
-    slopes = [
-        difference(lambda count: changed({name: count}), rules[name]) / step[name] if name in moving or name in point.states else np.zeros_like(start)
-        for name in by
-    ]
-    return point.start(values=values), np.array(slopes).reshape(len(by), len(start))
+    start = Start(point, by, values)
+    moving = {*relevant(start.changes, [name for name in by if name not in point.states])}
+    slopes = [start.slope_by(name) if name in moving or name in point.states else np.zeros_like(start.states) for name in by]
+    return point.start(values=values), np.array(slopes).reshape(len(by), len(start.states))
 
 
 def acting_of(point, by):
@@ -146,7 +176,19 @@ class Motion:
         return np.concatenate([state, slopes.ravel()])
 
 
+def check_once(names):
+    for name in names:
+        if names.count(name) > 1:
+            raise Problem(f"'{name}' stands there twice; expected each name once")
+
+
+def check_tolerance(tolerance):
+    if not 0 < tolerance < 1:
+        raise Problem(f"the tolerance is {tolerance:g}; expected one between 0 and 1")
+
+
 def check_names(point, of, by):
+    check_once(by)
     for names, among, what in ((of, {*point.outputs, *point.derivatives, *point.states}, "an output, a state or its derivative"), (by, {*point.settable}, "a parameter, a start value or an input")):
         for name in names:
             if name not in among:

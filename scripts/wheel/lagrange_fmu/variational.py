@@ -15,7 +15,7 @@ from .model_exchange import along, opened, words_for
 from .models import Slave2
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import Motion, check_names, start_slopes
+from .sensitivity import Motion, check_names, check_tolerance, start_slopes
 
 LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
 
@@ -88,8 +88,13 @@ class SeriesMotion:
 
 
 def sensitivities(system, of, by, times, start_values, tolerance):
+    times = np.atleast_1d(np.asarray(times, dtype=float))
+    if not (times.size and np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
+        raise Problem(f"the times are {', '.join(f'{time:g}' for time in times)} s; expected one at least, from 0 s on, each later than the one before")
+    check_tolerance(tolerance)
     with followed(system, dict(start_values), by) as point:
         check_names(point, of, by)
-        values, derivatives = motion(point, of, by, tolerance).over(np.asarray(times, dtype=float))
+        found = motion(point, of, by, tolerance).over(np.union1d([0.0], times))
+    values, derivatives = (part[-len(times) :] for part in found)
     named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
-    return Sensitivities(np.asarray(times, dtype=float), dict(zip(of, values.T)), named)
+    return Sensitivities(times, dict(zip(of, values.T)), named)

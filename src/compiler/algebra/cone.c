@@ -62,18 +62,26 @@ static void sort(struct Cone *cone) {
   }
 }
 
-void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
-                  bool (*stops)(const struct Graph *graph, Node node)) {
+bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
+                       enum Visit (*visit)(void *context, const struct Graph *graph, Node node), void *context) {
   grow(cone, graph->count);
   cone->count = 0;
   for (size_t i = 0; i < count; i++) add(cone, targets[i]);
-  for (size_t i = 0; i < cone->count; i++) {
+  bool ended = false;
+  for (size_t i = 0; i < cone->count && !ended; i++) {
     const struct Vertex *vertex = &graph->vertices[cone->nodes[i]];
-    int arity = operation_arity(vertex->operation);
-    if (arity == 0 || (stops != NULL && stops(graph, cone->nodes[i]))) continue;
-    add(cone, vertex->left);
+    enum Visit answer = visit != NULL ? visit(context, graph, cone->nodes[i]) : VISIT_OPERANDS;
+    ended = answer == VISIT_NO_MORE;
+    int arity = answer == VISIT_OPERANDS ? operation_arity(vertex->operation) : 0;
+    if (arity > 0) add(cone, vertex->left);
     if (arity == 2) add(cone, vertex->right);
   }
   cone->work += VISIT_WORK * cone->count;
+  if (ended) cone->count = 0;
   sort(cone);
+  return !ended;
+}
+
+void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count) {
+  cone_collect_part(cone, graph, targets, count, NULL, NULL);
 }

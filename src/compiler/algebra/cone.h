@@ -16,12 +16,15 @@ struct Cone {
 
 struct Cone *cone_create(void);
 
-/*
- * Collects the targets and all that they need; below nodes for which stops() is true it does not look, and they are
- * members. stops may be NULL.
- */
-void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
-                  bool (*stops)(const struct Graph *graph, Node node));
+/* Collects the targets and all that they need. */
+void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count);
+
+/* Where a collection goes from a member: on to its operands, not below it, or no further at all. */
+enum Visit { VISIT_OPERANDS, VISIT_NOTHING_BELOW, VISIT_NO_MORE };
+
+/* The same as far as visit() says, which sees each member once; false, and no member, where it ended the collection. */
+bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
+                       enum Visit (*visit)(void *context, const struct Graph *graph, Node node), void *context);
 
 /* Whether the node is a member. */
 bool cone_has(const struct Cone *cone, Node node);

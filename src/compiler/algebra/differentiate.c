@@ -39,33 +39,69 @@ static Node gated_product(struct Graph *graph, Node weight, Node by) {
   return add(graph, first, gated_product(graph, vertex.right, by));
 }
 
+/* The derivative of an operation whose operands have these. */
+static Node along_operands(struct Graph *graph, Node node, Node along_left, Node along_right) {
+  const struct Vertex vertex = graph->vertices[node];
+  if (along_left == ZERO && along_right == ZERO) return ZERO;
+  if (vertex.operation == GATE) return function(graph, GATE, vertex.left, along_right);
+  Node by_left, by_right;
+  partial_derivatives(graph, node, &by_left, &by_right);
+  Node along = multiply(graph, by_left, along_left);
+  if (operation_arity(vertex.operation) == 1) return along;
+  along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along_right)
+                                          : multiply(graph, by_right, along_right);
+  return add(graph, along, along_right);
+}
+
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   struct Cone *cone = graph->cone;
   if (graph_limit(graph) != NULL) count = 0; /* the derivatives are then what they were, and have no meaning */
-  cone_collect(cone, graph, targets, count, NULL);
+  cone_collect(cone, graph, targets, count);
   Node *along = allocate(cone->count, sizeof *along);
+  for (size_t place = 0; place < cone->count; place++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[place]];
+    int arity = operation_arity(vertex.operation);
+    if (vertex.operation == SYMBOL) along[place] = seeds[vertex.left];
+    if (arity == 0) continue;
+    along[place] = along_operands(graph, cone->nodes[place], along[cone_place(cone, vertex.left)],
+                                  arity == 2 ? along[cone_place(cone, vertex.right)] : ZERO);
+  }
+  for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_place(cone, targets[i])];
+}
+
+static enum Visit visit_unknown(void *context, const struct Graph *graph, Node node) {
+  const struct Derivatives *known = context;
+  (void)graph;
+  return known->is_known[node] ? VISIT_NOTHING_BELOW : VISIT_OPERANDS;
+}
+
+static void make_room_for(struct Derivatives *known, size_t count) {
+  if (count <= known->capacity) return;
+  count *= 2;
+  known->of = reallocate(known->of, count, sizeof *known->of);
+  known->is_known = reallocate(known->is_known, count, sizeof *known->is_known);
+  for (size_t i = known->capacity; i < count; i++) known->is_known[i] = false;
+  known->capacity = count;
+}
+
+void derivatives_find(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
+                      struct Derivatives *known, Node *derivatives) {
+  struct Cone *cone = graph->cone;
+  if (graph_limit(graph) != NULL) return;
+  make_room_for(known, graph->count);
+  cone_collect_part(cone, graph, targets, count, visit_unknown, known);
   for (size_t place = 0; place < cone->count; place++) {
     Node node = cone->nodes[place];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
-    if (vertex.operation == SYMBOL) along[place] = seeds[vertex.left];
-    if (arity == 0) continue;
-    Node along_left = along[cone_place(cone, vertex.left)];
-    Node along_right = arity == 2 ? along[cone_place(cone, vertex.right)] : ZERO;
-    if (along_left == ZERO && along_right == ZERO) continue;
-    if (vertex.operation == GATE) {
-      along[place] = function(graph, GATE, vertex.left, along_right);
-      continue;
-    }
-    Node by_left, by_right;
-    partial_derivatives(graph, node, &by_left, &by_right);
-    along[place] = multiply(graph, by_left, along_left);
-    if (arity == 1) continue;
-    along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along_right)
-                                            : multiply(graph, by_right, along_right);
-    along[place] = add(graph, along[place], along_right);
+    if (known->is_known[node]) continue;
+    known->is_known[node] = true;
+    if (arity == 0) known->of[node] = vertex.operation == SYMBOL ? seeds[vertex.left] : ZERO;
+    else
+      known->of[node] =
+          along_operands(graph, node, known->of[vertex.left], arity == 2 ? known->of[vertex.right] : ZERO);
   }
-  for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_place(cone, targets[i])];
+  for (size_t i = 0; i < count; i++) derivatives[i] = known->of[targets[i]];
 }
 
 Node derivative_by(struct Graph *graph, Node target, Node symbol) {
@@ -96,11 +132,16 @@ static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, c
   return gradient;
 }
 
+/* What has no symbol of the kinds below it has no part in the gradient. */
+static enum Visit visit_kinds(void *kinds, const struct Graph *graph, Node node) {
+  return (graph->vertices[node].kinds & *(unsigned *)kinds) != 0 ? VISIT_OPERANDS : VISIT_NOTHING_BELOW;
+}
+
 struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
                                   unsigned kinds) {
   struct Cone *cone = graph->cone;
   if (graph_limit(graph) != NULL) count = 0;
-  cone_collect(cone, graph, targets, count, NULL);
+  cone_collect_part(cone, graph, targets, count, visit_kinds, &kinds);
   Node *adjoint = allocate(cone->count, sizeof *adjoint);
   for (size_t k = 0; k < count; k++) add_adjoint(graph, kinds, adjoint, targets[k], weights[k], ONE);
   for (size_t place = cone->count; place-- > 0;) {
@@ -144,9 +185,13 @@ Node *own_symbols(const struct Graph *graph) {
   return symbols;
 }
 
+Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol) {
+  return replacements[graph->vertices[symbol].left];
+}
+
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
   struct Cone *cone = graph->cone;
-  cone_collect(cone, graph, targets, count, NULL);
+  cone_collect(cone, graph, targets, count);
   Node *mapped = allocate(cone->count, sizeof *mapped);
   for (size_t place = 0; place < cone->count; place++) {
     Node node = cone->nodes[place];

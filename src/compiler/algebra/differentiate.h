@@ -15,6 +15,17 @@ void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by
  */
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives);
 
+/* Derivatives along one direction that are known; empty where none is. */
+struct Derivatives {
+  Node *of; /* each node of the graph that is known */
+  bool *is_known;
+  size_t capacity;
+};
+
+/* The same for a direction along which derivatives are found again and again: those that are known cost nothing. */
+void derivatives_find(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
+                      struct Derivatives *known, Node *derivatives);
+
 /* d target / d symbol; symbol is a SYMBOL node. */
 Node derivative_by(struct Graph *graph, Node target, Node symbol);
 
@@ -41,6 +52,9 @@ void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *
 
 /* Each symbol of the graph for itself: replacements that change nothing yet. */
 Node *own_symbols(const struct Graph *graph);
+
+/* What stands for a symbol among replacements, or seeds, of all symbols. */
+Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol);
 
 /* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);

@@ -25,7 +25,7 @@ static Node rounding_of(struct Graph *graph, Node node, Node left, Node right) {
 
 void roundings_of(struct Graph *graph, const Node *targets, size_t count, Node *roundings) {
   struct Cone *cone = graph->cone;
-  cone_collect(cone, graph, targets, count, NULL);
+  cone_collect(cone, graph, targets, count);
   Node *rounding = allocate(cone->count, sizeof *rounding);
   for (size_t place = 0; place < cone->count; place++) {
     const struct Vertex vertex = graph->vertices[cone->nodes[place]];

@@ -45,7 +45,7 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
   const struct Graph *graph = dependencies->graph;
   const struct Cone *cone = graph->cone;
   if (graph_limit(graph) != NULL) return;
-  cone_collect(graph->cone, graph, &target, 1, NULL);
+  cone_collect(graph->cone, graph, &target, 1);
   enum Dependency *on = allocate(cone->count, sizeof *on);
   on[cone_place(cone, target)] = kind;
   for (size_t place = cone->count; place-- > 0;) {
@@ -68,7 +68,7 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
   if (list->numbers != NULL) return list;
   Node *residuals = allocate(block->count, sizeof *residuals);
   for (size_t i = 0; i < block->count; i++) residuals[i] = dependencies->equations->residual[block->coordinates[i]];
-  cone_collect(graph->cone, graph, residuals, block->count, NULL);
+  cone_collect(graph->cone, graph, residuals, block->count);
   list->numbers = allocate(graph->symbol_count, sizeof *list->numbers);
   for (size_t place = 0; place < graph->cone->count; place++) {
     const struct Vertex *vertex = &graph->vertices[graph->cone->nodes[place]];

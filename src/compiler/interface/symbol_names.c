@@ -1,12 +1,13 @@
 #include "interface/symbol_names.h"
 
+#include <stdint.h>
 #include <string.h>
 
 #include "algebra/cone.h"
 #include "base/memory.h"
 
 /* C allows 4095 characters in a string, and a message has its use with fewer. */
-enum { LENGTH_LIMIT = 1000 };
+enum { LENGTH_LIMIT = 1000, WORD_BITS = 64 };
 
 static void add_symbol(struct SymbolNames *names, size_t symbol) {
   size_t place = names->count;
@@ -20,9 +21,47 @@ static void add_symbol(struct SymbolNames *names, size_t symbol) {
 
 void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count) {
   struct Cone *cone = graph->cone;
-  cone_collect(cone, graph, nodes, count, NULL);
+  cone_collect(cone, graph, nodes, count);
   for (size_t i = 0; i < cone->count; i++)
     if (graph->vertices[cone->nodes[i]].operation == SYMBOL) add_symbol(names, graph->vertices[cone->nodes[i]].left);
+}
+
+/* below: of each member of the cone, bit k where it depends on the (first + k)-th symbol of all; gives their number. */
+static size_t find_symbols_below(const struct Graph *graph, size_t first, uint64_t *below) {
+  const struct Cone *cone = graph->cone;
+  size_t symbols = 0;
+  for (size_t place = 0; place < cone->count; place++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+    int arity = operation_arity(vertex->operation);
+    below[place] = arity > 0 ? below[cone_place(cone, vertex->left)] : 0;
+    if (arity == 2) below[place] |= below[cone_place(cone, vertex->right)];
+    if (vertex->operation != SYMBOL) continue;
+    if (symbols >= first && symbols < first + WORD_BITS) below[place] = (uint64_t)1 << (symbols - first);
+    symbols++;
+  }
+  return symbols;
+}
+
+static size_t *symbols_of_cone(const struct Graph *graph) {
+  const struct Cone *cone = graph->cone;
+  struct SymbolNames all = {0};
+  for (size_t i = 0; i < cone->count; i++)
+    if (graph->vertices[cone->nodes[i]].operation == SYMBOL) add_symbol(&all, graph->vertices[cone->nodes[i]].left);
+  return all.symbols;
+}
+
+void symbol_names_add_each(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count) {
+  const struct Cone *cone = graph->cone;
+  cone_collect(graph->cone, graph, nodes, count);
+  const size_t *symbols = symbols_of_cone(graph);
+  uint64_t *below = allocate(cone->count, sizeof *below);
+  for (size_t first = 0, end = 1; first < end; first += WORD_BITS) {
+    end = find_symbols_below(graph, first, below);
+    graph_work(graph, cone->count);
+    for (size_t i = 0; i < count; i++)
+      for (size_t k = 0; k < WORD_BITS; k++)
+        if ((below[cone_place(cone, nodes[i])] >> k & 1) != 0) add_symbol(&names[i], symbols[first + k]);
+  }
 }
 
 char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph) {

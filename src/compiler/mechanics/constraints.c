@@ -81,7 +81,7 @@ bool depend_on_constraint_force(const struct Model *model, const Node *nodes, si
   const struct Graph *graph = model->graph;
   bool depends = false;
   if (model->constraints.count == 0) return false;
-  cone_collect(graph->cone, graph, nodes, count, NULL);
+  cone_collect(graph->cone, graph, nodes, count);
   for (size_t j = 0; j < model->constraints.count && !depends; j++)
     depends = cone_has(graph->cone, model->unknowns.forces[j]);
   return depends;

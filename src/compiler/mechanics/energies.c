@@ -54,7 +54,7 @@ static struct Degrees degrees_of_vertex(const struct Model *model, Node node, co
 static struct Degrees degrees_of(const struct Model *model, Node target) {
   const struct Graph *graph = model->graph;
   struct Cone *cone = graph->cone;
-  cone_collect(cone, graph, &target, 1, NULL);
+  cone_collect(cone, graph, &target, 1);
   struct Degrees *of = allocate(cone->count, sizeof *of);
   for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(model, cone->nodes[place], of);
   return of[cone_place(cone, target)];

@@ -23,7 +23,7 @@ struct Equations *equations_create(const struct Model *model) {
 static bool are_finite(const struct Graph *graph, const Node *nodes, size_t count) {
   const struct Cone *cone = graph->cone;
   bool finite = true;
-  cone_collect(graph->cone, graph, nodes, count, NULL);
+  cone_collect(graph->cone, graph, nodes, count);
   for (size_t i = 0; i < cone->count && finite; i++)
     finite = !graph_is_constant(graph, cone->nodes[i]) || isfinite(graph_value(graph, cone->nodes[i]));
   return finite;

@@ -41,15 +41,17 @@ static struct VirtualWork work_on_positions(const struct Model *model, const Nod
 }
 
 /* v' + omega x v */
-static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struct Vector spin, struct Vector vector) {
+static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struct Derivatives *rates,
+                                   struct Vector spin, struct Vector vector) {
   struct Vector carried = vector_cross(graph, spin, vector);
-  derivative_along(graph, vector.along, 3, seeds, vector.along);
+  derivatives_find(graph, vector.along, 3, seeds, rates, vector.along);
   return vector_add(graph, vector, carried);
 }
 
 static struct VirtualWork work_on_velocities(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
   struct VirtualWork work = {0};
+  struct Derivatives rates = {0};
   for (size_t i = 0; i < model->mechanism.body_count; i++) {
     const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame) continue;
@@ -59,8 +61,9 @@ static struct VirtualWork work_on_velocities(const struct Model *model, const No
     struct Vector momentum = matrix_apply(graph, &body->tensor, body->angular_velocity);
     struct Vector force = {{ZERO, ZERO, ZERO}};
     if (body->mass.node != ZERO)
-      force = vector_scale(graph, body->mass.node, rate_in_frame(graph, seeds, body->angular_velocity, body->velocity));
-    struct Vector torque = rate_in_frame(graph, seeds, body->angular_velocity, momentum);
+      force = vector_scale(graph, body->mass.node,
+                           rate_in_frame(graph, seeds, &rates, body->angular_velocity, body->velocity));
+    struct Vector torque = rate_in_frame(graph, seeds, &rates, body->angular_velocity, momentum);
     for (int axis = 0; axis < 3; axis++) {
       virtual_work_add(&work, velocity.along[axis], force.along[axis]);
       virtual_work_add(&work, spin.along[axis], torque.along[axis]);

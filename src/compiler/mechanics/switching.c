@@ -44,7 +44,7 @@ static void find_energies(const struct Model *model, const struct Equations *equ
   const struct Switches *switches = &model->switches;
   const Node energies[] = {equations->kinetic, equations->potential};
   switching->holds_energy = allocate(switches->branch_count, sizeof(bool));
-  cone_collect(model->graph->cone, model->graph, energies, 2, NULL);
+  cone_collect(model->graph->cone, model->graph, energies, 2);
   for (size_t i = 0; i < switches->branch_count; i++)
     switching->holds_energy[i] = holds_energy(model, &switches->branches[i]);
 }
@@ -60,7 +60,7 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
   }
   for (bool grown = switches->branch_count > 0; grown;) {
     grown = false;
-    cone_collect(cone, model->graph, roots->nodes, roots->count, NULL);
+    cone_collect(cone, model->graph, roots->nodes, roots->count);
     for (size_t i = 0; i < switches->branch_count; i++) {
       if (is_used[i] || !cone_has(cone, switches->branches[i].mode)) continue;
       is_used[i] = grown = true;
@@ -287,7 +287,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
 /* Whether the friction follows from the force of the contact. */
 static bool rests_on(const struct Model *model, const struct Friction *friction, const struct Contact *contact) {
   struct Cone *cone = model->graph->cone;
-  cone_collect(cone, model->graph, &friction->sliding, 1, NULL);
+  cone_collect(cone, model->graph, &friction->sliding, 1);
   return cone_has(cone, model->unknowns.forces[contact->constraint]);
 }
 

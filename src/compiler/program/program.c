@@ -13,7 +13,7 @@ enum {
   STATEMENT_LIMIT = 6000,
   SERIES_STATEMENT_LIMIT = 8000,
   DERIVATIVES_STATEMENT_LIMIT = 20000,
-  TREE_STATEMENT_LIMIT = 100000
+  TREE_STATEMENT_LIMIT = 200000
 };
 
 /* Series of up to this many recurrences an order get code of their own for the first orders. */
@@ -21,19 +21,19 @@ enum { UNROLLED_RECURRENCES = 40 };
 
 static void create_results(struct Program *program, struct Values *values) {
   const struct Interface *interface = program->interface;
+  const struct Expressions *expressions = program->expressions;
+  program->groups = result_groups_of(expressions);
   program->result = allocate(interface->result_count, sizeof(struct Routine *));
   program->result_along = allocate(interface->result_count, sizeof(struct Routine *));
-  program->leader = allocate(interface->result_count, sizeof(size_t));
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (entry->kind != VARIABLE_RESULT) continue;
-    size_t index = entry->index, count = 1;
-    bool is_leader = !interface->variables[i].is_continued;
-    program->leader[index] = is_leader ? index : program->leader[index - 1];
-    while (i + count < interface->count && interface->variables[i + count].is_continued) count++;
-    if (is_leader) program->result[index] = targets_routine(values, &program->expressions->result[index], count);
-    if (is_unknown(entry))
-      program->result_along[index] = targets_routine(values, &program->expressions->result_along[index], 1);
+    size_t index = entry->index;
+    if (program->groups.leader[index] == index) {
+      struct NodeList members = group_members(&program->groups, expressions->result, index);
+      program->result[index] = targets_routine(values, members.nodes, members.count);
+    }
+    if (is_unknown(entry)) program->result_along[index] = targets_routine(values, &expressions->result_along[index], 1);
   }
 }
 

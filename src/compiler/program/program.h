@@ -4,6 +4,7 @@
 #include "program/expressions/accelerations.h"
 #include "program/expressions/expressions.h"
 #include "program/generated_functions.h"
+#include "program/result_groups.h"
 #include "program/series/series_program.h"
 
 /*
@@ -20,9 +21,9 @@ struct Program {
   struct Prepared *prepared;
   struct LoopedBlocks blocks;
   struct Routine *routines[ROUTINE_COUNT]; /* NULL where a system needs none */
-  /* Of each result, or of it and those that it is continued by; along is NULL unless it is an output. */
+  struct ResultGroups groups;
+  /* Of each result that leads a group, for the whole group; along by itself, NULL unless it is an output. */
   struct Routine **result, **result_along;
-  size_t *leader; /* of each result: the first of those that are computed together */
   struct SeriesProgram *series, *output_series;
   struct SeriesProgram *watched_series; /* NULL where events look at nothing that can hide */
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */

@@ -94,14 +94,14 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
           text->name);
 }
 
-/* leader: of each result, the first of those that one routine computes, whose places follow from it. */
 static void write_results(FILE *file, const struct Encoding *encoding, enum FunctionName name,
-                          struct Routine *const *routines, const size_t *leader, size_t count) {
+                          struct Routine *const *routines, const struct ResultGroups *groups) {
   const struct GeneratedFunction *text = &generated_functions[name];
-  struct RoutineTables tables = encode_all(encoding, routines, leader, count);
+  struct RoutineTables tables = encode_all(encoding, routines, groups);
+  const char *type = tables.largest_place <= UINT8_MAX ? "unsigned char" : "uint16_t";
   write_words(file, text->name, &tables.words);
-  write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, count);
-  write_sizes(file, "unsigned char", format_text("%s_place", text->name), tables.place, count);
+  write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, groups->count);
+  write_sizes(file, type, format_text("%s_place", text->name), tables.place, groups->count);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic Real %s(%s, size_t result) {\n", text->comment,
           tables.operation_count, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
@@ -116,10 +116,9 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
 void instruction_tables_results(FILE *file, const struct Encoding *encoding) {
   size_t count = encoding->program->interface->result_count;
   if (count == 0) return;
-  size_t *alone = allocate(count, sizeof *alone);
-  for (size_t i = 0; i < count; i++) alone[i] = i;
-  write_results(file, encoding, FUNCTION_RESULT, encoding->program->result, encoding->program->leader, count);
-  write_results(file, encoding, FUNCTION_RESULT_ALONG, encoding->program->result_along, alone, count);
+  const struct ResultGroups alone = groups_of_one(count);
+  write_results(file, encoding, FUNCTION_RESULT, encoding->program->result, &encoding->program->groups);
+  write_results(file, encoding, FUNCTION_RESULT_ALONG, encoding->program->result_along, &alone);
 }
 
 static void set_rows(FILE *file) {

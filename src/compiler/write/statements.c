@@ -79,11 +79,12 @@ void statements_derivatives(FILE *file, const struct Program *program, const str
           parts->count, text->target);
 }
 
-/* How many results are computed together with the first of them. */
-static size_t size_of_group(const struct Program *program, size_t first) {
-  size_t end = first + 1;
-  while (end < program->interface->result_count && program->leader[end] == first) end++;
-  return end - first;
+/* How many results are computed together with this one. */
+static size_t size_of_group(const struct Program *program, size_t leader) {
+  const struct ResultGroups *groups = &program->groups;
+  size_t size = 0;
+  for (size_t i = leader; i < groups->count; i++) size += groups->leader[i] == leader;
+  return size;
 }
 
 /* The same in one function, which tells one of them. */
@@ -116,12 +117,12 @@ void statements_results(FILE *file, const struct Program *program) {
   size_t count = program->interface->result_count;
   if (count == 0) return;
   for (size_t i = 0; i < count; i++)
-    if (program->leader[i] == i) write_result(file, program, i);
+    if (program->groups.leader[i] == i) write_result(file, program, i);
   begin_choice(file, FUNCTION_RESULT);
   for (size_t i = 0; i < count; i++) {
-    size_t first = program->leader[i];
-    fprintf(file, "  case %zu: return result%zu(point, a", i, first);
-    if (size_of_group(program, first) > 1) fprintf(file, ", %zu", i - first);
+    size_t leader = program->groups.leader[i];
+    fprintf(file, "  case %zu: return result%zu(point, a", i, leader);
+    if (size_of_group(program, leader) > 1) fprintf(file, ", %zu", program->groups.place[i]);
     fputs(");\n", file);
   }
   end_choice(file);

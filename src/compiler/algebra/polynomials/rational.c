@@ -191,18 +191,14 @@ static void note_large(struct Graph *graph, Node node) {
 }
 
 /*
- * Whether the nodes of the cone are too large, for what can be told without expanding them: one of them was before, or symbols and
- * functions alone are more atoms than there may be.
+ * Ends the collection of what is too large, for what can be told without expanding it: a node was before, or symbols and
+ * functions alone, which are counted, are more atoms than there may be.
  */
-static bool is_large(const struct Graph *graph, const struct Cone *cone) {
-  int atoms = 0;
-  for (size_t place = 0; place < cone->count; place++) {
-    Node node = cone->nodes[place];
-    enum Operation operation = graph->vertices[node].operation;
-    atoms += operation != CONSTANT && operation != ADD && operation != MULTIPLY && operation != POWER;
-    if (atoms > ATOM_LIMIT || (node < graph->large_count && graph->is_large[node])) return true;
-  }
-  return false;
+static enum Visit visit_while_small(void *atoms, const struct Graph *graph, Node node) {
+  enum Operation operation = graph->vertices[node].operation;
+  *(int *)atoms += operation != CONSTANT && operation != ADD && operation != MULTIPLY && operation != POWER;
+  bool is_large = *(int *)atoms > ATOM_LIMIT || (node < graph->large_count && graph->is_large[node]);
+  return is_large ? VISIT_NO_MORE : VISIT_OPERANDS;
 }
 
 /* Steps that it takes to convert the node of this place: products and quotients look at all pairs of terms. */
@@ -221,8 +217,8 @@ static size_t work_of(const struct Graph *graph, const struct Fraction *known, s
 /* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
 static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
   struct Cone *cone = converter->graph->cone;
-  cone_collect(cone, converter->graph, nodes, count, NULL);
-  if (is_large(converter->graph, cone)) return false;
+  int atoms = 0;
+  if (!cone_collect_part(cone, converter->graph, nodes, count, visit_while_small, &atoms)) return false;
   struct Fraction *known = allocate(cone->count, sizeof *known);
   for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
     known[place] = convert(converter, cone->nodes[place], known);

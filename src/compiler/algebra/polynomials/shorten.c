@@ -16,7 +16,7 @@ static struct Length length_of(const struct Graph *graph, const Node *nodes, siz
   const struct Cone *cone = graph->cone;
   struct Length length = {0};
   if (graph_limit(graph) != NULL) return length;
-  cone_collect(graph->cone, graph, nodes, count, NULL);
+  cone_collect(graph->cone, graph, nodes, count);
   for (size_t place = 0; place < cone->count; place++) {
     if (operation_arity(graph->vertices[cone->nodes[place]].operation) == 0) continue;
     if (graph_is_constant_in_time(graph, cone->nodes[place])) length.once++;

@@ -48,7 +48,7 @@ static void append_row(struct Link *link, size_t row) {
 static void find_coordinates(const struct Builder *builder, struct Link *link, struct Vector velocity) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
-  cone_collect(graph->cone, graph, velocity.along, 3, NULL);
+  cone_collect(graph->cone, graph, velocity.along, 3);
   for (size_t i = 0; i < cone->count; i++) {
     if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
     size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
@@ -139,7 +139,7 @@ static void set_inertia_of_body(struct Builder *builder, size_t number) {
 static void mark_coordinates_of(struct Builder *builder, Node node) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
-  cone_collect(graph->cone, graph, &node, 1, NULL);
+  cone_collect(graph->cone, graph, &node, 1);
   for (size_t i = 0; i < cone->count; i++)
     if (is_symbol(graph, cone->nodes[i], COORDINATE))
       builder->is_elsewhere[graph_symbol_of(graph, cone->nodes[i])->index] = true;

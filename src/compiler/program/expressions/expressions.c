@@ -82,7 +82,7 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
   corrections->velocity = allocate(rows, sizeof(Node));
   corrections->slope = constraint_slopes(graph, constraints);
   Node *moved = allocate(rows, sizeof *moved);
-  for (size_t i = 0; i < n; i++) moved[i] = seeds[graph->vertices[model->coordinates.items[i].node].left];
+  for (size_t i = 0; i < n; i++) moved[i] = replacement_of(graph, seeds, model->coordinates.items[i].node);
   inertia_add_product(graph, equations->inertia, moved, corrections->position);
   for (size_t i = 0; i < n; i++) corrections->position[i] = negate(graph, corrections->position[i]);
   for (size_t j = 0; j < constraints->count; j++) {
@@ -90,10 +90,6 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
     corrections->velocity[n + j] = negate(graph, constraints->velocity[j]);
   }
   solve_trees(graph, equations, corrections);
-}
-
-static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
-  return seeds[graph->vertices[symbol].left];
 }
 
 /* Adds what a push along a gap, or a velocity, does along the coordinates. */
@@ -114,12 +110,12 @@ static void create_pushes(struct Expressions *expressions, const Node *seeds) {
   Node *push = expressions->corrections.push = allocate(row_count(expressions->equations), sizeof(Node));
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
-    Node seed = seed_of(model->graph, seeds, model->unknowns.forces[contact->constraint]);
+    Node seed = replacement_of(model->graph, seeds, model->unknowns.forces[contact->constraint]);
     add_push(model, contact->gap, COORDINATE, seed, push);
   }
   for (size_t i = 0; i < switches->friction_count && switches->contact_count > 0; i++) {
     const struct Friction *friction = &switches->frictions[i];
-    Node seed = seed_of(model->graph, seeds, model->unknowns.forces[friction->constraint]);
+    Node seed = replacement_of(model->graph, seeds, model->unknowns.forces[friction->constraint]);
     add_push(model, friction->velocity, VELOCITY, seed, push);
   }
 }

@@ -93,7 +93,7 @@ static void append_pattern(struct ElementList *list, struct Graph *graph, const 
   struct Cone *cone = graph->cone;
   Node *residuals = allocate(block->count, sizeof *residuals);
   for (size_t i = 0; i < block->count; i++) residuals[i] = equations->residual[block->coordinates[i]];
-  cone_collect(cone, graph, residuals, block->count, NULL);
+  cone_collect(cone, graph, residuals, block->count);
   for (size_t k = 0; k < cone->count && list->count <= JACOBIAN_LIMIT; k++) {
     Node node = cone->nodes[k];
     bool is_state =

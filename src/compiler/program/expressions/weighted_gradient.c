@@ -23,10 +23,6 @@ static bool is_symmetric(const struct Inertia *inertia) {
   return true;
 }
 
-static Node seed_of(const struct Graph *graph, const Node *seeds, Node symbol) {
-  return seeds[graph->vertices[symbol].left];
-}
-
 /* The outputs, and the power whose integral is a state. */
 static struct WeightedSum what_is_read(struct Graph *graph, const struct Equations *equations,
                                        const struct Interface *interface, const Node *result) {
@@ -56,7 +52,7 @@ static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, c
   inertia_solve(graph, equations->inertia, gradient->side, gradient->multiplier);
   for (size_t i = 0; i < rows; i++) {
     Node symbol = i < n ? model->unknowns.accelerations[i] : model->unknowns.forces[i - n];
-    if (is_looped(equations, i)) gradient->multiplier[i] = seed_of(graph, seeds, symbol);
+    if (is_looped(equations, i)) gradient->multiplier[i] = replacement_of(graph, seeds, symbol);
     append_term(sum, equations->residual[i], negate(graph, gradient->multiplier[i]));
   }
 }
@@ -85,7 +81,7 @@ static void fill_elements(struct Graph *graph, const struct Model *model, const 
     gradient->elements[place_of(model, interface, graph_symbol_of(graph, found.symbols[i]))] = found.values[i];
   for (size_t i = 0; i < n; i++) {
     Node *by_velocity = &gradient->elements[n + i];
-    *by_velocity = add(graph, *by_velocity, seed_of(graph, seeds, model->coordinates.items[i].node));
+    *by_velocity = add(graph, *by_velocity, replacement_of(graph, seeds, model->coordinates.items[i].node));
   }
 }
 
@@ -102,7 +98,7 @@ struct WeightedGradient *weighted_gradient_create(const struct Model *model, con
   weighted_gradient_of(graph, sum.targets.nodes, sum.weights.nodes, sum.targets.count, ACCELERATION, rows,
                        gradient->side);
   for (size_t i = 0; i < equations->count; i++)
-    gradient->side[i] = add(graph, gradient->side[i], seed_of(graph, seeds, model->velocities.items[i].node));
+    gradient->side[i] = add(graph, gradient->side[i], replacement_of(graph, seeds, model->velocities.items[i].node));
   append_accelerations(&sum, graph, model, equations, seeds, gradient);
   fill_elements(graph, model, interface, &sum, seeds, gradient);
   return gradient;

@@ -8,7 +8,7 @@ static char *mark_inputs(const struct Model *model, Node constraint, bool *is_gu
   const struct Graph *graph = model->graph;
   struct Cone *cone = graph->cone;
   char *names = NULL;
-  cone_collect(cone, graph, &constraint, 1, NULL);
+  cone_collect(cone, graph, &constraint, 1);
   for (size_t i = 0; i < model->inputs.count; i++) {
     if (!cone_has(cone, model->inputs.items[i].node)) continue;
     size_t input = i;

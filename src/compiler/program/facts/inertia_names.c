@@ -16,13 +16,17 @@ static void name_block(const struct Graph *graph, const struct InertiaBlock *blo
 
 /* The inertia of a link rests on that of the links behind it. */
 static void name_pivots_of_trees(const struct Graph *graph, const struct Inertia *inertia, const char **texts) {
+  const struct Pivot **pivots = allocate(inertia->pivot_count, sizeof(struct Pivot *));
+  Node *values = allocate(inertia->pivot_count, sizeof *values);
+  size_t count = 0;
   for (size_t i = 0; i < inertia->pivot_count; i++) {
-    const struct Pivot *pivot = &inertia->pivots[i];
-    struct SymbolNames names = {0};
-    if (inertia_block_of(inertia, pivot->coordinate)->tree == NULL) continue;
-    symbol_names_add(&names, graph, &pivot->value, 1);
-    texts[pivot->coordinate] = symbol_names_text(&names, graph);
+    if (inertia_block_of(inertia, inertia->pivots[i].coordinate)->tree == NULL) continue;
+    values[count] = inertia->pivots[i].value;
+    pivots[count++] = &inertia->pivots[i];
   }
+  struct SymbolNames *names = allocate(count, sizeof *names);
+  symbol_names_add_each(names, graph, values, count);
+  for (size_t i = 0; i < count; i++) texts[pivots[i]->coordinate] = symbol_names_text(&names[i], graph);
 }
 
 const char *const *inertia_names_of(const struct Program *program) {

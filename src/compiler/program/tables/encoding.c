@@ -106,13 +106,12 @@ void encode(const struct Encoding *encoding, const struct Routine *routine, stru
   append_word(words, END);
 }
 
-struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines, const size_t *leader,
-                                size_t count) {
-  struct RoutineTables tables = {.start = allocate(count, sizeof *tables.start),
-                                 .place = allocate(count, sizeof *tables.place)};
-  for (size_t i = 0; i < count; i++) {
-    tables.start[i] = leader[i] < i ? tables.start[leader[i]] : tables.words.count;
-    tables.place[i] = i - leader[i];
+struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
+                                const struct ResultGroups *groups) {
+  struct RoutineTables tables = {.start = allocate(groups->count, sizeof *tables.start), .place = groups->place};
+  for (size_t i = 0; i < groups->count; i++) {
+    size_t leader = groups->leader[i];
+    tables.start[i] = leader < i ? tables.start[leader] : tables.words.count;
     if (tables.place[i] > tables.largest_place) tables.largest_place = tables.place[i];
     if (routines[i] == NULL) continue;
     encode(encoding, routines[i], &tables.words);

@@ -29,13 +29,14 @@ void encode(const struct Encoding *encoding, const struct Routine *routine, stru
 /* The tables of some routines, of which several may be NULL, one after the other. */
 struct RoutineTables {
   struct Words words;
-  size_t *start, *place; /* of each routine: where its table begins, and which of its targets it is */
+  size_t *start;       /* of each routine: where its table, or that of its leader, begins */
+  const size_t *place; /* which of its targets it is */
   size_t largest_place, operation_count;
 };
 
-/* leader: of each routine, the first of those that one computes. */
-struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines, const size_t *leader,
-                                size_t count);
+/* groups: of the routines, of which only leaders are encoded. */
+struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
+                                const struct ResultGroups *groups);
 
 /* A check whose places are those of tables. */
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check);

@@ -19,11 +19,16 @@ bool is_fetched(const struct Needs *needs, Node node) {
   return is_leaf(needs->graph, node) || (!needs->preparing && is_of_parameters(needs->graph, node));
 }
 
+static enum Visit visit_motion(void *context, const struct Graph *graph, Node node) {
+  (void)context;
+  return is_of_parameters(graph, node) ? VISIT_NOTHING_BELOW : VISIT_OPERANDS;
+}
+
 void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing) {
   const struct Graph *graph = needs->graph;
   struct Cone *cone = needs->cone;
   needs->preparing = preparing;
-  cone_collect(cone, graph, targets, count, preparing ? NULL : is_of_parameters);
+  cone_collect_part(cone, graph, targets, count, preparing ? NULL : visit_motion, NULL);
   if (cone->count > needs->capacity) {
     needs->capacity = 2 * cone->count;
     needs->uses = reallocate(needs->uses, needs->capacity, sizeof *needs->uses);

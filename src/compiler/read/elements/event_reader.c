@@ -94,7 +94,7 @@ static void collect_event(const struct Reader *reader, const struct Event *event
   for (size_t i = 0; i < event->assignment_count; i++) roots[count++] = event->assignments[i].value;
   size_t first = count;
   while (count > before) {
-    cone_collect(graph->cone, graph, roots, count, NULL);
+    cone_collect(graph->cone, graph, roots, count);
     before = count;
     count = first;
     for (size_t i = 0; i < switches->branch_count; i++)

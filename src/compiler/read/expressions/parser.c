@@ -139,7 +139,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
   const struct Graph *graph = parser->graph;
   int needed = parser->place.input_derivatives;
   if (needed == 0 || parser->failed || !graph_depends_on(graph, node, INPUT)) return;
-  cone_collect(graph->cone, graph, &node, 1, NULL);
+  cone_collect(graph->cone, graph, &node, 1);
   for (size_t i = 0; i < graph->cone->count; i++) {
     Node symbol = graph->cone->nodes[i];
     if (graph->vertices[symbol].operation != SYMBOL || !graph_depends_on(graph, symbol, INPUT)) continue;

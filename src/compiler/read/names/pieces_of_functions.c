@@ -20,7 +20,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;
   unsigned kinds = graph->vertices[node].kinds;
   if (scope->switches == NULL || !graph_depends_on(graph, node, MODE)) return kinds;
-  cone_collect(graph->cone, graph, &node, 1, NULL);
+  cone_collect(graph->cone, graph, &node, 1);
   for (size_t i = 0; i < scope->switches->branch_count; i++) {
     const struct Branch *branch = &scope->switches->branches[i];
     if (cone_has(graph->cone, branch->mode)) kinds |= branch->kinds;

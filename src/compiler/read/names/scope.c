@@ -137,6 +137,6 @@ Node time_derivative_of_symbol(const struct Scope *scope, Node symbol) {
 
 Node total_time_derivative(struct Scope *scope, Node node) {
   Node derivative = ZERO;
-  derivative_along(scope->graph, &node, 1, time_derivatives_of(scope), &derivative);
+  derivatives_find(scope->graph, &node, 1, time_derivatives_of(scope), &scope->rates, &derivative);
   return derivative;
 }

@@ -1,6 +1,7 @@
 /* The names that an expression may use, and what they stand for. */
 #pragma once
 
+#include "algebra/differentiate.h"
 #include "algebra/domain.h"
 #include "algebra/units/quantity.h"
 #include "base/diagnostics.h"
@@ -20,6 +21,7 @@ struct Scope {
   struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
   size_t time_derivative_count;     /* of the symbols so far; branches make some without the scope */
+  struct Derivatives rates;         /* d node / dt of what has been asked for */
   const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
   bool keeps_whole;                 /* the present expression stays whole */
   struct Names *warned_numbers;     /* "file:line:number" of those that a warning has named */
@@ -58,7 +60,7 @@ const char *scope_similar_name(const struct Scope *scope, const char *name);
 /* Whether two quantities may be added; always true where units are not checked. */
 bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second);
 
-/* Adds a symbol to graph and scope; its time derivative is set with scope_set_time_derivative. */
+/* Adds a symbol to graph and scope; scope_set_time_derivative sets its time derivative, before one is taken of anything. */
 Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
                   long line);
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);

@@ -77,6 +77,24 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
   return coordinate;
 }
 
+void write_beyond(const struct Writer *writer, const char *name, const char *unit, const char *lower,
+                  const char *upper) {
+  write_output(writer, format_text("%s_beyond", name), unit,
+               format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
+               format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
+}
+
+void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,
+                        const char *lower, const char *upper) {
+  for (int end = 0; end < 2; end++) {
+    xmlNodePtr contact = write_element(writer, "contact");
+    set_attribute(contact, "name", format_text("%s_%s", name, end == 0 ? "min" : "max"));
+    set_attribute(contact, "unit", copy_text(unit));
+    set_attribute(contact, "gap",
+                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position));
+  }
+}
+
 char *number(double value) {
   char text[NUMBER_LENGTH];
   number_text(value, text);

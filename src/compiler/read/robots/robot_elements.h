@@ -37,6 +37,14 @@ char *clamped(const double limits[2], char *expression);
 xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
                        const char *description);
 
+/* The output NAME_beyond, which tells how far the value of this name is beyond its limits. */
+void write_beyond(const struct Writer *writer, const char *name, const char *unit, const char *lower,
+                  const char *upper);
+
+/* The contacts NAME_min and NAME_max, which keep a position between its limits. */
+void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,
+                        const char *lower, const char *upper);
+
 /* The number in short. */
 char *number(double value);
 

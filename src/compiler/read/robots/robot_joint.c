@@ -13,12 +13,12 @@
  */
 static const double creep_rate = 0.01, creep_velocity = 0.001;
 
-static bool is_sliding(const struct Joint *joint) {
+bool joint_slides(const struct Joint *joint) {
   return joint->type == PRISMATIC;
 }
 
-static const char *unit_of_joint(const struct Joint *joint) {
-  return is_sliding(joint) ? "m" : "rad";
+const char *joint_unit(const struct Joint *joint) {
+  return joint_slides(joint) ? "m" : "rad";
 }
 
 void write_friction_parameters(const struct Writer *writer, const struct Robot *robot) {
@@ -27,8 +27,8 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
   bool turns = false, slides = false;
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct Joint *joint = robot->joints[i];
-    slides |= joint->friction > 0 && is_sliding(joint);
-    turns |= joint->friction > 0 && !is_sliding(joint);
+    slides |= joint->friction > 0 && joint_slides(joint);
+    turns |= joint->friction > 0 && !joint_slides(joint);
   }
   if (turns) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
   if (slides) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
@@ -39,32 +39,32 @@ struct Motion {
   char *velocity, *ratio;
 };
 
-/* What the leader's position is multiplied by: where one of the two turns and the other slides a parameter, which has a unit. */
-static char *ratio_of(const struct Joint *joint) {
-  bool has_unit = is_sliding(joint) != is_sliding(joint->leader);
+/* Where one of the two turns and the other slides it is a parameter, which has a unit. */
+char *joint_ratio(const struct Joint *joint) {
+  bool has_unit = joint_slides(joint) != joint_slides(joint->leader);
   return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
 }
 
-static char *position_of(const struct Joint *joint) {
+char *joint_position(const struct Joint *joint) {
   if (joint->leader == joint) return copy_text(joint->symbol);
-  char *ratio = ratio_of(joint), *shift = number(fabs(joint->shift));
+  char *ratio = joint_ratio(joint), *shift = number(fabs(joint->shift));
   return format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
 }
 
 /* The position of what mimics another joint is an output, with no coordinate behind it. */
 static struct Motion write_follower(const struct Writer *writer, const struct Joint *joint, const char *description) {
   const char *name = joint->symbol, *leader = joint->leader->symbol;
-  if (is_sliding(joint) != is_sliding(joint->leader))
-    write_parameter(writer, ratio_of(joint), joint->ratio, is_sliding(joint) ? "m/rad" : "rad/m",
+  if (joint_slides(joint) != joint_slides(joint->leader))
+    write_parameter(writer, joint_ratio(joint), joint->ratio, joint_slides(joint) ? "m/rad" : "rad/m",
                     format_text("velocity of %s over that of %s", name, leader));
-  write_output(writer, copy_text(name), unit_of_joint(joint), position_of(joint), copy_text(description));
-  char *ratio = ratio_of(joint);
+  write_output(writer, copy_text(name), joint_unit(joint), joint_position(joint), copy_text(description));
+  char *ratio = joint_ratio(joint);
   return (struct Motion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
 }
 
 static void write_friction(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
-  write_parameter(writer, format_text("%s_friction", name), joint->friction, is_sliding(joint) ? "N" : "N.m",
+  write_parameter(writer, format_text("%s_friction", name), joint->friction, joint_slides(joint) ? "N" : "N.m",
                   format_text("Coulomb friction of %s", name));
   if (writer->options->sticks) {
     xmlNodePtr friction = write_element(writer, "friction");
@@ -76,21 +76,21 @@ static void write_friction(const struct Writer *writer, const struct Joint *join
   xmlNodePtr force = write_element(writer, "force");
   set_attribute(force, "coordinate", copy_text(joint->leader->symbol));
   set_content(force, format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
-                                 is_sliding(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
+                                 joint_slides(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
 }
 
 /* What stores energy: a motor's own inertia and a spring. */
 static void write_stores(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
   if (joint->armature > 0) {
-    write_parameter(writer, format_text("%s_armature", name), joint->armature, is_sliding(joint) ? "kg" : "kg.m2",
+    write_parameter(writer, format_text("%s_armature", name), joint->armature, joint_slides(joint) ? "kg" : "kg.m2",
                     format_text("inertia of the motor of %s", name));
     set_content(write_element(writer, "kinetic"), format_text("%s_armature*%s^2/2", name, motion->velocity));
   }
   if (joint->stiffness > 0) {
-    char *position = position_of(joint), *rest = number(fabs(joint->rest));
-    write_parameter(writer, format_text("%s_stiffness", name), joint->stiffness, is_sliding(joint) ? "N/m" : "N.m/rad",
-                    format_text("stiffness of %s", name));
+    char *position = joint_position(joint), *rest = number(fabs(joint->rest));
+    write_parameter(writer, format_text("%s_stiffness", name), joint->stiffness,
+                    joint_slides(joint) ? "N/m" : "N.m/rad", format_text("stiffness of %s", name));
     set_content(write_element(writer, "potential"),
                 joint->rest == 0
                     ? format_text("%s_stiffness*%s^2/2", name, position)
@@ -101,8 +101,8 @@ static void write_stores(const struct Writer *writer, const struct Joint *joint,
 static void write_losses(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
   if (joint->damping > 0) {
-    write_parameter(writer, format_text("%s_damping", name), joint->damping, is_sliding(joint) ? "N.s/m" : "N.m.s/rad",
-                    format_text("viscous damping of %s", name));
+    write_parameter(writer, format_text("%s_damping", name), joint->damping,
+                    joint_slides(joint) ? "N.s/m" : "N.m.s/rad", format_text("viscous damping of %s", name));
     set_content(write_element(writer, "dissipation"), format_text("%s_damping*%s^2/2", name, motion->velocity));
   }
   if (joint->friction > 0) write_friction(writer, joint, motion);
@@ -117,14 +117,7 @@ static void write_stops(const struct Writer *writer, const struct Joint *joint, 
     set_attribute(stop, "max", upper);
     return;
   }
-  for (int end = 0; end < 2; end++) {
-    xmlNodePtr contact = write_element(writer, "contact");
-    char *position = position_of(joint);
-    set_attribute(contact, "name", format_text("%s_%s", joint->symbol, end == 0 ? "min" : "max"));
-    set_attribute(contact, "unit", copy_text(unit_of_joint(joint)));
-    set_attribute(contact, "gap",
-                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position));
-  }
+  write_end_contacts(writer, joint->symbol, joint_unit(joint), joint_position(joint), lower, upper);
 }
 
 static void write_limits(const struct Writer *writer, const struct Joint *joint) {
@@ -135,16 +128,14 @@ static void write_limits(const struct Writer *writer, const struct Joint *joint)
     write_stops(writer, joint, lower, upper);
     return;
   }
-  write_output(writer, format_text("%s_beyond", name), unit_of_joint(joint),
-               format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
-               format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
+  write_beyond(writer, name, joint_unit(joint), lower, upper);
 }
 
 static void write_single(const struct Writer *writer, const struct Joint *joint, const char *description) {
   struct Motion motion;
   if (joint->leader == joint) {
     double effort = writer->options->is_effort_limited ? joint->effort : NAN;
-    const char *name = joint->symbol, *unit = unit_of_joint(joint);
+    const char *name = joint->symbol, *unit = joint_unit(joint);
     xmlNodePtr coordinate = joint->has_motor ? write_motor(writer, name, unit, effort, description)
                                              : write_coordinate(writer, name, unit, description);
     double start = joint->start.position[0];
@@ -190,6 +181,25 @@ static struct JointStart start_of_quaternion(const struct Joint *joint) {
   return start;
 }
 
+/* For a quaternion of length 1 the square of the angular velocity is 4 times that of its rate. */
+static void write_ball(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+                       const char *description) {
+  const char *name = joint->symbol;
+  write_components(writer, name, 3, start, description);
+  const char *squares = format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name,
+                                    name, name, name);
+  if (joint->armature > 0) {
+    write_parameter(writer, format_text("%s_armature", name), joint->armature, "kg.m2",
+                    format_text("inertia of %s about any axis", name));
+    set_content(write_element(writer, "kinetic"), format_text("2*%s_armature*%s", name, squares));
+  }
+  if (joint->damping > 0) {
+    write_parameter(writer, format_text("%s_damping", name), joint->damping, "N.m.s/rad",
+                    format_text("viscous damping of %s", name));
+    set_content(write_element(writer, "dissipation"), format_text("2*%s_damping*%s", name, squares));
+  }
+}
+
 void write_joint(const struct Writer *writer, const struct Joint *joint) {
   char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
                                   joint->parent->name, joint->child->name);
@@ -197,48 +207,7 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
   else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, &start, description);
-  else if (joint->type == BALL) write_components(writer, joint->symbol, 3, &start, description);
-}
-
-/* A control that a spring follows is a position, one that a damper follows a velocity; any other is the force itself, or scales it. */
-void write_actuator(const struct Writer *writer, const struct Actuator *actuator) {
-  const struct Joint *joint = actuator->joint;
-  bool slides = is_sliding(joint), has_spring = actuator->bias[1] != 0, has_damper = actuator->bias[2] != 0;
-  bool is_servo = has_spring && actuator->gain == -actuator->bias[1];
-  bool is_drive = !has_spring && has_damper && actuator->gain == -actuator->bias[2];
-  const char *position = position_of(joint);
-  char *name = format_text("%s_control", robot_symbol(actuator->name)), *gear = number(actuator->gear);
-  char *ratio = joint->leader != joint ? ratio_of(joint) : number(1);
-  char *velocity = format_text("%s*%s_velocity", ratio, joint->leader->symbol);
-  char *control = clamped(actuator->control, name), *gain = number(actuator->gain);
-  char *force = is_servo   ? format_text("%s_stiffness*%s", name, control)
-                : is_drive ? format_text("%s_damping*%s", name, control)
-                           : format_text("%s*%s", gain, control);
-  const char *unit = slides ? "N" : "N.m";
-  if (has_spring) {
-    write_parameter(writer, format_text("%s_stiffness", name), -actuator->bias[1], slides ? "N/m" : "N.m/rad",
-                    format_text("force of the actuator '%s' by position", actuator->name));
-    force = format_text("%s - %s_stiffness*(%s*%s)", force, name, gear, position);
-  }
-  if (has_damper) {
-    write_parameter(writer, format_text("%s_damping", name), -actuator->bias[2], slides ? "N.s/m" : "N.m.s/rad",
-                    format_text("force of the actuator '%s' by velocity", actuator->name));
-    force = format_text("%s - %s_damping*(%s*%s)", force, name, gear, velocity);
-  }
-  if (actuator->bias[0] != 0) {
-    write_parameter(writer, format_text("%s_bias", name), actuator->bias[0], unit,
-                    format_text("constant force of the actuator '%s'", actuator->name));
-    force = format_text("%s + %s_bias", force, name);
-  }
-  xmlNodePtr input = write_element(writer, "input"), node = write_element(writer, "force");
-  if (is_servo) unit = slides ? "m" : "rad";
-  if (is_drive) unit = slides ? "m/s" : "rad/s";
-  set_attribute(input, "name", name);
-  set_attribute(input, "unit", copy_text(unit));
-  set_number(input, "start", actuator->start);
-  set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
-  set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
-  set_content(node, format_text("%s*%s*(%s)", gear, ratio, clamped(actuator->force, force)));
+  else if (joint->type == BALL) write_ball(writer, joint, &start, description);
 }
 
 /* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */
@@ -301,8 +270,8 @@ void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Jo
   else if (joint->type == BALL) write_quaternion(writer, frame, joint->symbol);
   else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);
   else if (joint_is_single(joint)) {
-    char *position = position_of(joint);
-    if (is_sliding(joint)) write_slide(writer, frame, joint->axis, position);
+    char *position = joint_position(joint);
+    if (joint_slides(joint)) write_slide(writer, frame, joint->axis, position);
     else write_turn(writer, frame, joint->axis, position);
   }
 }

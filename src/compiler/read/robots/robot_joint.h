@@ -10,8 +10,13 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
 /* Coordinates and what else there is of a joint beside its frame. */
 void write_joint(const struct Writer *writer, const struct Joint *joint);
 
-/* The input NAME_control of an actuator, and what it makes of it. */
-void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
+/* Of a joint with one degree of freedom: whether it slides, and the unit of its position. */
+bool joint_slides(const struct Joint *joint);
+const char *joint_unit(const struct Joint *joint);
+
+/* Its position, and what the velocity of its leader is multiplied by for its own, as expressions. */
+char *joint_position(const struct Joint *joint);
+char *joint_ratio(const struct Joint *joint);
 
 /* The six degrees of freedom of a free body, in coordinates whose names begin with this one. */
 void write_free_coordinates(const struct Writer *writer, const char *name, const struct JointStart *start,

@@ -10,6 +10,7 @@
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_shapes.h"
+#include "read/robots/robot_transmission.h"
 #include "read/robots/robot_tree.h"
 #include "read/robots/urdf.h"
 #include "read/xml/nodes.h"
@@ -108,6 +109,8 @@ static bool has_losses(const struct Robot *robot, const struct RobotOptions *opt
     if (robot->joints[i]->damping > 0 || robot->joints[i]->stiffness > 0 ||
         (robot->joints[i]->friction > 0 && !options->sticks))
       return true;
+  for (size_t i = 0; i < robot->tendon_count; i++)
+    if (robot->tendons[i].damping > 0 || robot->tendons[i].stiffness > 0) return true;
   for (size_t i = 0; i < robot->actuator_count; i++)
     if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
   return false;
@@ -140,6 +143,10 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  for (size_t i = 0; i < robot->tendon_count; i++) {
+    writer->line = robot->tendons[i].line;
+    write_tendon(writer, &robot->tendons[i]);
+  }
   for (size_t i = 0; i < robot->actuator_count; i++) {
     writer->line = robot->actuators[i].line;
     write_actuator(writer, &robot->actuators[i]);

@@ -245,19 +245,35 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
 
-static void connect_actuators(struct Connection *connection) {
+/* symbol: of a tendon, whose coefficients are parameters where it turns one joint and slides another. */
+static void connect_transmission(struct Connection *connection, struct Transmission *transmission, const char *kind,
+                                 const char *name, const char *symbol, long line) {
+  const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);
+  for (size_t i = 0; i < transmission->count; i++) {
+    struct Pull *pull = &transmission->pulls[i], *first = transmission->pulls;
+    const struct Entry *entry = find(connection, &connection->joints, pull->joint_name, what, line);
+    pull->joint = entry != NULL ? connection->robot->joints[entry->index] : NULL;
+    if (pull->joint == NULL) continue;
+    if (!joint_is_single(pull->joint))
+      report_error(connection->diagnostics, line,
+                   "the %s '%s' is at the joint '%s', which has more than one degree of freedom; expected a hinge or "
+                   "slide",
+                   kind, name, pull->joint_name);
+    if (first->joint != NULL && (first->joint->type == PRISMATIC) != (pull->joint->type == PRISMATIC))
+      pull->symbol = format_text("%s_by_%s", symbol, pull->joint->symbol);
+  }
+}
+
+static void connect_transmissions(struct Connection *connection) {
   struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->tendon_count; i++) {
+    struct Tendon *tendon = &robot->tendons[i];
+    connect_transmission(connection, &tendon->transmission, "tendon", tendon->name, tendon->symbol, tendon->line);
+  }
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
-    const struct Entry *entry =
-        find(connection, &connection->joints, actuator->joint_name, "an actuator", actuator->line);
-    if (entry == NULL) continue;
-    actuator->joint = robot->joints[entry->index];
-    if (!joint_is_single(actuator->joint))
-      report_error(connection->diagnostics, actuator->line,
-                   "the actuator '%s' is at the joint '%s', which has more than one degree of freedom; expected a "
-                   "hinge or slide",
-                   actuator->name, actuator->joint_name);
+    if (actuator->transmission.pulls->joint != NULL) continue; /* of a tendon, which shares its own */
+    connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);
   }
 }
 
@@ -315,7 +331,7 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
   for (size_t i = 0; i < robot->joint_count && diagnostics->errors == errors; i++)
     find_leader(&connection, robot->joints[i]);
   if (diagnostics->errors == errors) join_fixed_links(&connection);
-  if (diagnostics->errors == errors) connect_actuators(&connection);
+  if (diagnostics->errors == errors) connect_transmissions(&connection);
   if (diagnostics->errors == errors) connect_loops(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
   return diagnostics->errors == errors;

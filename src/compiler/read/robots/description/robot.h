@@ -65,11 +65,36 @@ struct Joint {
   bool is_mimicked;
 };
 
-/* It pushes a joint with gear*(gain*control + bias[0] + bias[1]*gear*position + bias[2]*gear*velocity). */
-struct Actuator {
-  char *name, *joint_name;
-  struct Joint *joint; /* set by robot_connect() */
+/* How much the length of a transmission grows with the position of a joint. */
+struct Pull {
+  char *joint_name;
+  double coefficient;
+  /* What robot_connect() finds: */
+  struct Joint *joint;
+  char *symbol; /* of the parameter that has the coefficient, where this has a unit; else NULL */
+};
+
+/* Its length is the sum of all coefficients times positions. */
+struct Transmission {
+  struct Pull *pulls;
+  size_t count;
+};
+
+/* A spring, a damper, an inertia and limits along a transmission. */
+struct Tendon {
+  char *name, *symbol;
   long line;
+  struct Transmission transmission;
+  double lower, upper; /* NAN: no limit */
+  double stiffness, damping, armature;
+  double relaxed[2]; /* the lengths between which its spring is relaxed */
+};
+
+/* It pushes along a transmission with gear*(gain*control + bias[0] + bias[1]*gear*length + bias[2]*gear*rate). */
+struct Actuator {
+  char *name;
+  long line;
+  struct Transmission transmission; /* of one joint, or a tendon's */
   double gear, gain, bias[3];
   double start;                /* of the control */
   double control[2], force[2]; /* limits of the control, and of the force before the gear; NAN: none */
@@ -101,9 +126,10 @@ struct Robot {
   long line;
   struct Link **links;
   struct Joint **joints;
+  struct Tendon *tendons;
   struct Actuator *actuators;
   struct RobotLoop *loops;
-  size_t link_count, joint_count, actuator_count, loop_count;
+  size_t link_count, joint_count, tendon_count, actuator_count, loop_count;
   double gravity[3]; /* m/s2 */
   struct Link *root;
 };

@@ -7,21 +7,20 @@
 #include "read/robots/mjcf/mjcf_equality.h"
 #include "read/robots/mjcf/mjcf_geoms.h"
 #include "read/robots/mjcf/mjcf_keyframe.h"
+#include "read/robots/mjcf/mjcf_tendons.h"
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/robots/mjcf/mjcf_values.h"
 #include "read/xml/nodes.h"
 
 /* Reports elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[][2] = {
-      {"include", "one file, as MuJoCo's mj_saveLastXML writes it"},
-      {"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
-      {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
-      {"composite", "rigid bodies"},
-      {"flexcomp", "rigid bodies"},
-      {"flex", "rigid bodies"},
-      {"plugin", "a file without it"},
-      {"tendon", "a <spring>, or a <joint type=\"distance\">, in a <system> that includes the robot"}};
+  static const char *const refused[][2] = {{"include", "one file, as MuJoCo's mj_saveLastXML writes it"},
+                                           {"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
+                                           {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+                                           {"composite", "rigid bodies"},
+                                           {"flexcomp", "rigid bodies"},
+                                           {"flex", "rigid bodies"},
+                                           {"plugin", "a file without it"}};
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (child->type != XML_ELEMENT_NODE || is_element(child, "sensor") || is_element(child, "asset")) continue;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
@@ -96,11 +95,18 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/* What has a coordinate for each degree of freedom in the language has no place for what acts along them. */
+/* A ball joint turns against its damping and armature about any axis; what else acts along a single coordinate has no place in several. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
-  static const char *const refused[] = {"stiffness", "damping", "armature", "frictionloss", "springdamper"};
+  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
-  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+  if (joint->type == BALL) {
+    joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+    joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+    if (mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+    return;
+  }
+  mjcf_refuse(mjcf, node, "damping");
+  mjcf_refuse(mjcf, node, "armature");
 }
 
 /* The body of a free joint starts where it is placed. */
@@ -248,18 +254,29 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
   }
 }
 
+/* At a joint, or along a tendon. */
+static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *name = attribute(node, "tendon");
+  const struct Tendon *tendon = name != NULL ? mjcf_tendon(mjcf, node, name) : NULL;
+  if (tendon != NULL) return tendon->transmission;
+  struct Pull *pull = allocate(1, sizeof *pull);
+  *pull = (struct Pull){.coefficient = 1};
+  if (name == NULL) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
+  return (struct Transmission){pull, name == NULL};
+}
+
 static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const refused[] = {"dampratio", "timeconst", "inheritrange", "actdim",
                                         "delay",     "damping",   "armature"};
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
       !is_element(node, "general")) {
-    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint");
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
     return;
   }
-  struct Actuator actuator = {.joint_name = required_attribute(&mjcf->file, node, "joint"), .line = xmlGetLineNo(node)};
-  actuator.name = attribute(node, "name");
-  if (actuator.name == NULL) actuator.name = actuator.joint_name;
+  struct Actuator actuator = {
+      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node)};
+  if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
   double gear[6] = {1};
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
   actuator.gear = gear[0];
@@ -291,7 +308,7 @@ static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
 
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   static const char *const known[] = {"compiler", "option",   "default", "worldbody", "actuator",
-                                      "equality", "keyframe", "asset",   NULL};
+                                      "equality", "keyframe", "asset",   "tendon",    NULL};
   struct Robot *robot = allocate(1, sizeof *robot);
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
@@ -317,6 +334,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "worldbody", false, read_world);
+  for_each(&mjcf, "tendon", true, mjcf_read_tendon);
   for_each(&mjcf, "actuator", true, read_actuator);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);

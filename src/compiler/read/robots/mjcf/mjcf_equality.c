@@ -7,17 +7,11 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-static struct Joint *find_joint(const struct Robot *robot, const char *name) {
-  for (size_t i = 0; i < robot->joint_count; i++)
-    if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];
-  return NULL;
-}
-
 /* A joint whose distance from its ref is a linear function of another's mimics that. */
 static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   double c[5] = {0, 1};
   char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
-  struct Joint *joints[2] = {find_joint(mjcf->file.robot, names[0]), find_joint(mjcf->file.robot, names[1])};
+  struct Joint *joints[2] = {mjcf_joint(mjcf, names[0]), mjcf_joint(mjcf, names[1])};
   mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
   for (int i = 0; i < 2; i++)
     if (joints[i] == NULL && *names[i] != '\0')

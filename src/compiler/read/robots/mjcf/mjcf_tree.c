@@ -1,6 +1,7 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/memory.h"
 
@@ -28,6 +29,13 @@ struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType 
   joint->multiplier = 1;
   add_joint(&mjcf->file, joint);
   return joint;
+}
+
+struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name) {
+  const struct Robot *robot = mjcf->file.robot;
+  for (size_t i = 0; i < robot->joint_count; i++)
+    if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];
+  return NULL;
 }
 
 void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place) {

@@ -12,6 +12,9 @@ struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
 struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
                              char *child);
 
+/* NULL for none of this name. */
+struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
+
 /* A link that does not move in its parent. */
 void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place);
 

@@ -54,7 +54,7 @@ static xmlNodePtr of_class(xmlNodePtr class, const char *element, const char *na
 }
 
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  const char *element = (const char *)node->name;
+  const char *element = is_element(node, "fixed") ? "tendon" : (const char *)node->name;
   if (has_attribute(node, name)) return attribute(node, name);
   for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class)) {
     xmlNodePtr found = of_class(class, element, name);

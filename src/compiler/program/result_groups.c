@@ -1,0 +1,111 @@
+#include "program/result_groups.h"
+
+#include <stdint.h>
+
+#include "base/memory.h"
+#include "base/sorting.h"
+#include "program/values/form.h"
+
+/*
+ * Things that need fewer nodes are computed by themselves; so many results of a group at most stand in an array; so many
+ * groups are open at a time, as those of frames and of bodies, which come by turns.
+ */
+enum { LONG_ENOUGH = 1000, SIZE_LIMIT = 1024, OPEN_GROUPS = 4 };
+
+/* A group that things may join, and the nodes that it needs. */
+struct Group {
+  size_t leader, size;
+  bool *needs; /* each node of the graph */
+  struct NodeList needed;
+  size_t shortest; /* how many nodes the thing needs that needs the fewest */
+};
+
+struct OpenGroups {
+  struct Group groups[OPEN_GROUPS];
+  size_t next; /* that a new one takes the place of */
+};
+
+/* Whether the thing whose nodes the cone has may join the group: not where one of both would take half as long again. */
+static bool may_join(const struct Cone *cone, const struct Group *group, size_t things) {
+  size_t shortest = smaller(cone->count, group->shortest), count = group->needed.count;
+  if (group->size == 0 || group->size + things > SIZE_LIMIT) return false;
+  for (size_t i = 0; i < cone->count; i++) count += !group->needs[cone->nodes[i]];
+  return 2 * count <= 3 * shortest;
+}
+
+static void begin(const struct Graph *graph, struct Group *group, size_t leader) {
+  if (group->needs == NULL) group->needs = allocate(graph->count, sizeof *group->needs);
+  for (size_t i = 0; i < group->needed.count; i++) group->needs[group->needed.nodes[i]] = false;
+  group->needed.count = 0;
+  group->leader = leader;
+  group->size = 0;
+  group->shortest = SIZE_MAX;
+}
+
+static void add_needs(const struct Cone *cone, struct Group *group) {
+  group->shortest = smaller(cone->count, group->shortest);
+  for (size_t i = 0; i < cone->count; i++) {
+    if (group->needs[cone->nodes[i]]) continue;
+    group->needs[cone->nodes[i]] = true;
+    append_node(&group->needed, cone->nodes[i]);
+  }
+}
+
+/* The group that the thing joins or, in place of the one that was begun first, begins. */
+static struct Group *find_group(const struct Needs *needs, struct OpenGroups *open, size_t leader, size_t things) {
+  for (size_t i = 0; i < OPEN_GROUPS; i++)
+    if (may_join(needs->cone, &open->groups[i], things)) return &open->groups[i];
+  struct Group *group = &open->groups[open->next];
+  open->next = (open->next + 1) % OPEN_GROUPS;
+  begin(needs->graph, group, leader);
+  return group;
+}
+
+/* Things whose results are first .. first + size - 1. */
+static void place_thing(struct ResultGroups *groups, struct Needs *needs, const Node *result, size_t first, size_t size,
+                        struct OpenGroups *open) {
+  const struct Cone *cone = needs->cone;
+  for (size_t i = 0; i < size; i++) {
+    groups->leader[first + i] = first;
+    groups->place[first + i] = i;
+  }
+  needs_collect(needs, result + first, size, false);
+  if (cone->count < LONG_ENOUGH) return;
+  struct Group *group = find_group(needs, open, first, size);
+  add_needs(cone, group);
+  for (size_t i = 0; i < size; i++) {
+    groups->leader[first + i] = group->leader;
+    groups->place[first + i] = group->size++;
+  }
+}
+
+struct ResultGroups result_groups_of(const struct Expressions *expressions) {
+  const struct Interface *interface = expressions->interface;
+  const struct Graph *graph = expressions->model->graph;
+  struct ResultGroups groups = groups_of_one(interface->result_count);
+  struct Needs *needs = needs_create(graph);
+  struct OpenGroups open[2] = {0}; /* without and with accelerations, which cannot always be had */
+  for (size_t i = 0; i < interface->count && graph_limit(graph) == NULL; i++) {
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    size_t first = variable->entry.index, size = 1;
+    if (variable->entry.kind != VARIABLE_RESULT || variable->is_continued) continue;
+    while (i + size < interface->count && variable[size].is_continued) size++;
+    bool has_accelerations = graph_depends_on(graph, expressions->result[first], ACCELERATION);
+    place_thing(&groups, needs, expressions->result, first, size, &open[has_accelerations]);
+  }
+  return groups;
+}
+
+struct ResultGroups groups_of_one(size_t count) {
+  struct ResultGroups groups = {
+      .count = count, .leader = allocate(count, sizeof *groups.leader), .place = allocate(count, sizeof *groups.place)};
+  for (size_t i = 0; i < count; i++) groups.leader[i] = i;
+  return groups;
+}
+
+struct NodeList group_members(const struct ResultGroups *groups, const Node *result, size_t leader) {
+  struct NodeList members = {0};
+  for (size_t i = leader; i < groups->count; i++)
+    if (groups->leader[i] == leader) append_node(&members, result[i]);
+  return members;
+}
